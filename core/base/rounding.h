@@ -1,0 +1,41 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+namespace cscd {
+
+// Half an ulp of 1: the largest relative error of one correctly rounded operation.
+inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+// The next float below x; x = -infinity stays. Branch-free, so that loops over it vectorise.
+inline float next_below(float x) {
+  const std::int32_t bits = std::bit_cast<std::int32_t>(x);
+  // Positive floats order like their bits, negative ones the other way round; both zeros step to the first
+  // negative subnormal.
+  const std::int32_t stepped = x > 0 ? bits - 1 : bits + 1;
+  const std::int32_t smallest_negative = std::numeric_limits<std::int32_t>::min() + 1;
+  const std::int32_t chosen = x == 0 ? smallest_negative : stepped;
+  return x == -std::numeric_limits<float>::infinity() ? x : std::bit_cast<float>(chosen);
+}
+
+// The largest float that is not above the exact sum x + y.
+inline float float_below_sum(double x, double y) {
+  const double sum = x + y;
+  // Knuth's two-sum: sum + error == x + y exactly (in the absence of overflow).
+  const double y_part = sum - x;
+  const double error = (x - (sum - y_part)) + (y - y_part);
+  const float nearest = static_cast<float>(sum);
+  const double widened = static_cast<double>(nearest);
+  const bool above = widened > sum || (widened == sum && error < 0);
+  return above ? next_below(nearest) : nearest;
+}
+
+// The largest float that is not above x.
+inline float float_below(double x) {
+  const float nearest = static_cast<float>(x);
+  return static_cast<double>(nearest) > x ? next_below(nearest) : nearest;
+}
+
+}  // namespace cscd

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace cscd {
+
+// A point or a vector in space. An array of Vec3 is a tightly packed array of 3 n doubles.
+using Vec3 = Eigen::Vector3d;
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
+}  // namespace cscd

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace cscd {
+
+// Sizes of the orientation classes over the interval and the number of clusters in force.
+struct RadialCounts {
+  std::uint64_t positive = 0, negative = 0, uncertain = 0;  // triangles
+  std::uint64_t clusters = 0;                               // mega clusters; atomic ones where nothing merges
+};
+
+// What culling did.
+struct CullCounts {
+  std::uint64_t bvot = 0;  // bounding volume overlap tests
+  std::uint64_t pctp = 0;  // potentially colliding triangle pairs passed on
+  std::optional<RadialCounts> radial;
+};
+
+// What the pair sink did with them.
+struct PairCounts {
+  std::uint64_t adjacent_pctp = 0;     // pairs whose triangles share a vertex
+  std::uint64_t relative_dropped = 0;  // non-adjacent pairs dropped by their relative boxes
+  std::uint64_t feature_pairs = 0;     // distinct feature pairs after that
+  std::uint64_t elementary_tests = 0;  // those that the non-penetration filter left
+};
+
+}  // namespace cscd

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "core/detect/contact.h"
+#include "core/detect/counts.h"
+#include "core/mesh/motion.h"
+#include "core/mesh/rig.h"
+
+namespace cscd {
+
+// Milliseconds of one interval. A stage that a strategy does not have is absent, not zero.
+struct StageTimes {
+  double refit = 0;
+  std::optional<double> rv_update;
+  double traversal = 0;
+  double elementary = 0;
+  double total() const { return refit + rv_update.value_or(0) + traversal + elementary; }
+};
+
+struct Report {
+  CullCounts cull;
+  PairCounts pairs;
+  StageTimes ms;
+};
+
+// Finds the contacts of one interval. After its second call nothing in here allocates unless an interval is
+// larger than all before it; nothing logs or throws.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+  virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
+};
+
+}  // namespace cscd

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/detect/detector.h"
+#include "core/elementary/elementary_test.h"
+#include "core/mesh/rig.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd {
+
+// complete: on every input, every feature pair in contact is passed on to the elementary test.
+// first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair that
+//   attains the earliest contact time is; later contacts may be missing.
+// heuristic: neither.
+enum class Guarantee { complete, first_contact, heuristic };
+std::string_view to_string(Guarantee guarantee);
+
+// What a strategy is made for. The referenced objects must outlive the detector.
+struct Setup {
+  const TriangleMesh& mesh;
+  std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
+  const Rig* rig;                   // null for a mesh without bones
+  const ElementaryTest& elementary;
+};
+
+// One-time work before the first interval, as in Table 1 of the paper.
+struct Preparation {
+  std::optional<double> distance_and_heat_ms;  // distance field and heat diffusion
+  std::optional<double> decomposition_ms;      // clusters from heat weights, observers
+  std::optional<int> atomic_clusters;
+};
+
+struct Prepared {
+  std::unique_ptr<Detector> detector;
+  Preparation preparation;
+};
+
+// One row of the catalogue of strategies.
+struct Strategy {
+  std::string_view name;
+  std::string_view source;  // paper or package, in a line
+  Guarantee guarantee;
+  bool needs_rig;
+  Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
+};
+
+}  // namespace cscd

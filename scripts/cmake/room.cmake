@@ -1,0 +1,33 @@
+# A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
+#
+#   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes)
+#
+# USES names the rooms below it, LINK outside libraries, TEST_USES rooms that only its tests may see.
+function(cscd_room path)
+  cmake_parse_arguments(ROOM "" "" "USES;LINK;TEST_USES" ${ARGN})
+  string(REPLACE "/" "_" room ${path})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*_test.cpp)
+  if(tests)
+    list(REMOVE_ITEM sources ${tests})
+  endif()
+  list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  string(REPLACE "/" "_" below "${ROOM_USES}")
+  string(REPLACE "/" "_" test_below "${ROOM_TEST_USES}")
+
+  if(sources)
+    add_library(${room} STATIC ${sources})
+    target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
+  else()
+    add_library(${room} INTERFACE)
+    target_include_directories(${room} INTERFACE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${room} INTERFACE ${below} ${ROOM_LINK})
+  endif()
+
+  if(BUILD_TESTING AND tests)
+    add_executable(${room}_test ${tests})
+    target_link_libraries(${room}_test PRIVATE ${room} ${test_below} GTest::gtest_main cscd_flags)
+    gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+  endif()
+endfunction()
