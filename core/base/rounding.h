@@ -28,7 +28,9 @@ inline float float_below_sum(double x, double y) {
   const double error = (x - (sum - y_part)) + (y - y_part);
   const float nearest = static_cast<float>(sum);
   const double widened = static_cast<double>(nearest);
-  const bool above = widened > sum || (widened == sum && error < 0);
+  // A sum that overflows to infinity is finite in truth: the largest finite float is below it.
+  const bool above =
+      widened > sum || (widened == sum && error < 0) || sum == std::numeric_limits<double>::infinity();
   return above ? next_below(nearest) : nearest;
 }
 

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+// All pairs of triangles: the oracle. Quadratic.
+Prepared make_brute(const Setup& setup);
+
+}  // namespace cscd

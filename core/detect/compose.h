@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "core/detect/culler.h"
+#include "core/detect/detector.h"
+#include "core/elementary/elementary_test.h"
+
+namespace cscd {
+
+struct PairOptions {
+  bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
+};
+
+// A detector out of a culling strategy and an elementary test: the way of one interval. Every strategy shares
+// what happens behind the culler: relative boxes (optional), expansion into feature pairs, each tested once,
+// the certified non-penetration filter, the elementary test. Owns the clock of the interval. `mesh` must
+// outlive the detector.
+std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
+                                  const ElementaryTest& test, PairOptions options = {});
+
+}  // namespace cscd

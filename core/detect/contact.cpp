@@ -1,0 +1,40 @@
+#include "core/detect/contact.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <tuple>
+
+namespace cscd {
+
+Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
+           const FeaturePair& pair) {
+  if (pair.kind == FeaturePair::Kind::vertex_face)
+    return test.vertex_face(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}));
+  return test.edge_edge(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+}
+
+void ContactSet::sort() {
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
+    return std::tie(x.time, x.pair) < std::tie(y.time, y.pair);
+  });
+}
+
+std::string digest(const ContactSet& sorted) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto mix = [&](std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((word >> (8 * byte)) & 0xff)) * 0x100000001b3u;
+  };
+  for (const Contact& contact : sorted.contacts) {
+    mix(static_cast<std::uint64_t>(contact.pair.kind));
+    mix(static_cast<std::uint64_t>(contact.pair.a));
+    mix(static_cast<std::uint64_t>(contact.pair.b));
+    mix(static_cast<std::uint64_t>(contact.verdict));
+    mix(std::bit_cast<std::uint64_t>(contact.time));
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+}  // namespace cscd

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/detect/contact.h"
+
+namespace cscd {
+
+// The feature pairs met in this interval, so that each is tested once however many triangle pairs carry it.
+// This keeps trap 1 shut: no triangle owns a feature, the first surviving triangle pair brings it.
+//
+// Open addressing with linear probing. An entry carries the interval's number in its top bits, so a new
+// interval forgets the old entries without touching them.
+class FeaturePairSet {
+ public:
+  FeaturePairSet() : slots_(1 << 12) {}
+
+  void start_interval() {
+    size_ = 0;
+    if (++epoch_ == kEpochs) {
+      std::fill(slots_.begin(), slots_.end(), 0);
+      epoch_ = 1;
+    }
+  }
+
+  // True if the pair was not in the set yet.
+  bool insert(const FeaturePair& pair) {
+    if (2 * size_ >= slots_.size()) grow();
+    const std::uint64_t entry = key(pair) | epoch_ << kKeyBits;
+    std::uint64_t& slot = find(entry);
+    if (slot == entry) return false;
+    slot = entry;
+    ++size_;
+    return true;
+  }
+
+ private:
+  static constexpr int kIdBits = 28;  // TriangleMesh allows 2^28 vertices and triangles
+  static constexpr int kKeyBits = 2 * kIdBits + 2;
+  static constexpr std::uint64_t kEpochs = std::uint64_t{1} << (64 - kKeyBits);
+
+  // Edges can be 3/2 times as many as triangles, hence one bit more for the second id.
+  static std::uint64_t key(const FeaturePair& pair) {
+    return static_cast<std::uint64_t>(pair.kind == FeaturePair::Kind::edge_edge) << (kKeyBits - 1) ^
+           static_cast<std::uint64_t>(pair.a) << (kIdBits + 1) ^ static_cast<std::uint64_t>(pair.b);
+  }
+  std::uint64_t& find(std::uint64_t entry) {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> 20 & mask;
+    while (slots_[i] >> kKeyBits == epoch_ && slots_[i] != entry) i = (i + 1) & mask;
+    return slots_[i];
+  }
+  void grow() {
+    std::vector<std::uint64_t> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const std::uint64_t entry : old)
+      if (entry >> kKeyBits == epoch_) find(entry) = entry;
+  }
+
+  std::vector<std::uint64_t> slots_;
+  std::size_t size_ = 0;
+  std::uint64_t epoch_ = 1;
+};
+
+}  // namespace cscd

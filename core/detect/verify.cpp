@@ -1,0 +1,103 @@
+#include "core/detect/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace cscd {
+namespace {
+
+bool by_pair(const Contact& x, const Contact& y) {
+  return x.pair < y.pair;
+}
+
+std::vector<Contact> sorted_by_pair(const ContactSet& set) {
+  std::vector<Contact> contacts = set.contacts;
+  std::sort(contacts.begin(), contacts.end(), by_pair);
+  return contacts;
+}
+
+std::string describe(const Contact& contact) {
+  const bool vf = contact.pair.kind == FeaturePair::Kind::vertex_face;
+  char text[120];
+  std::snprintf(text, sizeof text, "%s %d, %s %d at t = %.17g", vf ? "vertex" : "edge", contact.pair.a,
+                vf ? "triangle" : "edge", contact.pair.b, contact.time);
+  return text;
+}
+
+}  // namespace
+
+std::string_view to_string(Guarantee guarantee) {
+  switch (guarantee) {
+    case Guarantee::complete:
+      return "complete";
+    case Guarantee::first_contact:
+      return "first_contact";
+    case Guarantee::heuristic:
+      return "heuristic";
+  }
+  return "";
+}
+
+Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
+                    bool starts_embedded) {
+  const std::vector<Contact> expected = sorted_by_pair(reference), found = sorted_by_pair(answer);
+  Verification result;
+  result.reference_contacts = expected.size();
+
+  // Both are the referee's answers: a contact that the complete reference lacks is the reference's loss.
+  std::vector<Contact> missing, surplus;
+  std::set_difference(expected.begin(), expected.end(), found.begin(), found.end(),
+                      std::back_inserter(missing), by_pair);
+  std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(),
+                      std::back_inserter(surplus), by_pair);
+  result.found_contacts = expected.size() - missing.size();
+  const auto fail = [&](std::string text) {
+    result.ok = false;
+    result.failure = std::move(text);
+  };
+
+  if (!surplus.empty()) {
+    fail("the reference lacks " + describe(surplus.front()));
+  } else if (guarantee == Guarantee::complete && !missing.empty()) {
+    fail("lost " + describe(missing.front()) + " (guarantee complete)");
+  } else if (guarantee == Guarantee::first_contact && starts_embedded && !expected.empty()) {
+    const double first = reference.contacts.front().time;
+    const bool kept = std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                                  [&](const Contact& contact) { return contact.time == first; });
+    if (!kept) fail("lost the first contact: " + describe(reference.contacts.front()));
+  }
+  return result;
+}
+
+void Accuracy::add(const Accuracy& other) {
+  misses += other.misses;
+  false_alarms += other.false_alarms;
+  undecided += other.undecided;
+  largest_time_error = std::max(largest_time_error, other.largest_time_error);
+}
+
+Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test) {
+  const std::vector<Contact> truth = sorted_by_pair(referee), claims = sorted_by_pair(test);
+  Accuracy result;
+  auto t = truth.begin();
+  auto c = claims.begin();
+  while (t != truth.end() || c != claims.end()) {
+    if (c == claims.end() || (t != truth.end() && by_pair(*t, *c))) {
+      ++result.misses, ++t;
+      continue;
+    }
+    const bool both = t != truth.end() && !by_pair(*c, *t);
+    if (c->verdict == Verdict::undecided)
+      ++result.undecided;
+    else if (!both)
+      ++result.false_alarms;
+    else
+      result.largest_time_error = std::max(result.largest_time_error, std::abs(t->time - c->time));
+    ++c;
+    if (both) ++t;
+  }
+  return result;
+}
+
+}  // namespace cscd

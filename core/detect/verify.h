@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/detect/contact.h"
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+// One interval's judgement of a strategy that ran with the elementary test `exact`, against a complete
+// reference that did too. Comparing numbers of contacts would be wrong (trap 13): a strategy may report fewer
+// where its guarantee allows it.
+struct Verification {
+  bool ok = true;
+  std::string failure;  // empty when ok: which pair is missing or wrong, and at what time
+  std::uint64_t reference_contacts = 0;
+  std::uint64_t found_contacts = 0;  // of the reference's
+};
+
+// Both sets sorted. `starts_embedded` matters for the guarantee first_contact alone: without it nothing is
+// promised.
+Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
+                    bool starts_embedded);
+
+// How an inexact elementary test did on the pairs that a complete culler passed on, the referee having
+// answered the same pairs.
+struct Accuracy {
+  std::uint64_t misses = 0;        // contact by the referee, apart by the test
+  std::uint64_t false_alarms = 0;  // apart by the referee, contact by the test
+  std::uint64_t undecided = 0;
+  double largest_time_error = 0;  // over pairs that both call contact
+
+  void add(const Accuracy& other);
+};
+Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test);
+
+}  // namespace cscd

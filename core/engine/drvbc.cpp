@@ -1,0 +1,83 @@
+#include "core/engine/drvbc.h"
+
+#include <numbers>
+
+#include "core/base/stage_clock.h"
+#include "core/detect/compose.h"
+#include "core/engine/mega_clusters.h"
+#include "core/radial/refinement.h"
+#include "core/radial/segmentation.h"
+#include "core/radial/setup.h"
+
+// Dynamic Radial View Based Culling for Continuous Self-Collision Detection (Wong, Lin, Wang, Hung, Huang,
+// I3D 2014).
+//
+// Preparation: triangles to bones by heat diffusion on a smoothed mesh and a coarse distance field; clusters
+// refined by orientation; an observer point or segment for each (section 4). Every interval: clusters merged
+// into mega clusters (section 5), then intra- and inter-cluster checks over local and global hierarchies and
+// relative boxes for non-adjacent pairs (section 6). What differs is said where it stands: certified
+// orientation classes (orientation.h), three vertices instead of one for segments, a fixed order of seeds and
+// the seed's own cost (mega_clusters.h).
+namespace cscd {
+namespace {
+
+class DrvbcCuller : public Culler {
+ public:
+  DrvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
+              double gamma)
+      : clusters_(std::move(clusters)),
+        hierarchy_(setup.mesh, setup.reference, clusters_),
+        table_(setup.mesh, hierarchy_.groups()),
+        mega_(clusters_, *setup.rig, std::move(kinds), gamma) {}
+
+  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+
+  bool classify(const Motion& motion, const Rig::Interval* bones) override {
+    table_.update(motion);
+    mega_.regrow(table_, *bones, hierarchy_);
+    radial_ = hierarchy_.finish_classes();
+    radial_.clusters = mega_.count();
+    return true;
+  }
+
+  CullCounts cull(TrianglePairSink& sink) override {
+    CullCounts counts = hierarchy_.cull(mega_.labels(), sink);
+    counts.radial = radial_;
+    return counts;
+  }
+
+ private:
+  radial::AtomicClusters clusters_;
+  radial::ClusterHierarchy hierarchy_;
+  radial::OrientationTable table_;
+  MegaClusters mega_;
+  RadialCounts radial_;
+};
+
+}  // namespace
+
+Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
+  radial::require_radial_setup(setup, "drvbc");
+  const double theta = options.theta_degrees * std::numbers::pi / 180;
+  StageClock clock;
+  clock.enter(Stage::distance_and_heat);
+  std::vector<BoneId> bone_of = radial::nearest_bone_by_heat(
+      setup.mesh, setup.reference, *setup.rig, {options.grid_resolution, options.smoothing_passes});
+
+  clock.enter(Stage::decomposition);
+  radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
+  std::vector<radial::ObserverKind> kinds =
+      radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
+  bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
+  clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
+  kinds = radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
+  clock.stop();
+
+  Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
+                          clock.milliseconds(Stage::decomposition),
+                          static_cast<int>(clusters.clusters.size())};
+  auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options.gamma);
+  return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};
+}
+
+}  // namespace cscd

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/mesh/rig.h"
+#include "core/radial/atomic_clusters.h"
+#include "core/radial/cluster_hierarchy.h"
+#include "core/radial/observer.h"
+#include "core/radial/orientation.h"
+
+namespace cscd {
+
+// Dynamic cluster assembling (section 5 of the paper): at every interval, atomic clusters are merged from
+// scratch into mega clusters while fewer than gamma of a candidate's triangles are not positive towards the
+// joint that the first two clusters share.
+//
+// Differences to the text. The order of seeds is a fixed shuffle instead of a random one, so that results
+// depend on the interval alone (trap 12). The cost D is computed for the seed as well when its observer moves
+// to the joint: the paper looks at the candidate only and may turn any number of the seed's triangles
+// non-positive unnoticed.
+class MegaClusters {
+ public:
+  MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig, std::vector<radial::ObserverKind> kinds,
+               double gamma);
+
+  // Merges, and writes the class of every triangle towards its mega cluster's observer into the hierarchy.
+  void regrow(const radial::OrientationTable& table, const Rig::Interval& bones,
+              radial::ClusterHierarchy& hierarchy);
+
+  // The mega cluster of each atomic cluster.
+  std::span<const std::int32_t> labels() const { return label_; }
+  std::size_t count() const { return count_; }
+
+ private:
+  bool fits(std::size_t cluster, const radial::Observer& observer, const radial::OrientationTable& table,
+            radial::ClusterHierarchy& hierarchy);
+  bool merge_first_neighbour(std::size_t seed, radial::Observer& observer,
+                             const radial::OrientationTable& table, const Rig::Interval& bones,
+                             radial::ClusterHierarchy& hierarchy);
+  std::optional<MovingPoint> shared_joint(std::size_t a, std::size_t b, const Rig::Interval& bones) const;
+
+  const radial::AtomicClusters& atomic_;
+  const Rig& rig_;
+  std::vector<radial::ObserverKind> kinds_;
+  double gamma_;
+  std::vector<std::size_t> seeds_;
+  std::vector<std::int32_t> label_;
+  std::size_t count_ = 0;
+  // The paper's cache: members that were not positive in the last interval are looked at first, as they will
+  // probably decide against a merge. Saves work, never changes a decision.
+  std::vector<std::vector<std::uint32_t>> suspects_;
+  std::vector<std::size_t> members_;      // of the mega cluster that grows
+  std::vector<std::int32_t> refused_by_;  // the last mega cluster that did not take this one in
+};
+
+}  // namespace cscd

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/rounding.h"
+#include "core/base/vec3.h"
+
+// Triple products of moving vectors as cubics in t, with certified signs.
+//
+// Both the coplanarity of four moving points (the deforming non-penetration filter, Tang, Manocha and Tong
+// 2010) and the orientation of a moving triangle towards a moving observer (Wong et al. 2013) are (a(t) x
+// b(t)) . c(t) for vectors that move linearly. On [0, 1] a cubic lies in the hull of its four Bernstein
+// coefficients: when they share a sign, so does the cubic.
+namespace cscd {
+
+// A difference of two linearly moving points at t = 0 and t = 1.
+struct MovingVector {
+  Vec3 start, end;
+  double largest() const { return std::max(start.cwiseAbs().maxCoeff(), end.cwiseAbs().maxCoeff()); }
+};
+
+// Bernstein coefficients on [0, 1], each within `error` of the exact one for the exact input. `error` is
+// infinite where nothing is known (underflow or overflow in between).
+struct BernsteinCubic {
+  double c[4];
+  double error;
+
+  double at(double t) const {
+    const double s = 1 - t;
+    return s * s * (s * c[0] + 3 * t * c[1]) + t * t * (3 * s * c[2] + t * c[3]);
+  }
+};
+
+// (a x b) . c. Each component of a, b and c may carry one rounding (a difference of two doubles), and in
+// addition those of c may be off by `c_slack` in absolute terms.
+//
+// Error bound: with A, B, C the largest components, every coefficient is a sum of products a_i b_j c_k whose
+// absolute values sum to at most 6 A B C. The longest chain has 11 roundings (3 inputs; multiply, subtract
+// and add in the crosses; multiply and two additions in the dot; one addition; one division), so the error is
+// at most gamma_11 * 6 A B C < 67 u A B C. 72 also pays for the roundings of the bound itself.
+inline BernsteinCubic triple_product(const MovingVector& a, const MovingVector& b, const MovingVector& c,
+                                     double c_slack = 0) {
+  const Vec3 n0 = a.start.cross(b.start);
+  const Vec3 n1 =
+      a.start.cross(b.end) + a.end.cross(b.start);  // twice the middle control vector of the normal
+  const Vec3 n2 = a.end.cross(b.end);
+  const double area = a.largest() * b.largest();
+  const double volume = area * c.largest();
+  // Below this, products in between may be subnormal and lose more than a relative rounding.
+  constexpr double tiny = 1e-280, huge = 1e300;
+  const bool known = area >= tiny && volume >= tiny && volume <= huge;
+  return {{n0.dot(c.start), (n1.dot(c.start) + n0.dot(c.end)) / 3, (n1.dot(c.end) + n2.dot(c.start)) / 3,
+           n2.dot(c.end)},
+          known ? 72 * kUnitRoundoff * volume + 7 * area * c_slack : std::numeric_limits<double>::infinity()};
+}
+
+// +1: positive for every t in [0, 1]; -1: negative for every t; 0: not certain.
+inline int certain_sign(const BernsteinCubic& f) {
+  const double low = std::min(std::min(f.c[0], f.c[1]), std::min(f.c[2], f.c[3]));
+  const double high = std::max(std::max(f.c[0], f.c[1]), std::max(f.c[2], f.c[3]));
+  return low > f.error ? 1 : high < -f.error ? -1 : 0;
+}
+
+}  // namespace cscd

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/detect/counts.h"
+#include "core/detect/culler.h"
+#include "core/hierarchy/bounds.h"
+#include "core/hierarchy/tree.h"
+#include "core/radial/atomic_clusters.h"
+#include "core/radial/orientation.h"
+
+// Intra- and inter-cluster checks (section 3.1 and 6 of the paper) over local trees, one a cluster, under a
+// global one.
+//
+// Inside a cluster, a pair is needed unless both triangles are positive or both negative towards its
+// observer. Every node carries the mask of classes below it, so the descent drops two nodes at once when
+// their masks are one and the same sign: H- against H+ and Hu against all remain. Between clusters the bounds
+// alone decide.
+//
+// Soundness: the theorem asks that a dropped feature pair has all its incident triangles certified by one
+// field. A feature pair is tested as soon as one triangle pair carrying it is passed on, and all triangle
+// pairs of a dropped one were either apart in their bounds (no contact) or in one cluster with one sign.
+// Clusters never span two connected components (trap 3).
+namespace cscd::radial {
+
+class ClusterHierarchy {
+ public:
+  ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference, const AtomicClusters& clusters);
+
+  void refit(const Motion& motion) { bounds_.refit(mesh_, tree_, motion); }
+
+  // The triangles of each atomic cluster in the order in which its classes are kept.
+  std::span<const std::vector<TriangleId>> groups() const { return groups_; }
+  // Where the caller writes the orientation classes of one atomic cluster.
+  std::span<Orientation> classes(std::size_t cluster) {
+    return std::span(class_of_leaf_).subspan(first_leaf_[cluster], groups_[cluster].size());
+  }
+  // To be called when all classes of the interval stand.
+  RadialCounts finish_classes();
+
+  // Pairs to look at when atomic clusters with the same label act as one. Returns the overlap tests.
+  CullCounts cull(std::span<const std::int32_t> merged, TrianglePairSink& sink) const;
+
+ private:
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+  std::vector<std::int32_t> cluster_at_;  // of a node: the cluster whose root it is, or -1
+  std::vector<std::vector<TriangleId>> groups_;
+  std::vector<std::size_t> first_leaf_;  // of each cluster, in tree order
+  std::vector<Orientation> class_of_leaf_;
+  std::vector<std::uint8_t> mask_;  // of each node: which classes occur below
+};
+
+}  // namespace cscd::radial
