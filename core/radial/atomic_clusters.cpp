@@ -1,0 +1,60 @@
+#include "core/radial/atomic_clusters.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <utility>
+
+// Wong et al., I3D 2014, section 4.1: the triangles of one bone form an atomic cluster. Here also split by
+// the components of the mesh, which the paper takes to be one. Cost: n log n, for grouping the triangles.
+
+namespace cscd::radial {
+
+AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle) {
+  assert(bone_of_triangle.size() == mesh.triangle_count());
+  using Key = std::pair<BoneId, std::int32_t>;  // bone, component
+  const auto key = [&](std::size_t t) {
+    return Key{bone_of_triangle[t], mesh.component(TriangleId{static_cast<std::int32_t>(t)})};
+  };
+  std::vector<Key> keys;
+  keys.reserve(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) keys.push_back(key(t));
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+
+  AtomicClusters atomic;
+  for (const Key& k : keys) atomic.clusters.push_back({k.first, {}});
+  atomic.of_triangle.reserve(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto position = std::lower_bound(keys.begin(), keys.end(), key(t)) - keys.begin();
+    atomic.of_triangle.push_back(static_cast<std::int32_t>(position));
+  }
+  rebuild_lists(mesh, atomic);
+  return atomic;
+}
+
+void rebuild_lists(const TriangleMesh& mesh, AtomicClusters& atomic) {
+  for (AtomicClusters::Cluster& cluster : atomic.clusters) cluster.triangles.clear();
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    atomic.clusters[static_cast<std::size_t>(atomic.of_triangle[t])].triangles.push_back(
+        TriangleId{static_cast<std::int32_t>(t)});
+
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::int32_t> around;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    around.clear();
+    for (const TriangleId t : mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)}))
+      around.push_back(atomic.of_triangle[+t]);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (const std::int32_t a : around)
+      for (const std::int32_t b : around)
+        if (a != b) pairs.emplace_back(a, b);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  atomic.neighbours.assign(atomic.clusters.size(), {});
+  for (const auto& [a, b] : pairs) atomic.neighbours[static_cast<std::size_t>(a)].push_back(b);
+}
+
+}  // namespace cscd::radial

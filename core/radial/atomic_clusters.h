@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::radial {
+
+// A partition of the triangles. No cluster spans two components of the mesh: along a ray the orientations
+// alternate for one connected surface only (soundness, trap 3).
+struct AtomicClusters {
+  struct Cluster {
+    BoneId bone;
+    std::vector<TriangleId> triangles;  // ascending; never empty
+  };
+  std::vector<std::int32_t> of_triangle;              // index into clusters
+  std::vector<Cluster> clusters;                      // ascending by bone, then component
+  std::vector<std::vector<std::int32_t>> neighbours;  // clusters that share a mesh edge, ascending; symmetric
+};
+
+// One cluster for every bone and component that have triangles in common. Takes one valid bone a triangle.
+AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle);
+
+// Fills `triangles` of every cluster and `neighbours` anew from `of_triangle`, which holds a valid index for
+// each triangle; for whoever moves triangles between clusters. May leave a cluster without triangles.
+void rebuild_lists(const TriangleMesh& mesh, AtomicClusters& atomic);
+
+}  // namespace cscd::radial

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::radial {
+
+// Signed distance to a surface at the centres of the cells of a regular grid; negative inside.
+struct DistanceField {
+  Vec3 corner;  // lowest corner of the grid; the surface keeps one cell away from the grid's sides
+  double cell;  // side of a cell
+  std::array<int, 3> size;      // cells along x, y, z
+  std::vector<float> distance;  // x runs fastest
+
+  std::size_t index(int x, int y, int z) const {
+    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y),
+               k = static_cast<std::size_t>(z);
+    return i + static_cast<std::size_t>(size[0]) * (j + static_cast<std::size_t>(size[1]) * k);
+  }
+  Vec3 centre(int x, int y, int z) const { return corner + cell * Vec3(x + 0.5, y + 0.5, z + 0.5); }
+  // Bounds how far a point of a cell is from its centre: half the diagonal, rounded up.
+  double half_diagonal() const { return 0.8661 * cell; }
+  // The distance at the centre of the cell that holds the point; off the grid at least one cell, and
+  // positive.
+  double at(const Vec3& point) const;
+};
+
+// Grid with cubic cells, `cells_along_longest_side` of them along the longest side of the positions' box, and
+// a margin. A grid of more than 2^25 cells is made coarser until it has no more. Distances up to one cell are
+// exact but for float, larger ones within half the diagonal of a cell. Inside is where the surface winds
+// round a point, in whatever sense and however often; for an open surface the sign means little. Expects
+// finite positions in an order of magnitude that can be squared (segmentation brings them to size 1).
+DistanceField make_distance_field(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                  int cells_along_longest_side);
+
+// The resolution at which a cell is as long as the mean edge, at least 1: "full resolution".
+int resolution_of_mean_edge(const TriangleMesh& mesh, std::span<const Vec3> positions);
+
+// Does the segment stay inside as far as the grid can tell: is no point of it certainly outside?
+bool runs_inside(const DistanceField& field, const Vec3& from, const Vec3& to);
+
+}  // namespace cscd::radial

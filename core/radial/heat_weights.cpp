@@ -1,0 +1,184 @@
+#include "core/radial/heat_weights.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+// Bone heat: the surface conducts heat, each vertex is held by a spring to the temperature of the bones it
+// sees, and the weight of bone i is the equilibrium when bone i is at 1 and the others are at 0:
+//   (-Laplacian + H) w_i = H p_i,   H_jj = c / d_j^2,   p_ij = 1 / k if bone i is one of the k bones of
+//   vertex j.
+// Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section 4. There k
+// equally near bones pull k times as hard; here H does not depend on k, so that the rounding that decides a
+// tie cannot change the matrix. Both sides are multiplied by the vertex areas A, which makes the matrix
+// symmetric:
+//   (L + A H) w_i = A H p_i,   L the cotangent matrix.
+// Edge weights are kept positive, so that the matrix is an M-matrix (inverse without negative entries):
+// weights stay in [0, 1] and sum to 1 even where triangles are obtuse or degenerate. Cost: one sparse
+// Cholesky factorisation, one pair of triangular solves a bone; memory of one vector a bone in work, not of
+// all.
+
+namespace cscd::radial {
+namespace {
+
+// c of the paper, which takes 1 as well.
+constexpr double kHeat = 1;
+// Bounds of an edge's weight, (cot + cot) / 2: angles of half a tenth of a degree are as good as none, and
+// the edge of a non-Delaunay pair still conducts a little.
+constexpr double kWeakestEdge = 1e-3, kStrongestEdge = 1e3;
+// Bound of A H, which has no unit: the weight at such a vertex is that of its own bones within 1e-3 even
+// against the strongest edges, and the matrix stays well conditioned.
+constexpr double kStiffest = 1e6;
+// A bone further than this many diagonals of the component heats it evenly, however far it is.
+constexpr double kFarthest = 100;
+// Floor of a vertex's area as part of the squared diagonal over the vertices of its component: any surface
+// that deserves the name has more.
+constexpr double kLeastArea = 1e-6;
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+// Half the cotangent of the angle at `tip`; without meaning (infinite, NaN) for a degenerate triangle.
+double half_cotangent(const Vec3& tip, const Vec3& a, const Vec3& b) {
+  const Vec3 u = a - tip, v = b - tip;
+  return u.dot(v) / u.cross(v).norm() / 2;
+}
+
+std::vector<double> edge_weights(const TriangleMesh& mesh, std::span<const Vec3> positions) {
+  std::vector<double> weight(mesh.edge_count(), 0);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId id{static_cast<std::int32_t>(t)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Triangle& c = mesh.corners(id);
+      weight[+mesh.edges_of(id)[k]] +=
+          half_cotangent(positions[+c[(k + 2) % 3]], positions[+c[k]], positions[+c[(k + 1) % 3]]);
+    }
+  }
+  for (double& w : weight) w = std::isnan(w) ? kWeakestEdge : std::clamp(w, kWeakestEdge, kStrongestEdge);
+  return weight;
+}
+
+// A third of the area of the triangles at each vertex, with a floor; 0 for a vertex without triangles.
+std::vector<double> vertex_areas(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                 std::span<const double> diagonal, std::span<const std::int32_t> component) {
+  std::vector<double> area(mesh.vertex_count(), 0);
+  for (const Triangle& c : mesh.triangles()) {
+    const Vec3& a = positions[+c[0]];
+    const double sixth = (positions[+c[1]] - a).cross(positions[+c[2]] - a).norm() / 6;
+    for (const VertexId v : c) area[+v] += sixth;
+  }
+  std::vector<double> vertices(diagonal.size(), 0);
+  for (const std::int32_t c : component)
+    if (c >= 0) ++vertices[static_cast<std::size_t>(c)];
+  for (std::size_t v = 0; v < area.size(); ++v) {
+    if (component[v] < 0) continue;
+    const auto c = static_cast<std::size_t>(component[v]);
+    area[v] = std::max(area[v], kLeastArea * diagonal[c] * diagonal[c] / vertices[c]);
+  }
+  return area;
+}
+
+// The diagonal of each component's box; 1 for a component that is a single point.
+std::vector<double> component_diagonals(const TriangleMesh& mesh, std::span<const Vec3> positions) {
+  std::vector<Eigen::AlignedBox3d> box(static_cast<std::size_t>(mesh.component_count()));
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId id{static_cast<std::int32_t>(t)};
+    for (const VertexId v : mesh.corners(id))
+      box[static_cast<std::size_t>(mesh.component(id))].extend(positions[+v]);
+  }
+  std::vector<double> diagonal;
+  for (const Eigen::AlignedBox3d& b : box) {
+    const double length = b.diagonal().norm();
+    diagonal.push_back(length > 0 ? length : 1);
+  }
+  return diagonal;
+}
+
+// A H, the pull of its bones on each vertex.
+Eigen::VectorXd pulls(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                      const VisibleBones& visible) {
+  std::vector<std::int32_t> component(mesh.vertex_count(), -1);
+  for (std::size_t v = 0; v < component.size(); ++v)
+    if (const auto around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)}); !around.empty())
+      component[v] = mesh.component(around.front());
+  const std::vector<double> diagonal = component_diagonals(mesh, positions);
+  const std::vector<double> area = vertex_areas(mesh, positions, diagonal, component);
+
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh.vertex_count()));
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (component[v] < 0 || visible.of(v).empty()) continue;
+    const double d =
+        std::min(visible.distance[v], kFarthest * diagonal[static_cast<std::size_t>(component[v])]);
+    pull[static_cast<Eigen::Index>(v)] = std::min(kHeat * area[v] / (d * d), kStiffest);
+  }
+  return pull;
+}
+
+// The lower half of L + A H.
+Matrix system_matrix(const TriangleMesh& mesh, std::span<const Vec3> positions, const Eigen::VectorXd& pull) {
+  const std::vector<double> weight = edge_weights(mesh, positions);
+  Eigen::VectorXd diagonal = pull;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(mesh.edge_count() + mesh.vertex_count());
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const Edge& ends = mesh.ends(EdgeId{static_cast<std::int32_t>(e)});
+    const auto smaller = static_cast<int>(ends[0]), larger = static_cast<int>(ends[1]);
+    entries.emplace_back(larger, smaller, -weight[e]);
+    diagonal[smaller] += weight[e];
+    diagonal[larger] += weight[e];
+  }
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const auto i = static_cast<int>(v);
+    // A vertex without triangles stands alone: 1 w = 0.
+    entries.emplace_back(i, i, mesh.triangles_at(VertexId{i}).empty() ? 1 : diagonal[i]);
+  }
+  const auto n = static_cast<Eigen::Index>(mesh.vertex_count());
+  Matrix matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// The vertices that a bone heats directly, with their shares.
+struct Heated {
+  BoneId bone;
+  std::int32_t vertex;
+  double share;
+};
+
+std::vector<Heated> heated_by_bone(const VisibleBones& visible) {
+  std::vector<Heated> heated;
+  heated.reserve(visible.bones.size());
+  for (std::size_t v = 0; v + 1 < visible.offset.size(); ++v) {
+    const std::span<const BoneId> bones = visible.of(v);
+    for (const BoneId b : bones)
+      heated.push_back({b, static_cast<std::int32_t>(v), 1 / static_cast<double>(bones.size())});
+  }
+  std::stable_sort(heated.begin(), heated.end(),
+                   [](const Heated& x, const Heated& y) { return x.bone < y.bone; });
+  return heated;
+}
+
+}  // namespace
+
+bool diffuse_heat(const TriangleMesh& mesh, std::span<const Vec3> positions, const VisibleBones& visible,
+                  const TakeWeights& take) {
+  const Eigen::VectorXd pull = pulls(mesh, positions, visible);
+  const Eigen::SimplicialLLT<Matrix, Eigen::Lower> factor(system_matrix(mesh, positions, pull));
+  if (factor.info() != Eigen::Success) return false;
+
+  const std::vector<Heated> heated = heated_by_bone(visible);
+  Eigen::VectorXd source(pull.size());
+  for (std::size_t i = 0; i < heated.size();) {
+    const BoneId bone = heated[i].bone;
+    source.setZero();
+    for (; i < heated.size() && heated[i].bone == bone; ++i)
+      source[heated[i].vertex] = pull[heated[i].vertex] * heated[i].share;
+    const Eigen::VectorXd weights = factor.solve(source);
+    take(bone, weights);
+  }
+  return true;
+}
+
+}  // namespace cscd::radial

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::radial {
+
+// Moves every vertex half-way to the mean of its neighbours, `passes` times, all vertices at once (umbrella
+// operator; Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995, section 2).
+// Half-way, as a full step makes two-coloured meshes flip back and forth. Convex parts shrink. Linear in
+// passes x edges.
+std::vector<Vec3> smoothed(const TriangleMesh& mesh, std::span<const Vec3> positions, int passes);
+
+}  // namespace cscd::radial
