@@ -1,0 +1,70 @@
+// The exact referee.
+//
+// Doubles are rationals: scaled by a power of two, the moving points have integer polynomials for
+// coordinates. Features in contact are coplanar, so contact can only be at a root of the coplanarity cubic;
+// there it is decided by exact signs (touch.h). Where the cubic is identically zero the features move within
+// one plane, and contact can only begin at t = 0 or where one of the deciding signs changes: those roots are
+// the candidates. (The contact set is closed, and constant between neighbouring candidates, so its least
+// element is one.) "No" is a proof, and so is "yes"; the time is enclosed by neighbouring doubles, or met.
+// Cost: a few microseconds without a root in [0, 1], some tens with one, hundreds when coplanar throughout.
+#include "core/elementary/exact.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/elementary/algebraic.h"
+#include "core/elementary/touch.h"
+
+namespace cscd::exact {
+namespace {
+
+using TouchTest = bool (*)(const FourPoints&, AlgebraicNumber&);
+using EventList = std::vector<Polynomial> (*)(const FourPoints&);
+
+std::optional<TimeEnclosure> first_coplanar_contact(const FourPoints& points, TouchTest touch,
+                                                    EventList events) {
+  AlgebraicNumber start{Dyadic{}};
+  if (touch(points, start)) return TimeEnclosure{0, 0};
+  std::vector<AlgebraicNumber> candidates;
+  for (const Polynomial& event : events(points)) {
+    if (event.degree() <= 0) continue;
+    for (AlgebraicNumber& root : roots_in_unit_interval(event)) candidates.push_back(std::move(root));
+  }
+  // Roots of different polynomials may be equal or too close to order by their enclosures. The enclosures are
+  // enough: the earliest contact is in the range that the touching candidates of least bounds span.
+  for (AlgebraicNumber& candidate : candidates) candidate.enclosure();
+  std::sort(candidates.begin(), candidates.end(),
+            [](AlgebraicNumber& a, AlgebraicNumber& b) { return a.enclosure().lo < b.enclosure().lo; });
+  std::optional<TimeEnclosure> first;
+  for (AlgebraicNumber& candidate : candidates) {
+    const TimeEnclosure time = candidate.enclosure();
+    if (first && time.lo >= first->hi) break;
+    if ((!first || time.hi < first->hi || time.lo < first->lo) && touch(points, candidate))
+      first = first ? TimeEnclosure{std::min(first->lo, time.lo), std::min(first->hi, time.hi)} : time;
+  }
+  return first;
+}
+
+std::optional<TimeEnclosure> first_contact(const std::array<MovingPoint, 4>& query, TouchTest touch,
+                                           EventList events) {
+  const FourPoints points = linear_points(query);
+  const Polynomial coplanar = coplanarity(points);
+  if (coplanar.is_zero()) return first_coplanar_contact(points, touch, events);
+  for (AlgebraicNumber& time : roots_in_unit_interval(coplanar))
+    if (touch(points, time)) return time.enclosure();
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TimeEnclosure> first_contact(const MovingVertexFace& query) {
+  return first_contact({query.vertex, query.corner[0], query.corner[1], query.corner[2]},
+                       vertex_touches_triangle, vertex_triangle_events);
+}
+
+std::optional<TimeEnclosure> first_contact(const MovingEdgeEdge& query) {
+  return first_contact({query.first[0], query.first[1], query.second[0], query.second[1]}, edges_touch,
+                       edge_edge_events);
+}
+
+}  // namespace cscd::exact
