@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/detect/strategy.h"
+
+namespace cscd::bench {
+
+// All strategies. Everything else in the harness goes by their rows.
+std::span<const Strategy> strategies();
+
+// Throws InputError that lists the known names.
+const Strategy& strategy_named(std::string_view name);
+const ElementaryTest& elementary_test_named(std::string_view name);
+
+// The complete strategy with the fewest demands that is not quadratic: what stands in where the start of an interval
+// is not embedded, and the reference that others are verified against.
+const Strategy& complete_reference();
+
+}  // namespace cscd::bench
