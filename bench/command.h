@@ -1,0 +1,25 @@
+#pragma once
+
+// The subcommands of `cscd`: each registers itself on the program and runs in its callback. A refused input
+// is an InputError (main prints its line, exit 2); a run that answers "no" leaves by ExitStatus.
+
+#include <CLI/App.hpp>
+
+namespace cscd::bench {
+
+// Thrown by a command that ran to its end and must not report success; main returns the code and prints
+// nothing.
+struct ExitStatus {
+  int code;
+};
+inline constexpr ExitStatus kVerificationFailed{1};
+
+void add_query(CLI::App& app);
+void add_elementary(CLI::App& app);
+void add_run(CLI::App& app);
+void add_tables(CLI::App& app);
+void add_export(CLI::App& app);
+void add_list(CLI::App& app);
+void add_verify(CLI::App& app);
+
+}  // namespace cscd::bench
