@@ -201,8 +201,8 @@ inline bool segments_meet(const std::vector<Poly>& e, const SignOf& sign) {
 inline constexpr Predicate kVertexTriangle{vertex_triangle_events, vertex_on_triangle};
 inline constexpr Predicate kEdgeEdge{edge_edge_events, segments_meet};
 
-inline bool touches_at(const Four& points, const Predicate& predicate, const mpq_class& t) {
-  return predicate.touch(predicate.events(points), [&](const Poly& p) { return sgn(value(p, t)); });
+inline bool touches_at(const std::vector<Poly>& events, const Predicate& predicate, const mpq_class& t) {
+  return predicate.touch(events, [&](const Poly& p) { return sgn(value(p, t)); });
 }
 
 struct Enclosure {
@@ -218,7 +218,7 @@ inline std::optional<Enclosure> first_contact(const Four& points, const Predicat
     candidates = unit_roots(volume);
   } else {
     // Coplanar throughout: contact begins at once or where a deciding sign changes.
-    if (touches_at(points, predicate, 0)) return Enclosure{0, 0};
+    if (touches_at(events, predicate, 0)) return Enclosure{0, 0};
     for (const Poly& p : events)
       if (p.size() > 1)
         for (const Root& root : unit_roots(p)) candidates.push_back(root);
