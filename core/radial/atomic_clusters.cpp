@@ -10,6 +10,29 @@
 
 namespace cscd::radial {
 
+namespace {
+
+void find_neighbours(const TriangleMesh& mesh, AtomicClusters& atomic) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  std::vector<std::int32_t> around;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    around.clear();
+    for (const TriangleId t : mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)}))
+      around.push_back(atomic.of_triangle[+t]);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (const std::int32_t a : around)
+      for (const std::int32_t b : around)
+        if (a != b) pairs.emplace_back(a, b);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  atomic.neighbours.assign(atomic.clusters.size(), {});
+  for (const auto& [a, b] : pairs) atomic.neighbours[static_cast<std::size_t>(a)].push_back(b);
+}
+
+}  // namespace
+
 AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle) {
   assert(bone_of_triangle.size() == mesh.triangle_count());
   using Key = std::pair<BoneId, std::int32_t>;  // bone, component
@@ -28,33 +51,11 @@ AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const Bo
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const auto position = std::lower_bound(keys.begin(), keys.end(), key(t)) - keys.begin();
     atomic.of_triangle.push_back(static_cast<std::int32_t>(position));
-  }
-  rebuild_lists(mesh, atomic);
-  return atomic;
-}
-
-void rebuild_lists(const TriangleMesh& mesh, AtomicClusters& atomic) {
-  for (AtomicClusters::Cluster& cluster : atomic.clusters) cluster.triangles.clear();
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-    atomic.clusters[static_cast<std::size_t>(atomic.of_triangle[t])].triangles.push_back(
+    atomic.clusters[static_cast<std::size_t>(position)].triangles.push_back(
         TriangleId{static_cast<std::int32_t>(t)});
-
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  std::vector<std::int32_t> around;
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-    around.clear();
-    for (const TriangleId t : mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)}))
-      around.push_back(atomic.of_triangle[+t]);
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (const std::int32_t a : around)
-      for (const std::int32_t b : around)
-        if (a != b) pairs.emplace_back(a, b);
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  atomic.neighbours.assign(atomic.clusters.size(), {});
-  for (const auto& [a, b] : pairs) atomic.neighbours[static_cast<std::size_t>(a)].push_back(b);
+  find_neighbours(mesh, atomic);
+  return atomic;
 }
 
 }  // namespace cscd::radial

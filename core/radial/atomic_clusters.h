@@ -24,8 +24,4 @@ struct AtomicClusters {
 // One cluster for every bone and component that have triangles in common. Takes one valid bone a triangle.
 AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle);
 
-// Fills `triangles` of every cluster and `neighbours` anew from `of_triangle`, which holds a valid index for
-// each triangle; for whoever moves triangles between clusters. May leave a cluster without triangles.
-void rebuild_lists(const TriangleMesh& mesh, AtomicClusters& atomic);
-
 }  // namespace cscd::radial

@@ -30,11 +30,12 @@ struct DistanceField {
   double at(const Vec3& point) const;
 };
 
-// Grid with cubic cells, `cells_along_longest_side` of them along the longest side of the positions' box, and
-// a margin. A grid of more than 2^25 cells is made coarser until it has no more. Distances up to one cell are
-// exact but for float, larger ones within half the diagonal of a cell. Inside is where the surface winds
-// round a point, in whatever sense and however often; for an open surface the sign means little. Expects
-// finite positions in an order of magnitude that can be squared (segmentation brings them to size 1).
+// Grid with cubic cells, `cells_along_longest_side` of them along the longest side of the surface's box, and
+// a margin. A grid of more than 2^25 cells is made coarser until it has no more. Within one cell of the
+// surface distances are exact but for rounding to float, elsewhere within half the diagonal of a cell. Inside
+// is where the surface winds round a point, in whatever sense and however often; for an open surface the sign
+// means little. Expects finite positions in an order of magnitude that can be squared (segmentation brings
+// them to size 1).
 DistanceField make_distance_field(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                   int cells_along_longest_side);
 

@@ -38,6 +38,8 @@ Scene normalised(const TriangleMesh& mesh, std::span<const Vec3> positions, std:
   const Eigen::AlignedBox3d box = surface_box(mesh, positions);
   const Vec3 middle = box.min() + box.sizes() / 2;
   const double longest = box.sizes().maxCoeff();
+  if (!std::isfinite(longest))
+    throw InputError("reference pose: positions are too far apart for double precision; use a larger unit");
   const double unit = longest > 0 ? longest : 1;
   const auto map = [&](const Vec3& p) { return Vec3((p - middle) / unit); };
   Scene scene;
@@ -67,6 +69,8 @@ std::vector<BoneId> nearest_bone_by_heat(const TriangleMesh& mesh, std::span<con
   assert(reference.size() == mesh.vertex_count());
   if (rig.reference.empty())
     throw InputError("segmentation by bones needs at least one bone; give the mesh a rig");
+
+  require_finite(reference, "reference pose");
 
   Scene scene = normalised(mesh, reference, rig.reference);
   scene.positions = smoothed(mesh, scene.positions, options.smoothing_passes);
