@@ -91,6 +91,22 @@ bool segments_apart_in_projection(const Vec3& a, const Vec3& b, const Vec3& c, c
   return false;
 }
 
+// Certainly apart because, seen along some axis, both ends lie beyond one edge of the triangle, or the
+// triangle on one side of the segment's line?
+bool segment_apart_in_projection(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  for (int k = 0; k < 3; ++k) {
+    const int inside = certain_orientation(a, b, c, k);
+    const auto beyond = [&](const Vec3& from, const Vec3& to) {
+      return certain_orientation(from, to, p, k) == -inside && certain_orientation(from, to, q, k) == -inside;
+    };
+    if (inside != 0 && (beyond(a, b) || beyond(b, c) || beyond(c, a))) return true;
+    const int side = certain_orientation(p, q, a, k);
+    if (side != 0 && certain_orientation(p, q, b, k) == side && certain_orientation(p, q, c, k) == side)
+      return true;
+  }
+  return false;
+}
+
 int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   return sgn(exact::coplanarity(exact::constant_points({p, a, b, c}))[0]);
 }
@@ -134,6 +150,7 @@ bool segment_touches_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const
   if (*least < 0 && *most > 0) return false;
   // The ends are on opposite sides and the line passes inside all three edges.
   if (certain_p * certain_q < 0 && *least == *most && *least != 0) return true;
+  if (segment_apart_in_projection(p, q, a, b, c)) return false;
 
   const int side_p = certain_p != 0 ? certain_p : exact_orientation(a, b, c, p);
   const int side_q = certain_q != 0 ? certain_q : exact_orientation(a, b, c, q);
