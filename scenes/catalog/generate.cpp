@@ -1,0 +1,61 @@
+#include "scenes/catalog/generate.h"
+
+#include <optional>
+
+#include "core/base/error.h"
+#include "scenes/clip/digest.h"
+#include "scenes/shape/shape.h"
+
+namespace cscd::scenes {
+namespace {
+
+void require_count(const Scene& scene, const std::string& what, std::size_t found, std::size_t expected) {
+  if (found != expected)
+    throw InputError("scene " + scene.name + ": the shape has " + std::to_string(found) + " " + what +
+                     ", the scene file expects " + std::to_string(expected) + "; correct one of them");
+}
+
+}  // namespace
+
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress,
+                    const EffectSequence::Watch& watch) {
+  const Shape shape = make_shape(scene.shape, scene.shape_parameters);
+  require_count(scene, "vertices", shape.positions.size(), scene.expected.vertices);
+  require_count(scene, "triangles", shape.triangles.size(), scene.expected.triangles);
+  require_count(scene, "bones", shape.rig.parent.size(), scene.expected.bones);
+  EffectSequence effects(scene.effects, shape, scene.substeps);
+  FrameSink& sink = begin({shape.triangles, shape.positions.size(), shape.rig.parent, false});
+
+  SceneState state(shape);
+  FrameDigest digest;
+  for (std::size_t frame = 0; frame < scene.frames; ++frame) {
+    if (frame > 0) effects.advance(state, static_cast<int>(frame), watch);
+    const FrameView view{state.positions, state.bones};
+    sink.append(view, nullptr);
+    digest.add(view);
+    if (progress) progress(frame + 1, scene.frames);
+  }
+
+  Generated generated;
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    generated.effects.push_back({std::string(effects.name(i)), effects.evaluations(i)});
+  generated.digest = digest.text();
+  return generated;
+}
+
+void require_expected_digest(const Scene& scene, const std::string& digest) {
+  if (digest != scene.expected.digest)
+    throw InputError("scene " + scene.name + ": the frames have digest " + digest +
+                     ", the scene file expects " + scene.expected.digest +
+                     "; after a wanted change look at the frames, then put the new digest there");
+}
+
+Clip generate(const Scene& scene, const Progress& progress) {
+  std::optional<Clip> clip;
+  const Generated generated = run_scene(
+      scene, [&](ClipHeader header) -> FrameSink& { return clip.emplace(std::move(header)); }, progress);
+  require_expected_digest(scene, generated.digest);
+  return std::move(*clip);
+}
+
+}  // namespace cscd::scenes

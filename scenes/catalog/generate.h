@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scenes/catalog/scene.h"
+#include "scenes/clip/clip.h"
+#include "scenes/effects/sequence.h"
+
+namespace cscd::scenes {
+
+// Frames done so far, and how many there will be.
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
+
+// What generating took: which effects ran, how often, and the digest of the frames.
+struct Generated {
+  struct EffectRecord {
+    std::string name;
+    std::uint64_t evaluations;
+  };
+  std::vector<EffectRecord> effects;  // those of the scene, in its order
+  std::string digest;
+};
+
+// Hands the scene's shape to `begin`, which returns the sink of the frames; then runs the effects and appends
+// frame by frame. Throws InputError when the shape's counts are not the expected ones. Does not judge the
+// digest.
+using BeginFrames = std::function<FrameSink&(ClipHeader header)>;
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {},
+                    const EffectSequence::Watch& watch = {});
+
+// Throws InputError when the frames are not those that the scene file promises.
+void require_expected_digest(const Scene& scene, const std::string& digest);
+
+// All frames in memory, verified.
+Clip generate(const Scene& scene, const Progress& progress = {});
+
+}  // namespace cscd::scenes

@@ -1,0 +1,192 @@
+#include "scenes/catalog/scene.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMostBytes = 16 << 20;
+
+// One object of the file, with the place of it for the error texts.
+class Reader {
+ public:
+  Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
+    if (!json_.is_object()) throw InputError(where_ + ": must be an object");
+  }
+  const Json& at(const char* key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end()) throw InputError(where_ + ": " + key + " is missing; add it");
+    return *found;
+  }
+  std::string text(const char* key) const {
+    if (!at(key).is_string()) throw InputError(where_ + ": " + key + " must be a text");
+    return at(key).get<std::string>();
+  }
+  std::size_t count(const char* key, std::size_t least, std::size_t most) const {
+    const Json& value = at(key);
+    if (!value.is_number_unsigned() || value.get<std::size_t>() < least || value.get<std::size_t>() > most)
+      throw InputError(where_ + ": " + key + " must be a whole number from " + std::to_string(least) +
+                       " to " + std::to_string(most));
+    return value.get<std::size_t>();
+  }
+  void only(std::initializer_list<std::string_view> known) const {
+    for (const auto& [key, value] : json_.items())
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        throw InputError(where_ + ": " + key + " is unknown; remove it");
+  }
+  const Json& json() const { return json_; }
+  const std::string& where() const { return where_; }
+
+ private:
+  const Json& json_;
+  std::string where_;
+};
+
+Parameters::Value to_value(const Json& json, const std::string& where) {
+  const auto numbers = [&](const Json& list) {
+    std::vector<double> values;
+    for (const Json& item : list) {
+      if (!item.is_number()) throw InputError(where + " must hold numbers only");
+      values.push_back(item.get<double>());
+    }
+    return values;
+  };
+  if (json.is_number()) return json.get<double>();
+  if (json.is_string()) return json.get<std::string>();
+  if (!json.is_array())
+    throw InputError(where + " must be a number, a text, or a list of numbers or of such lists");
+  if (json.empty() || !json.front().is_array()) return numbers(json);
+  Parameters::Table table;
+  for (const Json& row : json) {
+    if (!row.is_array()) throw InputError(where + " must be a list of lists throughout");
+    table.push_back(numbers(row));
+  }
+  return table;
+}
+
+// All entries of an object but its name.
+Parameters to_parameters(const Reader& reader, const std::string& where) {
+  std::map<std::string, Parameters::Value, std::less<>> values;
+  for (const auto& [key, value] : reader.json().items())
+    if (key != "name") values.emplace(key, to_value(value, where + ": parameter " + key));
+  return {where, std::move(values)};
+}
+
+std::string read_text(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw InputError(file.string() + ": cannot be read; check its permissions");
+  if (bytes > kMostBytes) throw InputError(file.string() + ": is larger than 16 MiB; this is no scene file");
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::vector<fs::path> scene_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".json" && entry.is_regular_file(error)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::optional<fs::path> nearest_scenes(fs::path place) {
+  for (;; place = place.parent_path()) {
+    if (!scene_files(place / "scenes").empty()) return place / "scenes";
+    if (!place.has_relative_path()) return std::nullopt;
+  }
+}
+
+}  // namespace
+
+fs::path scenes_folder() {
+  if (const char* named = std::getenv("CSCD_SCENES")) {
+    if (scene_files(named).empty())
+      throw InputError(std::string(named) +
+                       ": holds no scene file; let CSCD_SCENES name a folder with NAME.json");
+    return named;
+  }
+  std::error_code error;
+  const fs::path here = fs::current_path(error);
+  if (!error)
+    if (const auto found = nearest_scenes(here)) return *found;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error)
+    if (const auto found = nearest_scenes(program.parent_path())) return *found;
+  throw InputError(
+      "no folder scenes/ here or above; run inside the repository or let CSCD_SCENES name the folder");
+}
+
+Scene parse_scene(std::string_view name, const std::string& text, const std::string& where) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw InputError(where + ": is not JSON: " + error.what());
+  }
+  const Reader reader(json, where);
+  reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "expected"});
+  if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");
+
+  Scene scene;
+  scene.name = name;
+  scene.story = reader.text("story");
+  const Reader shape(reader.at("shape"), where + ", shape");
+  scene.shape = shape.text("name");
+  scene.shape_parameters = to_parameters(shape, where + ", shape " + scene.shape);
+  scene.frames = reader.count("frames", 2, 100'000'000);
+  scene.substeps = static_cast<int>(reader.count("substeps", 1, 100'000));
+
+  if (!reader.at("effects").is_array()) throw InputError(where + ": effects must be a list");
+  for (const Json& item : reader.at("effects")) {
+    const Reader effect(item, where + ", effect number " + std::to_string(scene.effects.size() + 1));
+    const std::string effect_name = effect.text("name");
+    scene.effects.push_back({effect_name, to_parameters(effect, where + ", effect " + effect_name)});
+  }
+
+  const Reader expected(reader.at("expected"), where + ", expected");
+  expected.only({"vertices", "triangles", "bones", "digest"});
+  constexpr std::size_t most = std::size_t{1} << 28;
+  scene.expected.vertices = expected.count("vertices", 1, most);
+  scene.expected.triangles = expected.count("triangles", 1, most);
+  scene.expected.bones = expected.count("bones", 0, most);
+  scene.expected.digest = expected.text("digest");
+
+  json.erase("story");
+  json.erase("expected");
+  scene.recipe = json.dump();
+  return scene;
+}
+
+Scene load_scene(std::string_view name) {
+  std::string known;
+  for (const fs::path& file : scene_files(scenes_folder())) {
+    if (file.stem() == name) return parse_scene(name, read_text(file), file.string());
+    known += (known.empty() ? "" : ", ") + file.stem().string();
+  }
+  throw InputError("unknown scene " + std::string(name) + "; known are: " + known);
+}
+
+std::vector<SceneSummary> list_scenes() {
+  std::vector<SceneSummary> summaries;
+  for (const fs::path& file : scene_files(scenes_folder())) {
+    const Scene scene = parse_scene(file.stem().string(), read_text(file), file.string());
+    SceneSummary summary{
+        scene.name,           scene.story, scene.frames, scene.expected.vertices, scene.expected.triangles,
+        scene.expected.bones, {}};
+    for (const EffectCall& effect : scene.effects) summary.effects.push_back(effect.name);
+    summaries.push_back(std::move(summary));
+  }
+  return summaries;
+}
+
+}  // namespace cscd::scenes

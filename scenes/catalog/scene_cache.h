@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "scenes/catalog/generate.h"
+#include "scenes/clip/point_cache.h"
+
+namespace cscd::scenes {
+
+// Raise when the same scene file gives other frames than before: caches of older versions are then left
+// alone.
+inline constexpr int kGeneratorVersion = 1;
+
+// $CSCD_CACHE, else `.cache` beside the scenes' folder.
+std::filesystem::path cache_folder();
+
+// Where the frames of this scene are cached: the name holds a hash of what the frames depend on.
+std::filesystem::path cache_file(const Scene& scene);
+
+// The scene's frames, streamed from its cache. Generated first where the cache is missing, and again where it
+// is damaged; the digest is verified either way. `progress` tells of generating only.
+std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
+
+// Writes exactly the frames that open_scene gives. Refuses a path that exists unless `force`.
+void export_scene(const Scene& scene, const std::filesystem::path& path, bool force,
+                  const Progress& progress = {});
+
+}  // namespace cscd::scenes

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/point_cache.h"
+
+namespace cscd::scenes {
+namespace {
+
+// HDF5 chunks stay under 4 GiB; a frame of more vertices is cut into several.
+constexpr hsize_t kMostVerticesInChunk = hsize_t{1} << 24;
+
+// A growing dataset [frames, points, 3].
+struct Growing {
+  Hdf5Handle id;
+  hsize_t points = 0, frames = 0;
+};
+
+}  // namespace
+
+struct PointCacheWriter::File {
+  std::filesystem::path path, temporary;
+  ClipHeader header;
+  bool force;
+  Hdf5Handle file;
+  Growing positions, head, tail, predicted, predicted_head, predicted_tail;
+  std::vector<Vec3> scratch;
+
+  File(std::filesystem::path name, ClipHeader shared, bool overwrite)
+      : path(std::move(name)), header(std::move(shared)), force(overwrite) {
+    silence_hdf5();
+    refuse_existing();
+    static std::atomic<unsigned> serial{0};
+    temporary = path;
+    temporary += ".partial-" + std::to_string(getpid()) + "-" + std::to_string(serial++);
+    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) fail("its folder is missing or not writable");
+    try {
+      create();
+    } catch (...) {
+      discard();
+      throw;
+    }
+  }
+  ~File() { discard(); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(path.string() + ": cannot be written: " + what + "; choose another place");
+  }
+
+  void refuse_existing() const {
+    std::error_code error;
+    if (!force && std::filesystem::exists(std::filesystem::symlink_status(path, error)))
+      throw InputError(path.string() +
+                       ": exists already; choose another name, or ask to overwrite with --force");
+    if (std::filesystem::is_directory(path, error))
+      throw InputError(path.string() + ": is a folder; give the name of a file");
+  }
+
+  void close_datasets() {
+    for (Growing* dataset : {&positions, &head, &tail, &predicted, &predicted_head, &predicted_tail})
+      dataset->id = Hdf5Handle();
+  }
+
+  void discard() {
+    close_datasets();
+    file = Hdf5Handle();
+    std::error_code ignored;
+    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
+  }
+
+  void create() {
+    std::vector<std::int32_t> corners;
+    corners.reserve(header.triangles.size() * 3);
+    for (const Triangle& triangle : header.triangles)
+      for (const VertexId corner : triangle) corners.push_back(static_cast<std::int32_t>(corner));
+    write_integers("/triangles", {header.triangles.size(), 3}, corners);
+    positions = create_growing("/positions", header.vertex_count);
+    if (header.predicted) predicted = create_growing("/predicted", header.vertex_count);
+    if (header.bone_parent.empty()) return;
+    const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation.get(), false);
+    const Hdf5Handle group(H5Gcreate2(file.get(), "/bones", H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                           H5Gclose);
+    if (!group.valid()) fail("HDF5 made no group /bones");
+    std::vector<std::int32_t> parents;
+    for (const BoneId parent : header.bone_parent) parents.push_back(static_cast<std::int32_t>(parent));
+    write_integers("/bones/parent", {parents.size()}, parents);
+    head = create_growing("/bones/head", parents.size());
+    tail = create_growing("/bones/tail", parents.size());
+    if (!header.predicted) return;
+    predicted_head = create_growing("/bones/predicted_head", parents.size());
+    predicted_tail = create_growing("/bones/predicted_tail", parents.size());
+  }
+
+  // Without times of creation, so that the same frames give the same bytes.
+  static Hdf5Handle timeless_dataset() {
+    Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation.get(), false);
+    return creation;
+  }
+
+  void write_integers(const char* name, const std::vector<hsize_t>& shape,
+                      const std::vector<std::int32_t>& values) {
+    const Hdf5Handle creation = timeless_dataset();
+    const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+    const Hdf5Handle dataset(
+        H5Dcreate2(file.get(), name, H5T_STD_I32LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+        H5Dclose);
+    if (H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+      fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
+  }
+
+  Growing create_growing(const char* name, std::size_t points) {
+    const hsize_t now[3] = {0, points, 3}, most[3] = {H5S_UNLIMITED, points, 3};
+    const hsize_t chunk[3] = {1, std::clamp<hsize_t>(points, 1, kMostVerticesInChunk), 3};
+    const Hdf5Handle creation = timeless_dataset();
+    H5Pset_chunk(creation.get(), 3, chunk);
+    const Hdf5Handle space(H5Screate_simple(3, now, most), H5Sclose);
+    Growing dataset;
+    dataset.points = points;
+    dataset.id = Hdf5Handle(
+        H5Dcreate2(file.get(), name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+        H5Dclose);
+    if (!dataset.id.valid()) fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
+    return dataset;
+  }
+
+  void grow(Growing& dataset, std::span<const Vec3> points) {
+    const hsize_t start[3] = {dataset.frames, 0, 0}, count[3] = {1, dataset.points, 3};
+    const hsize_t now[3] = {++dataset.frames, dataset.points, 3};
+    bool good = H5Dset_extent(dataset.id.get(), now) >= 0;
+    const Hdf5Handle all(H5Dget_space(dataset.id.get()), H5Sclose);
+    const Hdf5Handle memory(H5Screate_simple(3, count, nullptr), H5Sclose);
+    good = good && H5Sselect_hyperslab(all.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
+           H5Dwrite(dataset.id.get(), H5T_NATIVE_DOUBLE, memory.get(), all.get(), H5P_DEFAULT,
+                    points.data()) >= 0;
+    if (!good) fail("HDF5 did not take frame " + std::to_string(dataset.frames - 1) + " (is the disk full?)");
+  }
+
+  void grow_bones(Growing& heads, Growing& tails, std::span<const Bone> bones) {
+    scratch.clear();
+    for (const Bone& bone : bones) scratch.push_back(bone.head);
+    grow(heads, scratch);
+    scratch.clear();
+    for (const Bone& bone : bones) scratch.push_back(bone.tail);
+    grow(tails, scratch);
+  }
+};
+
+PointCacheWriter::PointCacheWriter(std::filesystem::path path, ClipHeader header, bool force)
+    : file_(std::make_unique<File>(std::move(path), std::move(header), force)) {}
+PointCacheWriter::~PointCacheWriter() = default;
+PointCacheWriter::PointCacheWriter(PointCacheWriter&&) noexcept = default;
+PointCacheWriter& PointCacheWriter::operator=(PointCacheWriter&&) noexcept = default;
+
+void PointCacheWriter::append(const FrameView& frame, const FrameView* predicted) {
+  File& file = *file_;
+  try {
+    check_frame(file.header, file.positions.frames, frame, predicted);
+  } catch (const InputError& error) {
+    throw InputError(file.path.string() + ", " + error.what());
+  }
+  file.grow(file.positions, frame.positions);
+  const bool bones = !file.header.bone_parent.empty();
+  if (bones) file.grow_bones(file.head, file.tail, frame.bones);
+  if (!predicted) return;
+  file.grow(file.predicted, predicted->positions);
+  if (bones) file.grow_bones(file.predicted_head, file.predicted_tail, predicted->bones);
+}
+
+void PointCacheWriter::finish() {
+  File& file = *file_;
+  if (file.positions.frames < 2)
+    throw InputError(file.path.string() + ": " + std::to_string(file.positions.frames) +
+                     " frames; a point cache needs at least 2");
+  file.close_datasets();
+  if (!file.file.close()) file.fail("the last data did not reach the disk");
+  file.refuse_existing();
+  std::error_code error;
+  std::filesystem::rename(file.temporary, file.path, error);
+  if (error) file.fail(error.message());
+  file.temporary.clear();
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,63 @@
+#include "scenes/effects/chain.h"
+
+#include <Eigen/Geometry>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+// The smallest rotation that takes one unit vector to another.
+Eigen::Matrix3d smallest_rotation(const Vec3& from, const Vec3& to) {
+  const Vec3 axis = from.cross(to);  // of length sin(angle)
+  const double cosine = from.dot(to);
+  if (cosine < -0.999999) {
+    // A half turn about any axis across.
+    int least = 0;
+    from.cwiseAbs().minCoeff(&least);
+    const Vec3 across = from.cross(Vec3::Unit(least)).normalized();
+    return 2 * across * across.transpose() - Eigen::Matrix3d::Identity();
+  }
+  Eigen::Matrix3d cross;
+  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + cosine);
+}
+
+Vec3 direction(const Bone& bone) {
+  return (bone.tail - bone.head).normalized();
+}
+
+}  // namespace
+
+void require_chain(const Shape& shape, const std::string& who) {
+  const Rig& rig = shape.rig;
+  for (std::size_t bone = 0; bone < rig.parent.size(); ++bone) {
+    const bool linked = static_cast<int>(rig.parent[bone]) == static_cast<int>(bone) - 1 &&
+                        (bone == 0 || rig.reference[bone].head == rig.reference[bone - 1].tail);
+    if (!linked || rig.reference[bone].head == rig.reference[bone].tail)
+      throw InputError(
+          who + ": bone " + std::to_string(bone) +
+          " does not continue the bone before it; the effect needs a shape whose bones form a chain");
+  }
+  if (rig.parent.size() < 2) throw InputError(who + ": needs a chain of at least two bones");
+}
+
+void read_joints(const SceneState& state, std::vector<Vec3>& joints) {
+  joints.resize(state.bones.size() + 1);
+  joints[0] = state.bones[0].head;
+  for (std::size_t bone = 0; bone < state.bones.size(); ++bone) joints[bone + 1] = state.bones[bone].tail;
+}
+
+void pose_chain(const std::vector<Vec3>& joints, SceneState& state) {
+  const Vec3 first_before = direction(state.bones[0]);
+  for (std::size_t bone = 0; bone < state.bones.size(); ++bone)
+    state.bones[bone] = {joints[bone], joints[bone + 1]};
+  state.rotations[0] = smallest_rotation(first_before, direction(state.bones[0])) * state.rotations[0];
+  for (std::size_t bone = 1; bone < state.bones.size(); ++bone) {
+    const Vec3 carried = state.rotations[bone - 1] * direction(state.shape.rig.reference[bone]);
+    state.rotations[bone] =
+        smallest_rotation(carried, direction(state.bones[bone])) * state.rotations[bone - 1];
+  }
+}
+
+}  // namespace cscd::scenes

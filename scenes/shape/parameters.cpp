@@ -1,0 +1,121 @@
+#include "scenes/shape/parameters.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+[[noreturn]] void refuse(const Parameters& parameters, std::string_view name, const std::string& what) {
+  throw InputError(parameters.where() + ": parameter " + std::string(name) + " " + what);
+}
+
+std::string names(std::span<const ParameterRow> rows) {
+  std::string text;
+  for (const ParameterRow& row : rows) text += (text.empty() ? "" : ", ") + std::string(row.name);
+  return text.empty() ? "none" : text;
+}
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+void check_value(const Parameters& parameters, const ParameterRow& row) {
+  switch (row.kind) {
+    case ParameterKind::integer:
+      (void)parameters.integer(row.name);
+      [[fallthrough]];
+    case ParameterKind::number: {
+      const double value = parameters.number(row.name);
+      if (value < row.least || value > row.most)
+        refuse(parameters, row.name,
+               "is " + shown(value) + "; it must be in [" + shown(row.least) + ", " + shown(row.most) + "]");
+      break;
+    }
+    case ParameterKind::vector:
+      (void)parameters.vector(row.name);
+      break;
+    case ParameterKind::text:
+      (void)parameters.text(row.name);
+      break;
+    case ParameterKind::table:
+      for (const std::vector<double>& line : parameters.table(row.name))
+        if (line.size() != row.columns)
+          refuse(parameters, row.name,
+                 "has a row of " + std::to_string(line.size()) + " numbers; give " +
+                     std::to_string(row.columns) + " (" + std::string(row.meaning) + ")");
+      break;
+  }
+}
+
+}  // namespace
+
+const Parameters::Value& Parameters::at(std::string_view name) const {
+  const auto found = values_.find(name);
+  if (found == values_.end()) refuse(*this, name, "is missing; add it to the scene file");
+  return found->second;
+}
+
+double Parameters::number(std::string_view name) const {
+  const auto* value = std::get_if<double>(&at(name));
+  if (!value || !std::isfinite(*value)) refuse(*this, name, "must be a finite number");
+  return *value;
+}
+
+double Parameters::number(std::string_view name, double otherwise) const {
+  return has(name) ? number(name) : otherwise;
+}
+
+int Parameters::integer(std::string_view name) const {
+  const double value = number(name);
+  if (value != std::floor(value) || std::abs(value) > 1e9) refuse(*this, name, "must be a whole number");
+  return static_cast<int>(value);
+}
+
+int Parameters::integer(std::string_view name, int otherwise) const {
+  return has(name) ? integer(name) : otherwise;
+}
+
+Vec3 Parameters::vector(std::string_view name) const {
+  const auto* value = std::get_if<std::vector<double>>(&at(name));
+  if (!value || value->size() != 3) refuse(*this, name, "must be a list of three numbers");
+  const Vec3 vector((*value)[0], (*value)[1], (*value)[2]);
+  if (!vector.allFinite()) refuse(*this, name, "must be finite");
+  return vector;
+}
+
+Vec3 Parameters::vector(std::string_view name, const Vec3& otherwise) const {
+  return has(name) ? vector(name) : otherwise;
+}
+
+const std::string& Parameters::text(std::string_view name) const {
+  const auto* value = std::get_if<std::string>(&at(name));
+  if (!value) refuse(*this, name, "must be a text");
+  return *value;
+}
+
+const Parameters::Table& Parameters::table(std::string_view name) const {
+  const auto* value = std::get_if<Table>(&at(name));
+  if (!value) refuse(*this, name, "must be a list of lists of numbers");
+  return *value;
+}
+
+void check(const Parameters& parameters, std::span<const ParameterRow> rows) {
+  for (const auto& [name, value] : parameters.values()) {
+    bool known = false;
+    for (const ParameterRow& row : rows) known = known || row.name == name;
+    if (!known) refuse(parameters, name, "is unknown; known are: " + names(rows));
+  }
+  for (const ParameterRow& row : rows) {
+    if (parameters.has(row.name))
+      check_value(parameters, row);
+    else if (row.required)
+      refuse(parameters, row.name, "is missing (" + std::string(row.meaning) + "); add it to the scene file");
+  }
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,27 @@
+#include "scenes/shape/shape.h"
+
+#include <string>
+
+#include "core/base/error.h"
+#include "scenes/shape/tube.h"
+
+namespace cscd::scenes {
+
+std::span<const ShapeRow> shapes() {
+  static const ShapeRow rows[] = {tube_row()};
+  return rows;
+}
+
+Shape make_shape(std::string_view name, const Parameters& parameters) {
+  std::string known;
+  for (const ShapeRow& row : shapes()) {
+    if (row.name == name) {
+      check(parameters, row.parameters);
+      return row.make(parameters);
+    }
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw InputError(parameters.where() + ": unknown shape " + std::string(name) + "; known are: " + known);
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/rig.h"
+#include "core/mesh/triangle_mesh.h"
+#include "scenes/shape/parameters.h"
+
+namespace cscd::scenes {
+
+// How much each of at most four bones moves a vertex. Weights are not negative and sum to 1; unused places
+// have bone -1 and weight 0 and come last.
+struct JointWeights {
+  static constexpr std::size_t most = 4;
+  std::array<BoneId, most> bone{BoneId{-1}, BoneId{-1}, BoneId{-1}, BoneId{-1}};
+  std::array<double, most> weight{};
+};
+
+// A skinned character at rest: a closed surface, outward oriented, with its skeleton.
+struct Shape {
+  std::vector<Vec3> positions;        // [vertices]
+  std::vector<Triangle> triangles;    // [triangles]
+  std::vector<JointWeights> weights;  // [vertices]
+  Rig rig;
+};
+
+// One row of the list of shapes.
+struct ShapeRow {
+  std::string_view name;
+  std::string_view description;
+  std::span<const ParameterRow> parameters;
+  Shape (*make)(const Parameters& parameters);  // of checked parameters
+};
+
+std::span<const ShapeRow> shapes();
+
+// Checks the parameters and builds the shape. Throws InputError for an unknown name, listing the known ones,
+// and for unusable parameters.
+Shape make_shape(std::string_view name, const Parameters& parameters);
+
+}  // namespace cscd::scenes
