@@ -49,15 +49,18 @@ void read_joints(const SceneState& state, std::vector<Vec3>& joints) {
 }
 
 void pose_chain(const std::vector<Vec3>& joints, SceneState& state) {
-  const Vec3 first_before = direction(state.bones[0]);
-  for (std::size_t bone = 0; bone < state.bones.size(); ++bone)
-    state.bones[bone] = {joints[bone], joints[bone + 1]};
-  state.rotations[0] = smallest_rotation(first_before, direction(state.bones[0])) * state.rotations[0];
-  for (std::size_t bone = 1; bone < state.bones.size(); ++bone) {
-    const Vec3 carried = state.rotations[bone - 1] * direction(state.shape.rig.reference[bone]);
+  const std::size_t steady = state.steady_bone, count = state.bones.size();
+  const Vec3 steady_before = direction(state.bones[steady]);
+  for (std::size_t bone = 0; bone < count; ++bone) state.bones[bone] = {joints[bone], joints[bone + 1]};
+  state.rotations[steady] =
+      smallest_rotation(steady_before, direction(state.bones[steady])) * state.rotations[steady];
+  const auto follow = [&](std::size_t bone, std::size_t neighbour) {
+    const Vec3 carried = state.rotations[neighbour] * direction(state.shape.rig.reference[bone]);
     state.rotations[bone] =
-        smallest_rotation(carried, direction(state.bones[bone])) * state.rotations[bone - 1];
-  }
+        smallest_rotation(carried, direction(state.bones[bone])) * state.rotations[neighbour];
+  };
+  for (std::size_t bone = steady + 1; bone < count; ++bone) follow(bone, bone - 1);
+  for (std::size_t bone = steady; bone-- > 0;) follow(bone, bone + 1);
 }
 
 }  // namespace cscd::scenes

@@ -14,9 +14,9 @@ void require_chain(const Shape& shape, const std::string& who);
 // The joints of a chain: the first head, then all tails. [bones + 1]
 void read_joints(const SceneState& state, std::vector<Vec3>& joints);
 
-// Sets bones and rotations from the joints. The first bone turns from its present direction to the new one on
-// the shortest way, every other has the rotation of its predecessor followed by the smallest turn into its
-// own direction: the chain bends without twisting.
+// Sets bones and rotations from the joints. The steady bone turns from its present direction to the new one
+// on the shortest way; going outwards from it, every bone has the rotation of its neighbour followed by the
+// smallest turn into its own direction: the chain bends without twisting.
 void pose_chain(const std::vector<Vec3>& joints, SceneState& state);
 
 }  // namespace cscd::scenes

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "core/base/error.h"
 #include "scenes/effects/chain.h"
@@ -76,6 +77,11 @@ class ChainDynamics final : public Effect {
         iterations_(p.integer("iterations", 4)) {
     require_chain(shape, p.where());
     const Vec3 axis = p.vector("axis", Vec3::Zero());
+    steady_ = static_cast<std::size_t>(p.integer("steady_bone", 0));
+    if (steady_ >= shape.rig.parent.size())
+      throw InputError(p.where() + ": parameter steady_bone is " + std::to_string(steady_) +
+                       "; the chain has " + std::to_string(shape.rig.parent.size()) +
+                       " bones, numbered from 0");
     if (p.has("first_end")) ends_[0].emplace(p.table("first_end"), axis, p.where());
     if (p.has("last_end")) ends_[1].emplace(p.table("last_end"), axis, p.where());
     const double bend_radius = p.number("bend_radius");
@@ -91,6 +97,7 @@ class ChainDynamics final : public Effect {
   void step(SceneState& state) override {
     read_joints(state, joints_);
     if (before_.empty()) before_ = joints_;
+    state.steady_bone = steady_;
     predict(state);
     for (int i = 0; i < iterations_; ++i) {
       bend(state.step);
@@ -180,6 +187,7 @@ class ChainDynamics final : public Effect {
   Vec3 gravity_;
   double drag_, stiffness_;
   int iterations_;
+  std::size_t steady_ = 0;
   std::optional<EndPath> ends_[2];
   std::vector<double> lengths_;     // [bones]
   std::vector<double> least_span_;  // of bones i and i + 1 together
@@ -198,6 +206,8 @@ EffectRow chain_dynamics_row() {
       {"bend_stiffness", ParameterKind::number, "pull towards straight, per frame squared", true, 0, 1e9},
       {"bend_radius", ParameterKind::number, "the chain bends no sharper than this", true, 1e-9, 1e12},
       {"iterations", ParameterKind::integer, "sweeps over the constraints per substep", false, 1, 1000},
+      {"steady_bone", ParameterKind::integer, "bone that does not spin; lying on the floor, say", false, 0,
+       1e9},
       {"axis", ParameterKind::vector, "a point of the vertical line about which paths turn", false},
       {"first_end", ParameterKind::table, "frame, radius, turns, height; free outside its frames", false,
        -1e300, 1e300, 4},

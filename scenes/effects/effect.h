@@ -24,6 +24,7 @@ struct SceneState {
   std::vector<Bone> bones;
   std::vector<Eigen::Matrix3d> rotations;  // of each bone, from its reference pose
   std::vector<Vec3> positions;
+  std::size_t steady_bone = 0;  // of a chain: the one that does not spin about its own axis
 };
 
 // One law of motion in one scene. Holds what it carries from step to step.

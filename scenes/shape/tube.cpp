@@ -50,24 +50,72 @@ JointWeights spline_weights(double place, int bones) {
   return weights;
 }
 
-// Two unit vectors that make a right-handed frame with the axis.
-std::array<Vec3, 2> across(const Vec3& axis) {
-  int least = 0;
-  axis.cwiseAbs().minCoeff(&least);
-  const Vec3 first = axis.cross(Vec3::Unit(least)).normalized();
-  return {first, axis.cross(first)};
-}
+// The axis at one arc length, and the frame of the cross-section there.
+struct Section {
+  Vec3 centre, tangent, inwards, binormal;  // `inwards` points to the centre of the arc
 
-}  // namespace
+  Vec3 at(double out, const CirclePoint& turn) const {
+    return centre + out * (turn.cosine * inwards + turn.sine * binormal);
+  }
+};
 
-Shape tube(const TubeParameters& p) {
+class Axis {
+ public:
+  explicit Axis(const TubeParameters& p)
+      : start_{p.start, p.direction.normalized(), across(p.direction.normalized(), p.arc_side), Vec3::Zero()},
+        radius_(p.arc_radius),
+        turns_(p.arc_turns),
+        arc_(2 * std::numbers::pi * p.arc_turns * p.arc_radius),
+        leg_((p.length - arc_) / 2) {
+    start_.binormal = start_.tangent.cross(start_.inwards);
+  }
+  double leg() const { return leg_; }
+
+  Section at(double along) const {
+    if (arc_ == 0 || along <= leg_) return moved(start_, along);
+    const double on_arc = std::min(along - leg_, arc_);
+    const CirclePoint turn = circle_point(on_arc / arc_ * turns_);
+    Section section = moved(start_, leg_);
+    section.centre += radius_ * ((1 - turn.cosine) * start_.inwards + turn.sine * start_.tangent);
+    section.tangent = turn.cosine * start_.tangent + turn.sine * start_.inwards;
+    section.inwards = turn.cosine * start_.inwards - turn.sine * start_.tangent;
+    return moved(section, std::max(0.0, along - leg_ - arc_));
+  }
+
+ private:
+  static Section moved(Section section, double along) {
+    section.centre += along * section.tangent;
+    return section;
+  }
+  // The unit vector across the axis that lies nearest to `side`; any, where side gives no answer.
+  static Vec3 across(const Vec3& axis, const Vec3& side) {
+    const Vec3 part = side - side.dot(axis) * axis;
+    if (part.norm() > 1e-9 * side.norm()) return part.normalized();
+    int least = 0;
+    axis.cwiseAbs().minCoeff(&least);
+    return axis.cross(Vec3::Unit(least)).normalized();
+  }
+
+  Section start_;
+  double radius_, turns_, arc_, leg_;
+};
+
+void check(const TubeParameters& p) {
   if (p.rings < 2 || p.sides < 3 || p.bones < 1 || !(p.radius > 0) || !(p.length > 2 * p.radius) ||
       !(p.direction.norm() > 0))
     throw InputError("tube: needs at least 2 rings, 3 sides and 1 bone, and a length above two radii");
   if (static_cast<double>(p.rings) * p.sides > 1 << 27)
     throw InputError("tube: more than 2^27 vertices; lower rings or sides");
-  const Vec3 axis = p.direction.normalized();
-  const auto [u, v] = across(axis);
+  if (!(p.arc_turns >= 0) || p.arc_turns > 0.5 || (p.arc_turns > 0 && !(p.arc_radius > p.radius)))
+    throw InputError("tube: the arc must turn by 0 to 0.5 turns, with a radius above the tube's");
+}
+
+}  // namespace
+
+Shape tube(const TubeParameters& p) {
+  check(p);
+  const Axis axis(p);
+  if (axis.leg() < p.radius) throw InputError("tube: the arc leaves no room for the caps; lengthen the tube");
   const double profile = p.length - 2 * p.radius + std::numbers::pi * p.radius;
   const double bone_length = (p.length - 2 * p.radius) / p.bones;
 
@@ -76,19 +124,18 @@ Shape tube(const TubeParameters& p) {
   shape.positions.reserve(vertices);
   shape.weights.reserve(vertices);
   shape.triangles.reserve(2 * (vertices - 2));
-  const auto add_vertex = [&](double along, const Vec3& out) {
-    shape.positions.push_back(p.start + along * axis + out);
+  const auto add_vertex = [&](double along, const Vec3& position) {
+    shape.positions.push_back(position);
     shape.weights.push_back(spline_weights((along - p.radius) / bone_length, p.bones));
   };
   for (int ring = 0; ring < p.rings; ++ring) {
     const ProfilePoint point = profile_at(profile * (ring + 1) / (p.rings + 1), p.radius, p.length);
-    for (int side = 0; side < p.sides; ++side) {
-      const CirclePoint turn = circle_point(static_cast<double>(side) / p.sides);
-      add_vertex(point.along, point.out * (turn.cosine * u + turn.sine * v));
-    }
+    const Section section = axis.at(point.along);
+    for (int side = 0; side < p.sides; ++side)
+      add_vertex(point.along, section.at(point.out, circle_point(static_cast<double>(side) / p.sides)));
   }
-  add_vertex(0, Vec3::Zero());
-  add_vertex(p.length, Vec3::Zero());
+  add_vertex(0, axis.at(0).centre);
+  add_vertex(p.length, axis.at(p.length).centre);
 
   const auto at = [&](int ring, int side) { return VertexId{ring * p.sides + side % p.sides}; };
   const VertexId first_pole{p.rings * p.sides}, last_pole{p.rings * p.sides + 1};
@@ -104,10 +151,10 @@ Shape tube(const TubeParameters& p) {
       shape.triangles.push_back({a, c, d});
     }
 
+  const auto joint = [&](int i) { return axis.at(p.radius + i * bone_length).centre; };
   for (int bone = 0; bone < p.bones; ++bone) {
     shape.rig.parent.push_back(BoneId{bone - 1});
-    shape.rig.reference.push_back({p.start + (p.radius + bone * bone_length) * axis,
-                                   p.start + (p.radius + (bone + 1) * bone_length) * axis});
+    shape.rig.reference.push_back({joint(bone), joint(bone + 1)});
   }
   return shape;
 }
@@ -120,9 +167,13 @@ ShapeRow tube_row() {
       {"radius", ParameterKind::number, "radius of the tube", true, 1e-9, 1e9},
       {"length", ParameterKind::number, "from pole to pole, above two radii", true, 1e-9, 1e12},
       {"start", ParameterKind::vector, "the first pole", false},
-      {"direction", ParameterKind::vector, "from the first pole to the last", false},
+      {"direction", ParameterKind::vector, "in which the axis leaves the first pole", false},
+      {"arc_turns", ParameterKind::number, "how far the axis turns in its middle: 0 straight, 0.5 hairpin",
+       false, 0, 0.5},
+      {"arc_radius", ParameterKind::number, "of that arc, above the tube's radius", false, 0, 1e12},
+      {"arc_side", ParameterKind::vector, "to which the axis turns", false},
   };
-  return {"tube", "straight tube with rounded ends on a chain of bones", rows,
+  return {"tube", "tube with rounded ends on a chain of bones, straight or a hairpin", rows,
           [](const Parameters& parameters) {
             TubeParameters p;
             p.rings = parameters.integer("rings");
@@ -132,6 +183,9 @@ ShapeRow tube_row() {
             p.length = parameters.number("length");
             p.start = parameters.vector("start", p.start);
             p.direction = parameters.vector("direction", p.direction);
+            p.arc_turns = parameters.number("arc_turns", p.arc_turns);
+            p.arc_radius = parameters.number("arc_radius", p.arc_radius);
+            p.arc_side = parameters.vector("arc_side", p.arc_side);
             return tube(p);
           }};
 }

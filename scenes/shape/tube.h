@@ -4,7 +4,8 @@
 
 namespace cscd::scenes {
 
-// A straight tube with hemispherical ends, its skeleton a chain of bones of one length on its axis.
+// A tube with hemispherical ends and a chain of bones on its axis. The axis is straight, or straight with a
+// circular arc in its middle: a hairpin.
 struct TubeParameters {
   int rings = 865;  // rings of vertices between the two poles, at least 2
   int sides = 28;   // vertices of a ring, at least 3
@@ -12,13 +13,17 @@ struct TubeParameters {
   double radius = 1;
   double length = 190;             // from pole to pole, more than two radii
   Vec3 start = Vec3::Zero();       // the first pole
-  Vec3 direction = Vec3::UnitZ();  // from the first pole to the last; need not be a unit vector
+  Vec3 direction = Vec3::UnitZ();  // in which the axis leaves it; need not be a unit vector
+  double arc_turns = 0;            // how far the axis turns in its middle: 0 for straight, 0.5 for a hairpin
+  double arc_radius = 0;           // of that arc; above the tube's radius where there is one
+  Vec3 arc_side =
+      Vec3::UnitX();  // to which the axis turns; need not be a unit vector, nor across the direction
 };
 
 // rings * sides + 2 vertices (ring by ring, then the first pole, then the last) and 2 rings * sides
-// triangles, genus 0. Rings stand at equal arc lengths of the profile. Bones reach from the centre of one cap
-// to that of the other; a vertex follows at most three of them, by quadratic B-splines over the bones'
-// middles, so that the skinned axis has a continuous tangent.
+// triangles, genus 0. Rings stand at equal arc lengths of the profile. Joints at equal arc lengths of the
+// axis reach from the centre of one cap to that of the other; a vertex follows at most three of them, by
+// quadratic B-splines over the bones' middles, so that the skinned axis has a continuous tangent.
 Shape tube(const TubeParameters& parameters);
 
 ShapeRow tube_row();
