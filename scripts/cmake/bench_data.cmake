@@ -1,0 +1,52 @@
+# What the program knows about its own build, and the data files that it carries.
+#
+#   cscd_bench_data(bench)
+#
+# build_info.h   compiler, flags and library versions, written when CMake configures
+# commit.h       the commit and whether the sources differ from it: asked from git at every build, so that a record
+#                never names an older state than the binary's
+# data_files.cpp     bench/*.json, so that the program needs no files of its own beside it
+function(cscd_bench_data room)
+  set(generated ${PROJECT_BINARY_DIR}/generated)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  get_target_property(room_options cscd_flags INTERFACE_COMPILE_OPTIONS)
+  list(FILTER room_options EXCLUDE REGEX "\\$<")
+  string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${room_options})
+  if(type STREQUAL "RELEASE")
+    string(APPEND flags " -O3")
+  endif()
+  if(CSCD_NATIVE)
+    string(APPEND flags " -march=native")
+  endif()
+  configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/build_info.h.in ${generated}/build_info.h @ONLY)
+
+  add_custom_target(cscd_commit
+    COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUT=${generated}/commit.h
+            -P ${PROJECT_SOURCE_DIR}/scripts/cmake/commit.cmake
+    BYPRODUCTS ${generated}/commit.h
+    COMMENT "")
+
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.json)
+  set(rows "")
+  foreach(file ${files})
+    get_filename_component(name ${file} NAME)
+    file(READ ${file} text)
+    string(APPEND rows "    {\"${name}\", R\"data(${text})data\"},\n")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  endforeach()
+  file(CONFIGURE OUTPUT ${generated}/data_files.cpp @ONLY CONTENT [[
+#include "bench/data.h"
+
+namespace cscd::bench {
+namespace {
+constexpr DataFile kFiles[] = {
+@rows@};
+}
+std::span<const DataFile> data_files() { return kFiles; }
+}  // namespace cscd::bench
+]])
+
+  target_sources(${room} PRIVATE ${generated}/data_files.cpp)
+  target_include_directories(${room} PRIVATE ${generated})
+  add_dependencies(${room} cscd_commit)
+endfunction()
