@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/detect/detector.h"
+#include "core/detect/verify.h"
+
+// What one run of the harness keeps (schema cscd.run/1): every raw sample of every stage of every interval of
+// every repetition, beside the counters, the digests and the verdict without which there are no samples.
+// Tables and figures are made from records alone.
+namespace cscd::bench {
+
+inline constexpr std::string_view kRunSchema = "cscd.run/1";
+
+// One number an interval. A counter that a strategy does not have has no column.
+using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
+// [repetition][interval], milliseconds. A stage that a strategy does not have has no column.
+using TimeColumns = std::map<std::string, std::vector<std::vector<double>>>;
+
+struct PreparationRecord {  // one sample for every time that the strategy was made
+  std::vector<double> distance_and_heat_ms, decomposition_ms;
+  std::optional<int> atomic_clusters;
+};
+
+struct StrategyRecord {
+  std::string name, source, guarantee;
+  PreparationRecord preparation;
+  CountColumns counts;
+  std::vector<std::string> digests;  // of the contacts, one an interval
+  TimeColumns ms;
+};
+
+struct VerifiedStrategy {
+  std::string name, guarantee;
+  std::uint64_t contacts_expected = 0, contacts_found = 0;  // of the reference's, over the verified intervals
+  std::uint64_t intervals_promised =
+      0;  // verified intervals on which the guarantee says something about a contact
+  std::vector<std::string> failures;
+};
+
+struct VerificationRecord {
+  std::string reference, elementary;    // the complete strategy and the exact test
+  std::vector<std::size_t> intervals;   // those verified
+  std::vector<std::size_t> unembedded;  // those of them whose start is not embedded
+  std::vector<VerifiedStrategy> strategies;
+  Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
+  std::uint64_t accuracy_tests = 0;
+  double seconds = 0;
+
+  bool ok() const;
+};
+
+struct SceneRecord {
+  std::string name, story, digest;
+  std::size_t vertices = 0, triangles = 0, bones = 0, frames = 0;
+};
+
+struct Record {
+  nlohmann::ordered_json environment;
+  std::vector<std::string> command;
+  std::uint64_t seed = 0;
+  SceneRecord scene;
+  std::string elementary;  // the timed one
+  std::size_t first_interval = 0, intervals = 0;
+  VerificationRecord verification;
+  std::vector<StrategyRecord> strategies;
+
+  const StrategyRecord* strategy(std::string_view name) const;  // null when it was not run
+};
+
+// Adds one interval's counters as one row.
+void append_counts(const Report& report, const ContactSet& found, CountColumns& columns);
+// Adds one interval's stage times to the last repetition.
+void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repetition);
+
+nlohmann::ordered_json to_json(const Record& record);
+
+// Throws InputError, naming the file, unless it is a whole record of this schema.
+Record read_record(const std::filesystem::path& path);
+// The same from a text; `where` begins the error texts.
+Record parse_record(const std::string& text, const std::string& where);
+
+}  // namespace cscd::bench

@@ -1,0 +1,176 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "bench/catalogue.h"
+#include "bench/command.h"
+#include "bench/contestant.h"
+#include "bench/environment.h"
+#include "bench/input.h"
+#include "bench/json_text.h"
+#include "bench/output.h"
+#include "bench/record.h"
+#include "bench/timing.h"
+#include "bench/verification.h"
+#include "scenes/catalog/scene.h"
+#include "scenes/clip/digest.h"
+
+namespace cscd::bench {
+namespace {
+
+constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
+
+struct RunOptions {
+  std::string scene = "rope", elementary = "newton", frames, output;
+  std::vector<std::string> strategies;
+  std::size_t repetitions = 5, verify_every = 1;
+  std::uint64_t seed = 2014;
+  bool smoke = false, force = false;
+};
+
+// Enough to see that everything works, in seconds; too little to conclude anything from its times.
+constexpr std::size_t kSmokeIntervals = 16, kSmokeRepetitions = 2, kSmokeVerifyEvery = 4;
+
+// What was asked for, with every default spelt out; where the result goes is left out.
+std::vector<std::string> command_line(const RunOptions& options, std::span<const Contestant> contestants,
+                                      const IntervalRange& range) {
+  std::string names;
+  for (const Contestant& c : contestants) names += (names.empty() ? "" : ",") + std::string(c.strategy->name);
+  return {"cscd",           "run",
+          "--scene",        options.scene,
+          "--strategy",     names,
+          "--elementary",   options.elementary,
+          "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
+          "--repetitions",  std::to_string(options.repetitions),
+          "--verify-every", std::to_string(options.verify_every),
+          "--seed",         std::to_string(options.seed)};
+}
+
+SceneRecord describe(Input& input) {
+  SceneRecord record;
+  record.name = input.name;
+  for (const scenes::SceneSummary& scene : scenes::list_scenes())
+    if (scene.name == input.name) record.story = scene.story;
+  scenes::DigestSink digest;
+  scenes::copy_frames(*input.clip, digest);
+  record.digest = digest.text();
+  record.vertices = input.mesh.vertex_count();
+  record.triangles = input.mesh.triangle_count();
+  record.bones = input.clip->header().bone_parent.size();
+  record.frames = input.clip->frame_count();
+  return record;
+}
+
+StrategyRecord describe(const Contestant& contestant) {
+  StrategyRecord record;
+  record.name = contestant.strategy->name;
+  record.source = contestant.strategy->source;
+  record.guarantee = to_string(contestant.strategy->guarantee);
+  record.preparation = contestant.preparation;
+  return record;
+}
+
+void print(const VerificationRecord& v, const std::string& timed) {
+  std::printf("verified on %zu intervals against %s with the elementary test %s, in %.1f s\n",
+              v.intervals.size(), v.reference.c_str(), v.elementary.c_str(), v.seconds);
+  for (const VerifiedStrategy& s : v.strategies) {
+    std::printf("  %-8s %-13s %s, kept %llu of %llu contacts; contact promised on %llu intervals\n",
+                s.name.c_str(), s.guarantee.c_str(), s.failures.empty() ? "ok" : "FAILED",
+                static_cast<unsigned long long>(s.contacts_found),
+                static_cast<unsigned long long>(s.contacts_expected),
+                static_cast<unsigned long long>(s.intervals_promised));
+    for (const std::string& failure : s.failures) std::printf("    %s\n", failure.c_str());
+  }
+  std::printf(
+      "  %s on %llu feature pairs: %llu misses, %llu false alarms, %llu undecided, times off by at most "
+      "%.2g\n",
+      timed.c_str(), static_cast<unsigned long long>(v.accuracy_tests),
+      static_cast<unsigned long long>(v.accuracy.misses),
+      static_cast<unsigned long long>(v.accuracy.false_alarms),
+      static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
+}
+
+void run(RunOptions options) {
+  const ElementaryTest& timed = elementary_test_named(options.elementary);
+  const ElementaryTest& exact = elementary_test_named(kReferee);
+  std::vector<const Strategy*> strategies;
+  for (const std::string& name : options.strategies) strategies.push_back(&strategy_named(name));
+  OutputFile output(options.output, options.force);
+
+  Input input = open_input(options.scene);
+  IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
+  if (options.smoke) {
+    range.last = std::min(range.last, range.first + kSmokeIntervals);
+    options.repetitions = kSmokeRepetitions;
+    options.verify_every = kSmokeVerifyEvery;
+  }
+  if (strategies.empty()) strategies = default_strategies(input);
+
+  Record record;
+  record.environment = environment();
+  record.scene = describe(input);
+  record.seed = options.seed;
+  record.elementary = timed.name;
+  record.first_interval = range.first;
+  record.intervals = range.last - range.first;
+  std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
+  record.command = command_line(options, contestants, range);
+  for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
+
+  VerificationOutcome verified =
+      verify_contestants(input, contestants, exact, timed, every_kth(range, options.verify_every));
+  if (verified.record.ok()) {
+    const TimingPlan plan{range, options.repetitions, options.seed};
+    if (const auto void_times = time_contestants(input, contestants, plan, verified, record.strategies))
+      verified.record.strategies[void_times->contestant].failures.push_back(void_times->failure);
+  }
+  const bool ok = verified.record.ok();
+  if (!ok)
+    for (std::size_t c = 0; c < contestants.size(); ++c) record.strategies[c] = describe(contestants[c]);
+  print(verified.record, options.elementary);
+  record.verification = std::move(verified.record);
+  output.commit(json_text(to_json(record)));
+  if (!ok) throw kVerificationFailed;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand(
+      "run",
+      "Replay a scene with several culling strategies: verify their answers, then time them.\n\n"
+      "  cscd run --scene rope --json rope.json\n"
+      "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n\n"
+      "First every strategy answers the verified intervals with the exact elementary test and is judged "
+      "against\n"
+      "the complete reference under its own guarantee. If one fails, the exit status is 1 and the record "
+      "holds\n"
+      "the failures and no times. Then the strategies are timed interleaved, interval by interval in a "
+      "seeded\n"
+      "random order. The record keeps every sample; `cscd tables` makes tables of it.\n\n"
+      "Left out unless named:" +
+          left_out_text());
+  command->add_option("--scene", options->scene, "a scene (cscd list) or a .h5 point cache")
+      ->capture_default_str();
+  command
+      ->add_option("--strategy", options->strategies,
+                   "strategies, with commas between; default all but those above")
+      ->delimiter(',');
+  command->add_option("--elementary", options->elementary, "the elementary test that is timed")
+      ->capture_default_str();
+  command->add_option("--repetitions", options->repetitions, "how often each interval is timed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
+  command->add_option("--verify-every", options->verify_every, "verify each K-th interval, from the first")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the order in which strategies run")->capture_default_str();
+  command->add_flag("--smoke", options->smoke, "16 intervals, 2 repetitions, every 4th interval verified");
+  command->add_option("--json", options->output, "where the record goes")->required();
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace cscd::bench

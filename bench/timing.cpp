@@ -1,0 +1,88 @@
+#include "bench/timing.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "bench/progress.h"
+
+namespace cscd::bench {
+namespace {
+
+// Culling must not depend on the elementary test behind it; otherwise the verified strategy is not the timed
+// one.
+bool same_culling(const Report& a, const Report& b) {
+  return a.cull.bvot == b.cull.bvot && a.cull.pctp == b.cull.pctp &&
+         a.pairs.adjacent_pctp == b.pairs.adjacent_pctp &&
+         a.pairs.relative_dropped == b.pairs.relative_dropped &&
+         a.pairs.feature_pairs == b.pairs.feature_pairs &&
+         a.pairs.elementary_tests == b.pairs.elementary_tests;
+}
+
+struct Answer {
+  Report report;
+  std::string digest;
+};
+
+// Sorting and digesting happen outside the detector's clock.
+Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, ContactSet& found) {
+  const Report report =
+      contestant.timed->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+  found.sort();
+  return {report, digest(found)};
+}
+
+void shuffle(std::vector<std::size_t>& order, std::mt19937_64& random) {
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+}
+
+}  // namespace
+
+std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
+                                             const TimingPlan& plan, const VerificationOutcome& verified,
+                                             std::vector<StrategyRecord>& records) {
+  const auto [first, last] = plan.range;
+  Progress progress("timing " + input.name, (plan.repetitions + 1) * (last - first));
+  ContactSet found;
+  std::vector<std::vector<Report>> warm_ups(contestants.size());
+
+  auto next_verified = verified.record.intervals.begin();
+  for (std::size_t i = first; i < last; ++i) {
+    const scenes::ClipInterval interval = input.clip->load(i);
+    const bool was_verified = next_verified != verified.record.intervals.end() && *next_verified == i;
+    for (std::size_t c = 0; c < contestants.size(); ++c) {
+      const Answer warm_up = answer(contestants[c], interval, found);
+      append_counts(warm_up.report, found, records[c].counts);
+      records[c].digests.push_back(warm_up.digest);
+      warm_ups[c].push_back(warm_up.report);
+      const auto row = static_cast<std::size_t>(next_verified - verified.record.intervals.begin());
+      if (was_verified && !same_culling(warm_up.report, verified.reports[c][row]))
+        return Unrepeatable{c,
+                            "interval " + std::to_string(i) + ": culls otherwise than when it was verified"};
+    }
+    next_verified += was_verified;
+    progress.advance();
+  }
+
+  std::mt19937_64 random(plan.seed);
+  std::vector<std::size_t> order(contestants.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition)
+    for (std::size_t i = first; i < last; ++i) {
+      const scenes::ClipInterval interval = input.clip->load(i);
+      shuffle(order, random);
+      for (const std::size_t c : order) {
+        const Answer timed = answer(contestants[c], interval, found);
+        append_times(timed.report.ms, records[c].ms, repetition);
+        if (timed.digest != records[c].digests[i - first] ||
+            !same_culling(timed.report, warm_ups[c][i - first]))
+          return Unrepeatable{c, "interval " + std::to_string(i) +
+                                     ": other contacts or counters in repetition " +
+                                     std::to_string(repetition) + " than before"};
+      }
+      progress.advance();
+    }
+  return std::nullopt;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/contestant.h"
+#include "bench/input.h"
+#include "bench/record.h"
+#include "bench/verification.h"
+
+namespace cscd::bench {
+
+struct TimingPlan {
+  IntervalRange range;
+  std::size_t repetitions;
+  std::uint64_t seed;
+};
+
+// A strategy that did not repeat itself: its times are void.
+struct Unrepeatable {
+  std::size_t contestant;
+  std::string failure;
+};
+
+// One warm-up pass that takes the counters and digests, then the timed repetitions. Every interval is given
+// to all strategies in turn, in a random order drawn anew each time, so that drift of the machine hits all
+// alike. Stops at the first strategy whose counters differ from those verified, or whose contacts differ
+// between repetitions.
+std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
+                                             const TimingPlan& plan, const VerificationOutcome& verified,
+                                             std::vector<StrategyRecord>& records);
+
+}  // namespace cscd::bench
