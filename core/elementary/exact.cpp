@@ -30,19 +30,15 @@ std::optional<TimeEnclosure> first_coplanar_contact(const FourPoints& points, To
     if (event.degree() <= 0) continue;
     for (AlgebraicNumber& root : roots_in_unit_interval(event)) candidates.push_back(std::move(root));
   }
-  // Roots of different polynomials may be equal or too close to order by their enclosures. The enclosures are
-  // enough: the earliest contact is in the range that the touching candidates of least bounds span.
-  for (AlgebraicNumber& candidate : candidates) candidate.enclosure();
-  std::sort(candidates.begin(), candidates.end(),
-            [](AlgebraicNumber& a, AlgebraicNumber& b) { return a.enclosure().lo < b.enclosure().lo; });
-  std::optional<TimeEnclosure> first;
-  for (AlgebraicNumber& candidate : candidates) {
-    const TimeEnclosure time = candidate.enclosure();
-    if (first && time.lo >= first->hi) break;
-    if ((!first || time.hi < first->hi || time.lo < first->lo) && touch(points, candidate))
-      first = first ? TimeEnclosure{std::min(first->lo, time.lo), std::min(first->hi, time.hi)} : time;
-  }
-  return first;
+  // Roots of different polynomials may be equal or too close to be ordered by their enclosures. No matter:
+  // the earliest contact is not after this candidate's time, nor before its lower bound, the least one left.
+  std::sort(candidates.begin(), candidates.end(), [](AlgebraicNumber& a, AlgebraicNumber& b) {
+    const TimeEnclosure first = a.enclosure(), second = b.enclosure();
+    return first.lo != second.lo ? first.lo < second.lo : first.hi < second.hi;
+  });
+  for (AlgebraicNumber& candidate : candidates)
+    if (touch(points, candidate)) return candidate.enclosure();
+  return std::nullopt;
 }
 
 std::optional<TimeEnclosure> first_contact(const std::array<MovingPoint, 4>& query, TouchTest touch,

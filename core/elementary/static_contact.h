@@ -4,8 +4,8 @@
 
 namespace cscd {
 
-// Exact static predicates on closed features, coordinates as they stand: a floating-point filter with a forward
-// error bound first, exact arithmetic for the rest.
+// Exact static predicates on closed features, coordinates as they stand: a floating-point filter with a
+// forward error bound first, exact arithmetic for the rest.
 
 // Does the vertex lie on the triangle (its edges and corners included; the triangle may be degenerate)?
 bool vertex_touches_triangle(const Vec3& vertex, const Vec3& a, const Vec3& b, const Vec3& c);

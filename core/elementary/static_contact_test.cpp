@@ -216,5 +216,53 @@ TEST(StaticContact, IsNeverMisledByRounding) {
   for (const int count : touching) EXPECT_GT(count, 100);
 }
 
+// Contact does not change when each axis is scaled by its own power of two, but roundings and underflows do.
+TEST(StaticContact, KeepsItsAnswerWhenAxesAreScaledApart) {
+  constexpr unsigned seed = 12;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> coordinate(-6, 6);
+  const Vec3 scales[] = {
+      {0x1p-538, 0x1p-538, 0x1p500}, {0x1p400, 0x1p-541, 0x1p-536}, {0x1p-1070, 0x1p900, 0x1p-30}};
+  for (int i = 0; i < 10000; ++i) {
+    std::array<Vec3, 5> x;
+    for (Vec3& p : x) p = Vec3(coordinate(random), coordinate(random), coordinate(random));
+    // Two thirds of the cases in a common plane.
+    if (i % 3 != 0)
+      for (Vec3& p : x) p.z() = i % 3 * p.x() - 3 * p.y();
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({x[0], x[1], x[2], x[3], x[4]}));
+    const bool vertex = vertex_touches_triangle(x[0], x[1], x[2], x[3]);
+    const bool segments = segments_touch(x[0], x[1], x[2], x[3]);
+    const bool segment = segment_touches_triangle(x[0], x[1], x[2], x[3], x[4]);
+    for (const Vec3& scale : scales) {
+      const auto y = [&](std::size_t k) { return Vec3(x[k].cwiseProduct(scale)); };
+      ASSERT_EQ(vertex_touches_triangle(y(0), y(1), y(2), y(3)), vertex);
+      ASSERT_EQ(segments_touch(y(0), y(1), y(2), y(3)), segments);
+      ASSERT_EQ(segment_touches_triangle(y(0), y(1), y(2), y(3), y(4)), segment);
+    }
+  }
+}
+
+// Multiples of one vector by factors so different that coordinate differences are rounded: exact contacts
+// that every projection may show a little off.
+TEST(StaticContact, FindsContactWhereDifferencesAreRounded) {
+  constexpr unsigned seed = 13;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> coordinate(-(1 << 20), 1 << 20), exponent(30, 60);
+  for (int i = 0; i < 10000; ++i) {
+    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    if (i % 2 == 0) d[i / 2 % 3] = 0;
+    const Vec3 near = std::ldexp(1, -exponent(random)) * d, far = std::ldexp(1, exponent(random)) * d;
+    const Vec3 aside(coordinate(random), coordinate(random), i % 2 == 0 ? 0 : coordinate(random));
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({near, d, far, aside}));
+    ASSERT_TRUE(vertex_touches_triangle(d, near, far, aside));
+    ASSERT_TRUE(vertex_touches_triangle(d, aside, near, far));
+    ASSERT_TRUE(segments_touch(near, far, d, aside));
+    ASSERT_TRUE(segment_touches_triangle(d, aside, near, far, aside));
+    ASSERT_TRUE(segment_touches_triangle(near, far, aside, d, aside));
+  }
+}
+
 }  // namespace
 }  // namespace cscd

@@ -131,8 +131,8 @@ bool vertex_touches_triangle(const FourPoints& points, AlgebraicNumber& time) {
            normal * time.sign_of(orientation(b, c, v, k)) >= 0 &&
            normal * time.sign_of(orientation(c, a, v, k)) >= 0;
   }
-  return point_on_segment(v, a, b, time) || point_on_segment(v, b, c, time) ||
-         point_on_segment(v, c, a, time);
+  // A triangle without area is covered by any two of its edges.
+  return point_on_segment(v, a, b, time) || point_on_segment(v, b, c, time);
 }
 
 bool edges_touch(const FourPoints& points, AlgebraicNumber& time) {
@@ -143,8 +143,9 @@ bool edges_touch(const FourPoints& points, AlgebraicNumber& time) {
     return time.sign_of(orientation(a, b, c, k)) * time.sign_of(orientation(a, b, d, k)) <= 0 &&
            time.sign_of(orientation(c, d, a, k)) * time.sign_of(orientation(c, d, b, k)) <= 0;
   }
+  // Parallel segments meet in an end of the first, or the second lies inside the first with both ends.
   return point_on_segment(a, c, d, time) || point_on_segment(b, c, d, time) ||
-         point_on_segment(c, a, b, time) || point_on_segment(d, a, b, time);
+         point_on_segment(c, a, b, time);
 }
 
 std::vector<Polynomial> vertex_triangle_events(const FourPoints& points) {
