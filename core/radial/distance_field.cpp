@@ -69,7 +69,7 @@ void lower_about(const Patch& patch, const Cell& low, const Cell& high, Distance
       static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
   if (extent[longest] > 4) {
     const Vec3 middle = (field.centre(low[0], low[1], low[2]) + field.centre(high[0], high[1], high[2])) / 2;
-    const double radius = field.cell * Vec3(extent[0], extent[1], extent[2]).norm() / 2;
+    const double radius = (field.centre(high[0], high[1], high[2]) - middle).norm();  // about the centres
     if (patch.distance(middle) > radius + field.cell) return;
     Cell left_high = high, right_low = low;
     left_high[longest] = low[longest] + extent[longest] / 2 - 1;

@@ -1,6 +1,6 @@
 #include "core/radial/heat_weights.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
@@ -30,6 +30,22 @@ std::map<BoneId, Eigen::VectorXd> weights_of(const Shape& shape, const VisibleBo
   return weights;
 }
 
+// Gauss elimination entry by entry; the matrices below are diagonally dominant and need no pivoting.
+Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd side) {
+  const Eigen::Index n = side.size();
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      const double factor = matrix(i, k) / matrix(k, k);
+      for (Eigen::Index j = k; j < n; ++j) matrix(i, j) -= factor * matrix(k, j);
+      side[i] -= factor * side[k];
+    }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    for (Eigen::Index j = k + 1; j < n; ++j) side[k] -= matrix(k, j) * side[j];
+    side[k] /= matrix(k, k);
+  }
+  return side;
+}
+
 // Angles and areas the plain way, one dense solve.
 Eigen::VectorXd dense_solution(const Shape& shape, const VisibleBones& visible, BoneId bone) {
   const auto n = static_cast<Eigen::Index>(shape.positions.size());
@@ -55,7 +71,7 @@ Eigen::VectorXd dense_solution(const Shape& shape, const VisibleBones& visible, 
     for (const BoneId b : row)
       if (b == bone) source[v] += pull / static_cast<double>(row.size());
   }
-  return matrix.ldlt().solve(source);
+  return solve(matrix, source);
 }
 
 Shape capsule() {
