@@ -1,0 +1,68 @@
+#include "scenes/shape/parameters.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+const ParameterRow kRows[] = {
+    {"count", ParameterKind::integer, "how many", true, 1, 10},
+    {"size", ParameterKind::number, "how large", false, 0, 5},
+    {"place", ParameterKind::vector, "where", false},
+    {"label", ParameterKind::text, "what", false},
+    {"path", ParameterKind::table, "time, height", false, 0, 0, 2},
+};
+
+using Values = std::map<std::string, Parameters::Value, std::less<>>;
+
+std::string refusal(const Values& values) {
+  try {
+    check(Parameters("scene s, effect e", values), kRows);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Parameters, HandsOutWhatTheyHold) {
+  const Parameters p("here", {{"count", 3.0},
+                              {"place", std::vector<double>{1, 2, 3}},
+                              {"label", std::string("rope")},
+                              {"path", Parameters::Table{{0, 1}, {2, 3}}}});
+  check(p, kRows);
+  EXPECT_EQ(p.integer("count"), 3);
+  EXPECT_EQ(p.vector("place"), Vec3(1, 2, 3));
+  EXPECT_EQ(p.text("label"), "rope");
+  EXPECT_EQ(p.table("path")[1][0], 2);
+  EXPECT_EQ(p.number("size", 0.5), 0.5);
+}
+
+TEST(Parameters, NameWhatIsWrong) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal({{"count", 3.0}}), "");
+  EXPECT_EQ(refusal({{"count", 3.0}, {"colour", 1.0}}),
+            "scene s, effect e: parameter colour is unknown; known are: count, size, place, label, path");
+  EXPECT_EQ(refusal({}),
+            "scene s, effect e: parameter count is missing (how many); add it to the scene file");
+  EXPECT_EQ(refusal({{"count", 2.5}}), "scene s, effect e: parameter count must be a whole number");
+  EXPECT_EQ(refusal({{"count", 11.0}}), "scene s, effect e: parameter count is 11; it must be in [1, 10]");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"size", nan}}),
+            "scene s, effect e: parameter size must be a finite number");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"size", std::string("big")}}),
+            "scene s, effect e: parameter size must be a finite number");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"place", std::vector<double>{1, 2}}}),
+            "scene s, effect e: parameter place must be a list of three numbers");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"place", std::vector<double>{1, 2, nan}}}),
+            "scene s, effect e: parameter place must be finite");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"label", 7.0}}), "scene s, effect e: parameter label must be a text");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"path", 7.0}}),
+            "scene s, effect e: parameter path must be a list of lists of numbers");
+  EXPECT_EQ(refusal({{"count", 1.0}, {"path", Parameters::Table{{1, 2, 3}}}}),
+            "scene s, effect e: parameter path has a row of 3 numbers; give 2 (time, height)");
+}
+
+}  // namespace
+}  // namespace cscd::scenes

@@ -1,0 +1,135 @@
+#include "scenes/shape/tube.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+double volume(const Shape& shape) {
+  double six = 0;
+  for (const Triangle& t : shape.triangles)
+    six += shape.positions[+t[0]].dot(shape.positions[+t[1]].cross(shape.positions[+t[2]]));
+  return six / 6;
+}
+
+TubeParameters hairpin() {
+  TubeParameters p;
+  p.arc_turns = 0.5;
+  p.arc_radius = 4;
+  p.arc_side = -Vec3::UnitX();
+  p.direction = -Vec3::UnitZ();
+  p.start = Vec3(4, 0, 94);
+  return p;
+}
+
+void expect_well_formed(const TubeParameters& p) {
+  const Shape shape = tube(p);
+  const auto vertices = static_cast<std::size_t>(p.rings * p.sides + 2);
+  ASSERT_EQ(shape.positions.size(), vertices);
+  ASSERT_EQ(shape.weights.size(), vertices);
+  EXPECT_EQ(shape.triangles.size(), 2 * (vertices - 2));
+  const TriangleMesh mesh(shape.triangles, vertices);
+  EXPECT_TRUE(mesh.closed_and_oriented());
+  EXPECT_EQ(mesh.component_count(), 1);
+  EXPECT_EQ(mesh.vertex_count() + mesh.triangle_count(), mesh.edge_count() + 2) << "genus 0";
+
+  EXPECT_EQ(shape.rig.parent.size(), static_cast<std::size_t>(p.bones));
+  EXPECT_NO_THROW(validate(shape.rig));
+  for (const JointWeights& weights : shape.weights) {
+    double sum = 0;
+    for (std::size_t k = 0; k < JointWeights::most; ++k) {
+      EXPECT_GE(weights.weight[k], 0);
+      EXPECT_EQ(weights.bone[k] == BoneId{-1}, weights.weight[k] == 0);
+      EXPECT_LT(static_cast<int>(weights.bone[k]), p.bones);
+      sum += weights.weight[k];
+    }
+    EXPECT_NEAR(sum, 1, 1e-14);
+  }
+}
+
+TEST(Tube, HasTheRopesCounts) {
+  const Shape rope = tube({});
+  EXPECT_EQ(rope.positions.size(), 24222u);
+  EXPECT_EQ(rope.triangles.size(), 48440u);
+  EXPECT_EQ(rope.rig.parent.size(), 100u);
+}
+
+TEST(Tube, IsClosedOrientedAndOfGenusZero) {
+  expect_well_formed({});
+  expect_well_formed(hairpin());
+  TubeParameters least;
+  least.rings = 2;
+  least.sides = 3;
+  least.bones = 1;
+  least.length = 5;
+  expect_well_formed(least);
+}
+
+TEST(Tube, EnclosesACapsulesVolumeOutwards) {
+  // By Pappus the hairpin has the volume of the straight tube.
+  const double expected = std::numbers::pi * 188 + 4 * std::numbers::pi / 3;
+  EXPECT_NEAR(volume(tube({})), expected, 0.01 * expected);
+  EXPECT_NEAR(volume(tube(hairpin())), expected, 0.01 * expected);
+}
+
+TEST(Tube, KeepsItsRadiusAroundItsBones) {
+  for (const TubeParameters& p : {TubeParameters{}, hairpin()}) {
+    const Shape shape = tube(p);
+    for (std::size_t vertex = 0; vertex < shape.positions.size(); vertex += 7) {
+      double nearest = 1e300;
+      for (const Bone& bone : shape.rig.reference) {
+        const Vec3 along = bone.tail - bone.head, to = shape.positions[vertex] - bone.head;
+        const double t = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (to - t * along).norm());
+      }
+      // The chords of the arc lie up to 0.12 inside of it.
+      EXPECT_NEAR(nearest, 1, p.arc_turns > 0 ? 0.13 : 1e-9) << "vertex " << vertex;
+    }
+  }
+}
+
+TEST(Tube, SharesAVertexBetweenAtMostThreeNeighbouringBones) {
+  for (const JointWeights& weights : tube({}).weights) {
+    EXPECT_EQ(weights.bone[3], BoneId{-1});
+    const int first = static_cast<int>(weights.bone[0]);
+    for (std::size_t k = 1; k < 3 && weights.bone[k] != BoneId{-1}; ++k)
+      EXPECT_EQ(static_cast<int>(weights.bone[k]), first + static_cast<int>(k));
+  }
+}
+
+TEST(Tube, RefusesWhatIsNoTube) {
+  const auto refused = [](auto change) {
+    TubeParameters p = hairpin();
+    change(p);
+    EXPECT_THROW(tube(p), InputError);
+  };
+  refused([](TubeParameters& p) { p.rings = 1; });
+  refused([](TubeParameters& p) { p.sides = 2; });
+  refused([](TubeParameters& p) { p.bones = 0; });
+  refused([](TubeParameters& p) { p.length = 2; });
+  refused([](TubeParameters& p) { p.direction = Vec3::Zero(); });
+  refused([](TubeParameters& p) { p.arc_radius = 1; });
+  refused([](TubeParameters& p) { p.arc_radius = 60; });
+  refused([](TubeParameters& p) { p.rings = p.sides = 100000; });
+}
+
+TEST(Shapes, AreFoundByName) {
+  const std::map<std::string, Parameters::Value, std::less<>> values = {
+      {"rings", 10.0}, {"sides", 8.0}, {"bones", 4.0}, {"radius", 1.0}, {"length", 20.0}};
+  EXPECT_EQ(make_shape("tube", Parameters("here", values)).positions.size(), 82u);
+  try {
+    make_shape("teapot", Parameters("here", values));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "here: unknown shape teapot; known are: tube");
+  }
+}
+
+}  // namespace
+}  // namespace cscd::scenes
