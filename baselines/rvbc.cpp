@@ -50,6 +50,8 @@ class RvbcCuller : public Culler {
     return counts;
   }
 
+  std::vector<std::int32_t> clusters() const override { return clusters_.of_triangle; }
+
  private:
   radial::AtomicClusters clusters_;
   std::vector<radial::ObserverKind> kinds_;
@@ -76,7 +78,7 @@ Prepared make_rvbc(const Setup& setup) {
   clock.stop();
 
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
-                          clock.milliseconds(Stage::decomposition),
+                          clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds));
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};

@@ -12,11 +12,12 @@
 namespace cscd::bench {
 namespace {
 
-// The first row is the reference.
+// The first row is the reference, the second the oracle.
 constexpr std::array kStrategies = {
     Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, false, make_base},
     Strategy{"brute", "all pairs of triangles", Guarantee::complete, false, make_brute},
-    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, true, make_rvbc},
+    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, true,
+             make_rvbc},
     Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup); }},
 };
@@ -30,7 +31,9 @@ template <class Rows>
 
 }  // namespace
 
-std::span<const Strategy> strategies() { return kStrategies; }
+std::span<const Strategy> strategies() {
+  return kStrategies;
+}
 
 const Strategy& strategy_named(std::string_view name) {
   for (const Strategy& strategy : kStrategies)
@@ -43,6 +46,12 @@ const ElementaryTest& elementary_test_named(std::string_view name) {
   refuse("elementary test", name, elementary_tests());
 }
 
-const Strategy& complete_reference() { return kStrategies.front(); }
+const Strategy& complete_reference() {
+  return kStrategies[0];
+}
+
+const Strategy& all_pairs() {
+  return kStrategies[1];
+}
 
 }  // namespace cscd::bench

@@ -14,8 +14,11 @@ std::span<const Strategy> strategies();
 const Strategy& strategy_named(std::string_view name);
 const ElementaryTest& elementary_test_named(std::string_view name);
 
-// The complete strategy with the fewest demands that is not quadratic: what stands in where the start of an interval
-// is not embedded, and the reference that others are verified against.
+// The complete strategy with the fewest demands that is not quadratic: what stands in where the start of an
+// interval is not embedded, and the reference that others are verified against.
 const Strategy& complete_reference();
+
+// All pairs of triangles: the oracle for small meshes.
+const Strategy& all_pairs();
 
 }  // namespace cscd::bench

@@ -21,5 +21,6 @@ void add_tables(CLI::App& app);
 void add_export(CLI::App& app);
 void add_list(CLI::App& app);
 void add_verify(CLI::App& app);
+void add_clusters(CLI::App& app);
 
 }  // namespace cscd::bench

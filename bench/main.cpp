@@ -1,1 +1,55 @@
-int main() { return 0; }
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "bench/command.h"
+#include "core/base/error.h"
+
+namespace {
+
+constexpr int kBadUsage = 2;
+
+int complain(const std::string& text) {
+  std::fprintf(stderr, "cscd: %s\n", text.c_str());
+  return kBadUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
+      "  cscd list                            what there is\n"
+      "  cscd query rope --json answer.json   where and when does it touch itself?\n"
+      "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
+      "  cscd tables r.json --out tables      the paper's tables, published beside measured\n\n"
+      "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input.",
+      "cscd");
+  app.require_subcommand(1);
+  cscd::bench::add_list(app);
+  cscd::bench::add_query(app);
+  cscd::bench::add_elementary(app);
+  cscd::bench::add_export(app);
+  cscd::bench::add_clusters(app);
+  cscd::bench::add_verify(app);
+  cscd::bench::add_run(app);
+  cscd::bench::add_tables(app);
+
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    return complain(std::string(error.what()) + "; see cscd --help");
+  } catch (const cscd::bench::ExitStatus& status) {
+    return status.code;
+  } catch (const cscd::InputError& error) {
+    return complain(error.what());
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory; use a smaller input or a machine with more");
+  } catch (const std::exception& error) {
+    return complain(std::string("unexpected: ") + error.what());
+  }
+}

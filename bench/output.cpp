@@ -1,11 +1,10 @@
 #include "bench/output.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <string>
+#include <unistd.h>
 
 #include "core/base/error.h"
 
@@ -16,7 +15,8 @@ OutputFile::OutputFile(std::filesystem::path path, bool force) : path_(std::move
   if (std::filesystem::is_directory(path_, ignored))
     throw InputError("output " + path_.string() + ": is a folder; name a file in it");
   if (!force_ && std::filesystem::exists(path_, ignored))
-    throw InputError("output " + path_.string() + ": exists; choose another name or pass --force to replace it");
+    throw InputError("output " + path_.string() +
+                     ": exists; choose another name or pass --force to replace it");
   temporary_ = path_;
   temporary_ += ".writing-" + std::to_string(getpid());
   file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -5,8 +5,8 @@
 
 namespace cscd::bench {
 
-// A result file that appears whole or not at all: opened beside its final place before any work begins, so that an
-// unwritable folder is found at once, and given its name when everything has been written.
+// A result file that appears whole or not at all: opened beside its final place before any work begins, so
+// that an unwritable folder is found at once, and given its name when everything has been written.
 class OutputFile {
  public:
   // Throws InputError if something stands at `path` (unless `force`) or the folder cannot be written to.

@@ -1,9 +1,8 @@
 #include "bench/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <unistd.h>
 
 namespace cscd::bench {
 

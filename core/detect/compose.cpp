@@ -125,6 +125,7 @@ class ComposedDetector : public Detector {
     report.ms.elementary = clock_.milliseconds(Stage::elementary);
     return report;
   }
+  std::vector<std::int32_t> clusters() const override { return culler_->clusters(); }
 
  private:
   StageClock clock_;

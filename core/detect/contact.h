@@ -29,7 +29,8 @@ struct FeaturePair {
 };
 
 // Asks an elementary test about one feature pair of a mesh in motion.
-Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair);
+Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
+           const FeaturePair& pair);
 
 // A feature pair that touches at `time` (earliest), or whose test could not tell (`undecided`).
 struct Contact {

@@ -41,8 +41,9 @@ class TrianglePairSink {
   std::uint64_t count_ = 0;
 };
 
-// A culling strategy: which triangle pairs have to be looked at in an interval. Virtual calls happen three times an
-// interval, never per pair. Scratch is the culler's own and is reused; results depend on the interval alone.
+// A culling strategy: which triangle pairs have to be looked at in an interval. Virtual calls happen three
+// times an interval, never per pair. Scratch is the culler's own and is reused; results depend on the
+// interval alone.
 class Culler {
  public:
   virtual ~Culler() = default;
@@ -54,6 +55,8 @@ class Culler {
   virtual bool classify(const Motion& /*motion*/, const Rig::Interval* /*bones*/) { return false; }
   // Passes every pair that is not proven apart to the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
+  // For pictures: the cluster of each triangle in the last interval; empty where there are none.
+  virtual std::vector<std::int32_t> clusters() const { return {}; }
 };
 
 }  // namespace cscd

@@ -30,6 +30,8 @@ class Detector {
  public:
   virtual ~Detector() = default;
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
+  // For pictures: the cluster of each triangle in the last interval; empty where there are none.
+  virtual std::vector<std::int32_t> clusters() const { return {}; }
 };
 
 }  // namespace cscd

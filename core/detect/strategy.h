@@ -13,7 +13,8 @@
 namespace cscd {
 
 // complete: on every input, every feature pair in contact is passed on to the elementary test.
-// first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair that
+// first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair
+// that
 //   attains the earliest contact time is; later contacts may be missing.
 // heuristic: neither.
 enum class Guarantee { complete, first_contact, heuristic };
@@ -31,7 +32,8 @@ struct Setup {
 struct Preparation {
   std::optional<double> distance_and_heat_ms;  // distance field and heat diffusion
   std::optional<double> decomposition_ms;      // clusters from heat weights, observers
-  std::optional<int> atomic_clusters;
+  std::vector<std::int32_t> atomic_cluster;    // of each triangle; empty where there are none
+  int atomic_clusters = 0;
 };
 
 struct Prepared {

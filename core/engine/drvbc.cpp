@@ -46,6 +46,12 @@ class DrvbcCuller : public Culler {
     return counts;
   }
 
+  std::vector<std::int32_t> clusters() const override {
+    std::vector<std::int32_t> of_triangle = clusters_.of_triangle;
+    for (std::int32_t& label : of_triangle) label = mega_.labels()[static_cast<std::size_t>(label)];
+    return of_triangle;
+  }
+
  private:
   radial::AtomicClusters clusters_;
   radial::ClusterHierarchy hierarchy_;
@@ -74,7 +80,7 @@ Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
   clock.stop();
 
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
-                          clock.milliseconds(Stage::decomposition),
+                          clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options.gamma);
   return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};

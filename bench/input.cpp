@@ -1,0 +1,84 @@
+#include "bench/input.h"
+
+#include <charconv>
+#include <filesystem>
+
+#include "bench/catalogue.h"
+#include "bench/progress.h"
+#include "core/base/error.h"
+#include "scenes/catalog/scene_cache.h"
+#include "scenes/clip/point_cache.h"
+
+namespace cscd::bench {
+namespace {
+
+bool is_point_cache(const std::filesystem::path& path) {
+  return path.extension() == ".h5" || path.extension() == ".hdf5";
+}
+
+std::unique_ptr<scenes::ClipSource> open_clip(const std::string& name) {
+  const std::filesystem::path path(name);
+  if (is_point_cache(path)) return std::make_unique<scenes::PointCacheReader>(path);
+  std::error_code ignored;
+  if (path.has_extension() || std::filesystem::exists(path, ignored))
+    throw InputError(
+        "input " + name +
+        ": neither a scene nor a point cache; name a scene (cscd list) or convert it to a .h5 point "
+        "cache");
+  const scenes::Scene scene = scenes::load_scene(name);
+  std::optional<Progress> progress;
+  return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
+    if (!progress) progress.emplace("generating " + name, total);
+    progress->set(done);
+  });
+}
+
+std::size_t parse_frame(std::string_view digits, std::size_t otherwise, const std::string& whole) {
+  if (digits.empty()) return otherwise;
+  std::size_t frame = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    throw InputError("--frames " + whole + ": '" + std::string(digits) +
+                     "' is not a frame number; write A:B, as in 0:10");
+  return frame;
+}
+
+}  // namespace
+
+Input open_input(const std::string& name) {
+  std::unique_ptr<scenes::ClipSource> clip = open_clip(name);
+  const scenes::ClipHeader& header = clip->header();
+  TriangleMesh mesh(header.triangles, header.vertex_count, name);
+  std::optional<Rig> rig = scenes::rig_of(*clip);
+  const scenes::FrameView first = clip->load_frame(0);
+  std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
+  return {name, std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
+}
+
+IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
+  if (text.empty()) return {0, frame_count - 1};
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    throw InputError("--frames " + text +
+                     ": has no colon; write A:B for the intervals between frames A and B");
+  const std::string_view view(text);
+  const std::size_t first = parse_frame(view.substr(0, colon), 0, text);
+  const std::size_t last = parse_frame(view.substr(colon + 1), frame_count - 1, text);
+  if (first >= last || last >= frame_count)
+    throw InputError("--frames " + text + ": not inside the clip's frames 0 to " +
+                     std::to_string(frame_count - 1) +
+                     ", or empty; choose 0 <= A < B <= " + std::to_string(frame_count - 1));
+  return {first, last};
+}
+
+const Strategy& default_strategy(const Input& input) {
+  const Strategy* chosen = &complete_reference();
+  for (const Strategy& strategy : strategies()) {
+    if (strategy.needs_rig && !input.rig) continue;
+    if (strategy.guarantee != Guarantee::complete && !input.mesh.closed_and_oriented()) continue;
+    chosen = &strategy;
+  }
+  return *chosen;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/detect/strategy.h"
+#include "core/mesh/rig.h"
+#include "core/mesh/triangle_mesh.h"
+#include "scenes/clip/clip.h"
+
+namespace cscd::bench {
+
+// What a command works on: a scene by its name, or a point cache by its path.
+struct Input {
+  std::string name;
+  std::unique_ptr<scenes::ClipSource> clip;
+  TriangleMesh mesh;
+  std::vector<Vec3> reference;  // positions of frame 0
+  std::optional<Rig> rig;
+
+  Setup setup(const ElementaryTest& elementary) const {
+    return {mesh, reference, rig ? &*rig : nullptr, elementary};
+  }
+};
+
+// Throws InputError. Generates a scene whose cache is missing.
+Input open_input(const std::string& name_or_path);
+
+// Half-open range of intervals.
+struct IntervalRange {
+  std::size_t first, last;
+};
+// "A:B" stands for the intervals between frames A and B; either may be left out. Throws InputError.
+IntervalRange parse_frames(const std::string& text, std::size_t frame_count);
+
+// The last row of the catalogue whose needs the input meets.
+const Strategy& default_strategy(const Input& input);
+
+}  // namespace cscd::bench

@@ -1,0 +1,105 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench/catalogue.h"
+#include "bench/command.h"
+#include "bench/output.h"
+#include "scenes/catalog/scene.h"
+#include "scenes/effects/effect.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+json scenes_json() {
+  json rows = json::array();
+  for (const scenes::SceneSummary& scene : scenes::list_scenes())
+    rows.push_back({{"name", scene.name},
+                    {"story", scene.story},
+                    {"frames", scene.frames},
+                    {"vertices", scene.vertices},
+                    {"triangles", scene.triangles},
+                    {"bones", scene.bones},
+                    {"effects", scene.effects}});
+  return rows;
+}
+
+json strategies_json() {
+  json rows = json::array();
+  for (const Strategy& strategy : strategies())
+    rows.push_back({{"name", strategy.name},
+                    {"source", strategy.source},
+                    {"guarantee", to_string(strategy.guarantee)},
+                    {"needs_rig", strategy.needs_rig}});
+  return rows;
+}
+
+json tests_json() {
+  json rows = json::array();
+  for (const ElementaryTest& test : elementary_tests())
+    rows.push_back({{"name", test.name},
+                    {"source", test.source},
+                    {"apart_is_proof", test.apart_is_proof},
+                    {"contact_is_proof", test.contact_is_proof}});
+  return rows;
+}
+
+json effects_json() {
+  json rows = json::array();
+  for (const scenes::EffectRow& effect : scenes::effects())
+    rows.push_back({{"name", effect.name}, {"description", effect.description}});
+  return rows;
+}
+
+struct Section {
+  const char* name;
+  json (*rows)();
+};
+constexpr Section kSections[] = {{"scenes", scenes_json},
+                                 {"strategies", strategies_json},
+                                 {"tests", tests_json},
+                                 {"effects", effects_json}};
+
+std::string text(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string joined;
+  for (const json& item : value) joined += (joined.empty() ? "" : ", ") + text(item);
+  return joined;
+}
+
+void list(const std::string& only, bool as_json) {
+  json document = {{"schema", "cscd.list/1"}};
+  for (const Section& section : kSections)
+    if (only.empty() || only == section.name) document[section.name] = section.rows();
+  if (as_json) {
+    std::printf("%s\n", document.dump(1).c_str());
+    return;
+  }
+  for (const Section& section : kSections) {
+    if (!document.contains(section.name)) continue;
+    std::printf("%s\n", section.name);
+    for (const json& row : document[section.name]) {
+      std::printf("  %s\n", text(row["name"]).c_str());
+      for (const auto& [key, value] : row.items())
+        if (key != "name") std::printf("    %s: %s\n", key.c_str(), text(value).c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+  auto only = std::make_shared<std::string>();
+  auto as_json = std::make_shared<bool>(false);
+  CLI::App* command =
+      app.add_subcommand("list", "Show the scenes, strategies, elementary tests and effects there are.");
+  command->add_option("what", *only, "one of scenes, strategies, tests, effects; default all")
+      ->check(CLI::IsMember({"scenes", "strategies", "tests", "effects"}));
+  command->add_flag("--json", *as_json, "for a machine to read");
+  command->callback([only, as_json] { list(*only, *as_json); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,131 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench/catalogue.h"
+#include "bench/command.h"
+#include "bench/input.h"
+#include "bench/output.h"
+#include "bench/progress.h"
+#include "bench/report_json.h"
+#include "core/detect/embedding.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+struct QueryOptions {
+  std::string input, strategy, elementary = "exact", frames, output;
+  bool force = false, unproven = false;
+};
+
+json to_json(const Contact& contact, const TriangleMesh& mesh) {
+  const auto index = [](VertexId vertex) { return static_cast<int>(vertex); };
+  json out;
+  if (contact.pair.kind == FeaturePair::Kind::vertex_face) {
+    const Triangle& corner = mesh.corners(TriangleId{contact.pair.b});
+    out = {{"kind", "vf"},
+           {"vertex", contact.pair.a},
+           {"triangle", contact.pair.b},
+           {"vertices", {contact.pair.a, index(corner[0]), index(corner[1]), index(corner[2])}}};
+  } else {
+    const Edge &a = mesh.ends(EdgeId{contact.pair.a}), &b = mesh.ends(EdgeId{contact.pair.b});
+    out = {{"kind", "ee"}, {"vertices", {index(a[0]), index(a[1]), index(b[0]), index(b[1])}}};
+  }
+  out["time"] = contact.time;
+  return out;
+}
+
+// `collides` and `time` speak of decided contacts; with nothing but undecided pairs the answer is unknown:
+// null.
+json to_json(const ContactSet& found, const TriangleMesh& mesh) {
+  json contacts = json::array(), undecided = json::array();
+  json time;
+  for (const Contact& contact : found.contacts) {
+    const bool decided = contact.verdict == Verdict::contact;
+    if (decided && time.is_null()) time = contact.time;
+    (decided ? contacts : undecided).push_back(to_json(contact, mesh));
+  }
+  json collides = !contacts.empty();
+  if (contacts.empty() && !undecided.empty()) collides = nullptr;
+  return {{"collides", collides}, {"time", time}, {"contacts", contacts}, {"undecided", undecided}};
+}
+
+void query(const QueryOptions& options) {
+  const ElementaryTest& elementary = elementary_test_named(options.elementary);
+  const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
+  OutputFile output(options.output, options.force);
+
+  Input input = open_input(options.input);
+  if (strategy == nullptr) strategy = &default_strategy(input);
+  const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
+  const Setup setup = input.setup(elementary);
+  const std::unique_ptr<Detector> detector = strategy->make(setup).detector;
+  const bool may_fall_back = strategy->guarantee == Guarantee::first_contact && !options.unproven;
+  std::unique_ptr<Detector> fallback;  // made when it is first needed
+
+  EmbeddingTest embedding(input.mesh, input.reference);
+  Progress progress("query " + options.input, range.last - range.first);
+  ContactSet found;
+  json intervals = json::array();
+  std::size_t colliding = 0, not_embedded = 0;
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const scenes::ClipInterval interval = input.clip->load(i);
+    const bool embedded = embedding.embedded(interval.motion.start());
+    const bool fall_back = may_fall_back && !embedded;
+    if (fall_back && !fallback) fallback = complete_reference().make(setup).detector;
+    Detector& used = fall_back ? *fallback : *detector;
+    const Report report = used.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+    found.sort();
+
+    json entry = to_json(found, input.mesh);
+    entry["index"] = i;
+    entry["starts_embedded"] = embedded;
+    entry["strategy"] = fall_back ? complete_reference().name : strategy->name;
+    entry["proven"] =
+        elementary.apart_is_proof && (embedded || fall_back || strategy->guarantee == Guarantee::complete);
+    entry["counts"] = counts_json(report);
+    entry["ms"] = milliseconds_json(report.ms);
+    colliding += !entry["contacts"].empty();
+    not_embedded += !embedded;
+    intervals.push_back(std::move(entry));
+    progress.advance();
+  }
+
+  const json document = {{"schema", "cscd.query/1"},      {"input", options.input},
+                         {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
+                         {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
+  output.commit(document.dump(1) + "\n");
+  std::printf(
+      "%s: %zu intervals, %zu with contacts, %zu with a start that is not embedded (strategy %s, elementary "
+      "test %s)\n",
+      options.input.c_str(), range.last - range.first, colliding, not_embedded,
+      std::string(strategy->name).c_str(), std::string(elementary.name).c_str());
+}
+
+}  // namespace
+
+void add_query(CLI::App& app) {
+  auto options = std::make_shared<QueryOptions>();
+  CLI::App* command =
+      app.add_subcommand("query",
+                         "Find where and when a mesh first touches itself in each interval of a clip.\n\n"
+                         "  cscd query rope --json rope.json\n"
+                         "  cscd query character.h5 --strategy base --frames 0:10 --json out.json\n\n"
+                         "Where a start is not embedded, the guarantee first_contact is void, and the "
+                         "complete reference strategy\n"
+                         "answers that interval instead (--unproven: do not).");
+  command->add_option("input", options->input, "a scene (cscd list) or a .h5 point cache")->required();
+  command->add_option("--strategy", options->strategy,
+                      "culling strategy (cscd list); without it, the best that the input allows");
+  command->add_option("--elementary", options->elementary, "elementary test (cscd list)")
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
+  command->add_option("--json", options->output, "where the answer goes")->required();
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->add_flag("--unproven", options->unproven, "run the strategy even where its guarantee is void");
+  command->callback([options] { query(*options); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/detect/strategy.h"
+#include "core/detect/verify.h"
+
+namespace cscd::bench {
+
+struct RandomVerification {
+  std::size_t intervals = 1000;
+  std::uint64_t first_seed = 1;
+  std::size_t brute_every =
+      10;  // otherwise the complete reference stands in for all pairs, itself verified here
+};
+
+struct RandomFailure {
+  std::uint64_t seed;
+  std::string family, strategy, what;
+};
+
+struct RandomSummary {
+  std::size_t intervals = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0, contacts = 0;
+  std::map<std::string, std::size_t> found_by;          // of those contacts, by strategy
+  std::map<std::string, std::size_t> embedded_hits_of;  // embedded starts with contacts, by family
+  Accuracy newton;                                      // of the first elementary test, on the same pairs
+  std::vector<RandomFailure> failures;
+};
+
+// Runs every strategy with the elementary test `exact` on random intervals and holds it to its guarantee.
+// `progress` gets the number of intervals done.
+RandomSummary verify_random(const RandomVerification& plan, std::span<const Strategy> strategies,
+                            const std::function<void(std::size_t)>& progress = {});
+
+std::string describe(const RandomSummary& summary);
+
+// Writes the failing interval as a point cache; returns a line that says what failed, its seed and where it
+// is.
+std::string write_failure(const RandomFailure& failure, const std::filesystem::path& folder);
+
+}  // namespace cscd::bench

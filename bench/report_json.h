@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core/detect/detector.h"
+
+namespace cscd::bench {
+
+// Counters of one interval, keys as the fields are called; radial counters only where the strategy has them.
+nlohmann::json counts_json(const Report& report);
+
+// Stage times in milliseconds; a stage that does not exist is absent.
+nlohmann::json milliseconds_json(const StageTimes& ms);
+
+}  // namespace cscd::bench
