@@ -1,0 +1,211 @@
+// The rope, generated once for all tests of this file: its counts, its frames, and what makes it a workload.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "core/detect/embedding.h"
+#include "scenes/catalog/generate.h"
+
+namespace cscd::scenes {
+namespace {
+
+constexpr std::size_t kRings = 865, kSides = 28;
+// The exact test takes 0.04 s a frame in Release and ten times that with sanitizers, which then see every 16th frame.
+#ifdef NDEBUG
+constexpr std::size_t kEmbeddingStride = 1;
+#else
+constexpr std::size_t kEmbeddingStride = 16;
+#endif
+// Rings this far apart are more than three diameters apart along the rope.
+constexpr std::size_t kFar = 28;
+
+// Where one ring is: all its vertices lie in a ball.
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+class Rope : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    // Verifies the counts and the digest that the scene file promises.
+    clip_ = std::make_unique<Clip>(generate(load_scene("rope")));
+  }
+  static void TearDownTestSuite() { clip_.reset(); }
+  static const Clip& clip() { return *clip_; }
+
+  static std::vector<Ball> rings(std::span<const Vec3> positions) {
+    std::vector<Ball> balls(kRings, Ball{Vec3::Zero(), 0});
+    for (std::size_t ring = 0; ring < kRings; ++ring) {
+      const auto vertices = positions.subspan(ring * kSides, kSides);
+      for (const Vec3& vertex : vertices) balls[ring].centre += vertex / kSides;
+      for (const Vec3& vertex : vertices)
+        balls[ring].radius = std::max(balls[ring].radius, (vertex - balls[ring].centre).norm());
+    }
+    return balls;
+  }
+
+ private:
+  static inline std::unique_ptr<Clip> clip_;
+};
+
+double mean_edge(std::span<const Vec3> positions, const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const Edge& edge : mesh.edges()) sum += (positions[+edge[0]] - positions[+edge[1]]).norm();
+  return sum / static_cast<double>(mesh.edge_count());
+}
+
+TEST_F(Rope, HasTheCountsOfThePaperAndFrameZeroAtRest) {
+  EXPECT_EQ(clip().header().vertex_count, 24222u);
+  EXPECT_EQ(clip().header().triangles.size(), 48440u);
+  EXPECT_EQ(clip().header().bone_parent.size(), 100u);
+  EXPECT_GE(clip().interval_count(), 200u);
+  const Scene scene = load_scene("rope");
+  const Shape shape = make_shape(scene.shape, scene.shape_parameters);
+  EXPECT_TRUE(std::ranges::equal(clip().frame(0).positions, shape.positions));
+}
+
+TEST_F(Rope, IsEmbeddedInEveryFrame) {
+  const TriangleMesh mesh(clip().header().triangles, clip().header().vertex_count, "rope");
+  ASSERT_TRUE(mesh.closed_and_oriented());
+  EmbeddingTest test(mesh, clip().frame(0).positions);
+  for (std::size_t frame = 0; frame < clip().frame_count(); frame += kEmbeddingStride)
+    ASSERT_TRUE(test.embedded(clip().frame(frame).positions)) << "frame " << frame;
+}
+
+// Closest distance of two segments, to within rounding.
+double distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
+  const Vec3 p = p1 - p0, q = q1 - q0, r = p0 - q0;
+  const double a = p.squaredNorm(), b = p.dot(q), e = q.squaredNorm(), c = p.dot(r), f = q.dot(r);
+  const double determinant = a * e - b * b;
+  double least = 1e300;
+  const auto look = [&](double s, double t) {
+    least = std::min(least, (r + std::clamp(s, 0.0, 1.0) * p - std::clamp(t, 0.0, 1.0) * q).norm());
+  };
+  if (determinant > 0) {
+    const double s = (b * f - c * e) / determinant, t = (a * f - b * c) / determinant;
+    if (s >= 0 && s <= 1 && t >= 0 && t <= 1) look(s, t);
+  }
+  for (const double end : {0.0, 1.0}) {
+    look(end, (b * end + f) / e);
+    look((b * end - c) / a, end);
+  }
+  return least;
+}
+
+// The surface between two neighbouring rings lies in the hull of their balls, hence within the larger radius
+// of the segment between their centres. While vertices move in straight lines so do the centres, and no
+// radius exceeds the larger of its ends. So two stretches stay apart if their segments, moving so, keep a
+// distance of two radii.
+struct Stretch {
+  Vec3 start[2], end[2];  // of the two centres, at t = 0 and t = 1
+  double radius;
+  Vec3 at(std::size_t i, double t) const { return (1 - t) * start[i] + t * end[i]; }
+};
+
+Stretch stretch(const std::vector<Ball>& start, const std::vector<Ball>& end, std::size_t ring) {
+  return {{start[ring].centre, start[ring + 1].centre},
+          {end[ring].centre, end[ring + 1].centre},
+          std::max({start[ring].radius, start[ring + 1].radius, end[ring].radius, end[ring + 1].radius})};
+}
+
+// A lower bound, above 0 only if proven, of the gap from t0 to t1.
+double gap_over(const Stretch& a, const Stretch& b, double speed, double t0, double t1) {
+  const double t = (t0 + t1) / 2;
+  const double now = distance(a.at(0, t), a.at(1, t), b.at(0, t), b.at(1, t)) - a.radius - b.radius;
+  const double sure = now - speed * (t1 - t0) / 2;
+  if (sure > 0.5 * now || t1 - t0 < 1e-3) return sure;
+  return std::min(gap_over(a, b, speed, t0, t), gap_over(a, b, speed, t, t1));
+}
+
+TEST_F(Rope, NeverTouchesItselfWithinAnInterval) {
+  double closest = 1e300;
+  std::vector<Ball> start = rings(clip().frame(0).positions);
+  for (std::size_t frame = 1; frame < clip().frame_count(); ++frame) {
+    const std::vector<Ball> end = rings(clip().frame(frame).positions);
+    double fastest = 0;
+    for (std::size_t ring = 0; ring < kRings; ++ring)
+      fastest = std::max(fastest, (end[ring].centre - start[ring].centre).norm());
+    for (std::size_t i = 0; i + 1 < kRings; ++i)
+      for (std::size_t j = i + kFar; j + 1 < kRings;) {
+        // Centres of neighbouring rings are less than 0.3 apart: what is far off allows a leap.
+        const double spare = (start[i].centre - start[j].centre).norm() - 2 * fastest - 2.8;
+        if (spare > 0.3) {
+          j += static_cast<std::size_t>(spare / 0.3);
+          continue;
+        }
+        const Stretch a = stretch(start, end, i), b = stretch(start, end, j);
+        double speed = 0;
+        for (const std::size_t k : {0, 1})
+          for (const std::size_t l : {0, 1})
+            speed = std::max(speed, (a.end[k] - a.start[k] - b.end[l] + b.start[l]).norm());
+        const double gap = gap_over(a, b, speed, 0, 1);
+        ASSERT_GT(gap, 0) << "interval " << frame - 1 << ", rings " << i << " and " << j;
+        closest = std::min(closest, gap);
+        ++j;
+      }
+    start = end;
+  }
+  EXPECT_LT(closest, 0.2) << "the rope lies against itself";
+}
+
+TEST_F(Rope, HasNearContactsInMostIntervals) {
+  const TriangleMesh mesh(clip().header().triangles, clip().header().vertex_count, "rope");
+  const double limit = 2 * mean_edge(clip().frame(0).positions, mesh);
+  std::size_t near = 0;
+  for (std::size_t frame = 0; frame + 1 < clip().frame_count(); ++frame) {
+    const std::span<const Vec3> positions = clip().frame(frame).positions;
+    const std::vector<Ball> balls = rings(positions);
+    // The distance of two vertices bounds that of the surfaces from above.
+    double closest = 1e300;
+    for (std::size_t i = 0; i < kRings && closest >= limit; ++i)
+      for (std::size_t j = i + kFar; j < kRings && closest >= limit; ++j) {
+        if ((balls[i].centre - balls[j].centre).norm() - balls[i].radius - balls[j].radius >= limit) continue;
+        for (std::size_t v = i * kSides; v < (i + 1) * kSides; ++v)
+          for (std::size_t w = j * kSides; w < (j + 1) * kSides; ++w)
+            closest = std::min(closest, (positions[v] - positions[w]).norm());
+      }
+    near += closest < limit;
+  }
+  const double share = static_cast<double>(near) / static_cast<double>(clip().interval_count());
+  RecordProperty("near_contact_share", std::to_string(share));
+  EXPECT_GT(share, 0.6);
+}
+
+TEST_F(Rope, MovesEnoughToBeAWorkloadAndNotTooFast) {
+  double sum = 0, fastest = 0;
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < clip().interval_count(); ++i) {
+    const Motion motion = clip().interval(i).motion;
+    double mean = 0;
+    for (std::size_t v = 0; v < motion.vertex_count(); ++v) {
+      const double moved = (motion.end()[v] - motion.start()[v]).norm();
+      mean += moved / static_cast<double>(motion.vertex_count());
+      fastest = std::max(fastest, moved);
+    }
+    sum += mean;
+    moving += mean > 0.1;
+  }
+  const double mean = sum / static_cast<double>(clip().interval_count());
+  EXPECT_GT(mean, 0.1);
+  EXPECT_LT(mean, 0.5);
+  EXPECT_LT(fastest, 2);
+  EXPECT_GT(moving, clip().interval_count() * 3 / 4);
+}
+
+TEST_F(Rope, KeepsItsThicknessAndItsBones) {
+  for (std::size_t frame = 0; frame < clip().frame_count(); ++frame) {
+    const std::vector<Ball> balls = rings(clip().frame(frame).positions);
+    for (std::size_t ring = 8; ring + 8 < kRings; ++ring) {
+      ASSERT_GT(balls[ring].radius, 0.94) << "frame " << frame << ", ring " << ring << ": no candy wrapper";
+      ASSERT_LT(balls[ring].radius, 1.01) << "frame " << frame << ", ring " << ring;
+    }
+    for (const Bone& bone : clip().frame(frame).bones)
+      ASSERT_NEAR((bone.tail - bone.head).norm(), 1.88, 0.04);
+  }
+}
+
+}  // namespace
+}  // namespace cscd::scenes

@@ -1,0 +1,204 @@
+#include "scenes/catalog/scene.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "scenes/catalog/scene_cache.h"
+#include "scenes/catalog/test_scenes.h"
+#include "scenes/clip/digest.h"
+
+namespace cscd::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string message(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal(const std::string& from, const std::string& to) {
+  std::string text = kSmallScene;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  return message([&] { generate(parse_scene("small", text, "small.json")); });
+}
+
+TEST(SceneFile, SaysWhatTheSceneIs) {
+  const Scene scene = parse_scene("small", kSmallScene, "small.json");
+  EXPECT_EQ(scene.name, "small");
+  EXPECT_EQ(scene.shape, "tube");
+  EXPECT_EQ(scene.shape_parameters.number("length"), 20);
+  EXPECT_EQ(scene.frames, 6u);
+  EXPECT_EQ(scene.substeps, 4);
+  ASSERT_EQ(scene.effects.size(), 2u);
+  EXPECT_EQ(scene.effects[0].name, "chain_dynamics");
+  EXPECT_EQ(scene.effects[0].parameters.vector("gravity"), Vec3(0, 0, -1));
+  EXPECT_EQ(scene.effects[0].parameters.table("first_end")[1][3], 2);
+  EXPECT_EQ(scene.expected.vertices, 82u);
+}
+
+TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
+  EXPECT_NE(refusal("{", "").find("small.json: is not JSON"), std::string::npos);
+  EXPECT_EQ(refusal("cscd.scene/1", "cscd.scene/9"), "small.json: schema must be cscd.scene/1");
+  EXPECT_EQ(refusal("\"story\"", "\"tale\""), "small.json: tale is unknown; remove it");
+  EXPECT_EQ(refusal("\"frames\": 6", "\"frames\": 1"),
+            "small.json: frames must be a whole number from 2 to 100000000");
+  EXPECT_EQ(refusal("\"frames\": 6,", ""), "small.json: frames is missing; add it");
+  EXPECT_EQ(refusal("\"name\": \"tube\"", "\"name\": \"pot\""),
+            "small.json, shape pot: unknown shape pot; known are: tube");
+  EXPECT_EQ(refusal("\"rings\"", "\"rigns\"").substr(0, 61),
+            "small.json, shape tube: parameter rigns is unknown; known are");
+  EXPECT_EQ(refusal("\"rings\": 10", "\"rings\": true"),
+            "small.json, shape tube: parameter rings must be a number, a text, or a list of numbers or of "
+            "such lists");
+  EXPECT_EQ(refusal("skinning_linear", "skinning").substr(0, 49),
+            "small.json, effect skinning: unknown effect; know");
+  EXPECT_EQ(refusal("\"drag\": 0.5, ", ""),
+            "small.json, effect chain_dynamics: parameter drag is missing (share of the velocity lost per "
+            "frame); add "
+            "it to the scene file");
+  EXPECT_EQ(refusal("\"vertices\": 82", "\"vertices\": 83"),
+            "scene small: the shape has 82 vertices, the scene file expects 83; correct one of them");
+  EXPECT_NE(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]").find("parameter first_end must hold numbers only"),
+            std::string::npos);
+}
+
+TEST(SceneFile, PromisesADigest) {
+  const std::string text = message([] { generate(parse_scene("small", kSmallScene, "small.json")); });
+  EXPECT_EQ(text.find("scene small: the frames have digest "), 0u) << text;
+  EXPECT_NE(text.find("the scene file expects 0000000000000000"), std::string::npos) << text;
+}
+
+TEST(Scene, RunsTheEffectsThatItNamesAndNoOther) {
+  const Scene scene = parse_scene("small", small_scene_with_digest(), "small.json");
+  std::optional<Clip> clip;
+  const Generated generated =
+      run_scene(scene, [&](ClipHeader header) -> FrameSink& { return clip.emplace(std::move(header)); });
+  ASSERT_EQ(generated.effects.size(), 2u);
+  EXPECT_EQ(generated.effects[0].name, "chain_dynamics");
+  EXPECT_EQ(generated.effects[0].evaluations, 20u) << "5 frames of 4 substeps";
+  EXPECT_EQ(generated.effects[1].name, "skinning_linear");
+  EXPECT_EQ(generated.effects[1].evaluations, 5u);
+  EXPECT_EQ(clip->frame_count(), 6u);
+  EXPECT_NE(clip->frame(0).positions[5], clip->frame(5).positions[5]);
+}
+
+// A folder of scenes and one of caches, named by the environment.
+class Catalogue : public testing::Test {
+ protected:
+  Catalogue() {
+    std::string pattern = (fs::temp_directory_path() / "cscd-scenes-XXXXXX").string();
+    root = mkdtemp(pattern.data());
+    fs::create_directory(root / "scenes");
+    put("small", small_scene_with_digest());
+    setenv("CSCD_SCENES", (root / "scenes").c_str(), 1);
+    setenv("CSCD_CACHE", (root / "cache").c_str(), 1);
+  }
+  ~Catalogue() override {
+    unsetenv("CSCD_SCENES");
+    unsetenv("CSCD_CACHE");
+    fs::remove_all(root);
+  }
+  void put(const std::string& name, const std::string& text) {
+    std::ofstream(root / "scenes" / (name + ".json")) << text;
+  }
+  static std::string digest_of(ClipSource& source) {
+    DigestSink sink;
+    copy_frames(source, sink);
+    return sink.text();
+  }
+  // How many frames open_scene had to generate.
+  static std::size_t generated(const Scene& scene) {
+    std::size_t frames = 0;
+    const std::unique_ptr<ClipSource> source = open_scene(scene, [&](std::size_t, std::size_t) { ++frames; });
+    EXPECT_EQ(digest_of(*source), scene.expected.digest);
+    return frames;
+  }
+  fs::path root;
+};
+
+TEST_F(Catalogue, ListsItsScenesInOrder) {
+  put("another", small_scene_with_digest());
+  const std::vector<SceneSummary> scenes = list_scenes();
+  ASSERT_EQ(scenes.size(), 2u);
+  EXPECT_EQ(scenes[0].name, "another");
+  EXPECT_EQ(scenes[1].name, "small");
+  EXPECT_EQ(scenes[1].story, "A chain falls. It is led by one end.");
+  EXPECT_EQ(scenes[1].effects, (std::vector<std::string>{"chain_dynamics", "skinning_linear"}));
+  EXPECT_EQ(message([] { load_scene("nosuch"); }), "unknown scene nosuch; known are: another, small");
+  EXPECT_EQ(message([] { load_scene("../scenes/small"); }).substr(0, 13), "unknown scene");
+}
+
+TEST_F(Catalogue, FindsItsFolder) {
+  EXPECT_EQ(scenes_folder(), root / "scenes");
+  const fs::path before = fs::current_path();
+  unsetenv("CSCD_SCENES");
+  unsetenv("CSCD_CACHE");
+  fs::create_directories(root / "a" / "b");
+  fs::current_path(root / "a" / "b");
+  EXPECT_TRUE(fs::equivalent(scenes_folder(), root / "scenes")) << "going up from the current directory";
+  EXPECT_EQ(cache_folder(), scenes_folder().parent_path() / ".cache");
+  fs::current_path(before);
+  setenv("CSCD_SCENES", (root / "a").c_str(), 1);
+  EXPECT_NE(message([] { scenes_folder(); }).find("holds no scene file"), std::string::npos);
+}
+
+TEST_F(Catalogue, GeneratesOnceAndAgainWhenTheCacheIsDamaged) {
+  const Scene scene = load_scene("small");
+  EXPECT_EQ(generated(scene), 6u);
+  EXPECT_EQ(generated(scene), 0u) << "from the cache";
+
+  const fs::path file = cache_file(scene);
+  const auto size = fs::file_size(file);
+  {
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(size - 1000));
+    stream.put('\x5a');
+  }
+  EXPECT_EQ(generated(scene), 6u) << "one byte differs";
+  fs::resize_file(file, size / 2);
+  EXPECT_EQ(generated(scene), 6u) << "cut short";
+  EXPECT_EQ(generated(scene), 0u);
+}
+
+TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
+  const fs::path file = cache_file(load_scene("small"));
+  std::string text = small_scene_with_digest();
+  text.replace(text.find("A chain falls."), 14, "It just falls.");
+  put("small", "\n" + text);
+  EXPECT_EQ(cache_file(load_scene("small")), file) << "neither story nor white space matter";
+  text.replace(text.find("\"drag\": 0.5"), 11, "\"drag\": 0.6");
+  put("small", text);
+  EXPECT_NE(cache_file(load_scene("small")), file);
+  EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("the frames have digest"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(cache_file(load_scene("small")))) << "unverified frames are not kept";
+}
+
+TEST_F(Catalogue, ExportsWhatItReplays) {
+  const Scene scene = load_scene("small");
+  export_scene(scene, root / "out.h5", false);
+  PointCacheReader reader(root / "out.h5");
+  EXPECT_EQ(digest_of(reader), scene.expected.digest);
+  EXPECT_NE(message([&] { export_scene(scene, root / "out.h5", false); }).find("exists already"),
+            std::string::npos);
+  EXPECT_NO_THROW(export_scene(scene, root / "out.h5", true));
+}
+
+TEST_F(Catalogue, SaysWhereItCannotCache) {
+  setenv("CSCD_CACHE", "/proc/no/such", 1);
+  EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes

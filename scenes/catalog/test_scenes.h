@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "scenes/catalog/generate.h"
+
+namespace cscd::scenes {
+
+// A scene of 82 vertices that takes no time, with a wrong digest.
+inline const std::string kSmallScene = R"({
+  "schema": "cscd.scene/1",
+  "story": "A chain falls. It is led by one end.",
+  "shape": {"name": "tube", "rings": 10, "sides": 8, "bones": 4, "radius": 1, "length": 20},
+  "frames": 6,
+  "substeps": 4,
+  "effects": [
+    {"name": "chain_dynamics", "gravity": [0, 0, -1], "drag": 0.5, "bend_stiffness": 0, "bend_radius": 4,
+     "first_end": [[0, 0, 0, 0], [9, 1, 0.5, 2]]},
+    {"name": "skinning_linear"}
+  ],
+  "expected": {"vertices": 82, "triangles": 160, "bones": 4, "digest": "0000000000000000"}
+})";
+
+// The same with its true digest.
+inline std::string small_scene_with_digest() {
+  std::optional<Clip> clip;
+  const Generated generated =
+      run_scene(parse_scene("small", kSmallScene, "small.json"),
+                [&](ClipHeader header) -> FrameSink& { return clip.emplace(std::move(header)); });
+  std::string text = kSmallScene;
+  return text.replace(text.find("0000000000000000"), 16, generated.digest);
+}
+
+}  // namespace cscd::scenes
