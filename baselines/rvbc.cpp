@@ -5,6 +5,7 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/radial/cluster_hierarchy.h"
+#include "core/radial/distance_field.h"
 #include "core/radial/observer.h"
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
@@ -67,7 +68,7 @@ Prepared make_rvbc(const Setup& setup) {
   radial::require_radial_setup(setup, "rvbc");
   StageClock clock;
   clock.enter(Stage::distance_and_heat);
-  const int resolution = radial::full_resolution(setup.mesh, setup.reference);
+  const int resolution = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
   const std::vector<BoneId> bone_of =
       radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {resolution, 0});
 

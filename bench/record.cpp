@@ -130,9 +130,10 @@ void require_whole(const Record& record) {
         throw InputError("strategy " + strategy.name + ": counts of " + key + " are not one an interval");
     for (const auto& [stage, repetitions] : strategy.ms)
       for (const std::vector<double>& row : repetitions)
-        if (row.size() != record.intervals || repetitions.size() != strategy.ms.begin()->second.size())
+        if (row.size() != record.timed_intervals.size() ||
+            repetitions.size() != strategy.ms.begin()->second.size())
           throw InputError("strategy " + strategy.name + ": times of " + stage +
-                           " are not one an interval in every repetition");
+                           " are not one a timed interval in every repetition");
   }
 }
 
@@ -157,6 +158,7 @@ ordered_json to_json(const Record& record) {
           {"elementary", record.elementary},
           {"first_interval", record.first_interval},
           {"intervals", record.intervals},
+          {"timed_intervals", record.timed_intervals},
           {"verification", to_json(record.verification)},
           {"strategies", std::move(strategies)}};
 }
@@ -176,6 +178,7 @@ Record parse_record(const std::string& text, const std::string& where) {
     out.elementary = document.at("elementary");
     out.first_interval = document.at("first_interval");
     out.intervals = document.at("intervals");
+    out.timed_intervals = document.at("timed_intervals").get<std::vector<std::size_t>>();
     out.verification = verification_from(document.at("verification"));
     for (const ordered_json& strategy : document.at("strategies"))
       out.strategies.push_back(strategy_from(strategy));

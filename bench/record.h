@@ -22,7 +22,7 @@ inline constexpr std::string_view kRunSchema = "cscd.run/1";
 
 // One number an interval. A counter that a strategy does not have has no column.
 using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
-// [repetition][interval], milliseconds. A stage that a strategy does not have has no column.
+// [repetition][timed interval], milliseconds. A stage that a strategy does not have has no column.
 using TimeColumns = std::map<std::string, std::vector<std::vector<double>>>;
 
 struct PreparationRecord {  // one sample for every time that the strategy was made
@@ -70,6 +70,7 @@ struct Record {
   SceneRecord scene;
   std::string elementary;  // the timed one
   std::size_t first_interval = 0, intervals = 0;
+  std::vector<std::size_t> timed_intervals;  // those of them that were timed; counters are there for all
   VerificationRecord verification;
   std::vector<StrategyRecord> strategies;
 

@@ -23,7 +23,7 @@ constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 struct RunOptions {
   std::string scene = "rope", elementary = "newton", frames, output;
   std::vector<std::string> strategies;
-  std::size_t repetitions = 5, verify_every = 1;
+  std::size_t repetitions = 5, time_every = 1, verify_every = 1;
   std::uint64_t seed = 2014;
   bool smoke = false, force = false;
 };
@@ -42,6 +42,7 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
           "--elementary",   options.elementary,
           "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
           "--repetitions",  std::to_string(options.repetitions),
+          "--time-every",   std::to_string(options.time_every),
           "--verify-every", std::to_string(options.verify_every),
           "--seed",         std::to_string(options.seed)};
 }
@@ -113,6 +114,7 @@ void run(RunOptions options) {
   record.elementary = timed.name;
   record.first_interval = range.first;
   record.intervals = range.last - range.first;
+  record.timed_intervals = every_kth(range, options.time_every);
   std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
   record.command = command_line(options, contestants, range);
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
@@ -120,7 +122,7 @@ void run(RunOptions options) {
   VerificationOutcome verified =
       verify_contestants(input, contestants, exact, timed, every_kth(range, options.verify_every));
   if (verified.record.ok()) {
-    const TimingPlan plan{range, options.repetitions, options.seed};
+    const TimingPlan plan{range, record.timed_intervals, options.repetitions, options.seed};
     if (const auto void_times = time_contestants(input, contestants, plan, verified, record.strategies))
       verified.record.strategies[void_times->contestant].failures.push_back(void_times->failure);
   }
@@ -161,6 +163,10 @@ void add_run(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--repetitions", options->repetitions, "how often each interval is timed")
       ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--time-every", options->time_every, "time each K-th interval; counters are taken of all")
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
   command->add_option("--verify-every", options->verify_every, "verify each K-th interval, from the first")

@@ -42,7 +42,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
                                              const TimingPlan& plan, const VerificationOutcome& verified,
                                              std::vector<StrategyRecord>& records) {
   const auto [first, last] = plan.range;
-  Progress progress("timing " + input.name, (plan.repetitions + 1) * (last - first));
+  Progress progress("timing " + input.name, last - first + plan.repetitions * plan.intervals.size());
   ContactSet found;
   std::vector<std::vector<Report>> warm_ups(contestants.size());
 
@@ -68,7 +68,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition)
-    for (std::size_t i = first; i < last; ++i) {
+    for (const std::size_t i : plan.intervals) {
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {

@@ -14,7 +14,8 @@
 namespace cscd::bench {
 
 struct TimingPlan {
-  IntervalRange range;
+  IntervalRange range;                 // of the warm-up
+  std::vector<std::size_t> intervals;  // of it, those that are timed
   std::size_t repetitions;
   std::uint64_t seed;
 };
@@ -25,10 +26,10 @@ struct Unrepeatable {
   std::string failure;
 };
 
-// One warm-up pass that takes the counters and digests, then the timed repetitions. Every interval is given
-// to all strategies in turn, in a random order drawn anew each time, so that drift of the machine hits all
-// alike. Stops at the first strategy whose counters differ from those verified, or whose contacts differ
-// between repetitions.
+// One warm-up pass that takes the counters and digests of all intervals, then the timed repetitions. Every
+// interval is given to all strategies in turn, in a random order drawn anew each time, so that drift of the
+// machine hits all alike. Stops at the first strategy whose counters differ from those verified, or whose
+// contacts differ between repetitions.
 std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
                                              const TimingPlan& plan, const VerificationOutcome& verified,
                                              std::vector<StrategyRecord>& records);

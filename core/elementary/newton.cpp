@@ -152,8 +152,7 @@ Answer planar(const Query& query, const Vec3& normal,
 }
 
 Answer planar(const MovingVertexFace& q) {
-  const MovingPoint vertex[1] = {q.vertex};
-  if (relative_boxes_apart(vertex, q.corner)) return {Verdict::apart, 0};
+  if (relative_boxes_apart(q)) return {Verdict::apart, 0};
   const MovingVector ab = difference(q.corner[0], q.corner[1]), ac = difference(q.corner[0], q.corner[2]);
   return planar(q, ab.start.cross(ac.start) + ab.end.cross(ac.end),
                 {{&q.corner[0], &q.corner[1], &q.vertex},
@@ -162,7 +161,7 @@ Answer planar(const MovingVertexFace& q) {
 }
 
 Answer planar(const MovingEdgeEdge& q) {
-  if (relative_boxes_apart(q.first, q.second)) return {Verdict::apart, 0};
+  if (relative_boxes_apart(q)) return {Verdict::apart, 0};
   const MovingVector ab = difference(q.first[0], q.first[1]), cd = difference(q.second[0], q.second[1]);
   return planar(q, ab.start.cross(cd.start) + ab.end.cross(cd.end),
                 {{&q.first[0], &q.first[1], &q.second[0]},

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/mesh/motion.h"
+#include "core/geometry/feature_motion.h"
 
 // Relative axis-aligned bounding boxes (section 6 of the paper): with the mean velocity of all points taken
 // off both sets, their swept boxes shrink to the relative motion.
@@ -36,6 +36,14 @@ bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) 
     if (high_a < low_b || high_b < low_a) return true;
   }
   return false;
+}
+
+inline bool relative_boxes_apart(const MovingVertexFace& query) {
+  const MovingPoint vertex[1] = {query.vertex};
+  return relative_boxes_apart(vertex, query.corner);
+}
+inline bool relative_boxes_apart(const MovingEdgeEdge& query) {
+  return relative_boxes_apart(query.first, query.second);
 }
 
 }  // namespace cscd

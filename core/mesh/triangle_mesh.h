@@ -16,15 +16,21 @@ using Triangle = std::array<VertexId, 3>;  // corners, counter-clockwise seen fr
 using Edge = std::array<VertexId, 2>;      // ends, smaller index first
 
 // What can be wrong with a surface that is still a list of triangles.
-enum class Defect { duplicate_triangle, non_manifold_edge, boundary_edge, inconsistent_orientation, non_manifold_vertex };
+enum class Defect {
+  duplicate_triangle,
+  non_manifold_edge,
+  boundary_edge,
+  inconsistent_orientation,
+  non_manifold_vertex
+};
 
-// Immutable connectivity of a triangle surface. Construction refuses what is not a triangle list at all; open,
-// non-manifold or inconsistently oriented surfaces are accepted and say so, as strategies with the guarantee
-// `complete` can use them.
+// Immutable connectivity of a triangle surface. Construction refuses what is not a triangle list at all;
+// open, non-manifold or inconsistently oriented surfaces are accepted and say so, as strategies with the
+// guarantee `complete` can use them.
 class TriangleMesh {
  public:
-  // Throws InputError for an index outside [0, vertex_count), a triangle that repeats a corner, no triangles, or
-  // more than 2^28 vertices or triangles. `name` (a file, a scene) begins the error texts.
+  // Throws InputError for an index outside [0, vertex_count), a triangle that repeats a corner, no triangles,
+  // or more than 2^28 vertices or triangles. `name` (a file, a scene) begins the error texts.
   TriangleMesh(std::vector<Triangle> triangles, std::size_t vertex_count, const std::string& name = "mesh");
 
   std::size_t vertex_count() const { return vertex_count_; }
@@ -61,7 +67,8 @@ class TriangleMesh {
   };
   static std::span<const TriangleId> slice(const Incidence& incidence, std::size_t i) {
     const auto first = static_cast<std::size_t>(incidence.offset[i]);
-    return std::span(incidence.items).subspan(first, static_cast<std::size_t>(incidence.offset[i + 1]) - first);
+    return std::span(incidence.items)
+        .subspan(first, static_cast<std::size_t>(incidence.offset[i + 1]) - first);
   }
   void build_edges();
   void build_components();
