@@ -1,10 +1,12 @@
 #include "core/engine/drvbc.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/engine/mega_clusters.h"
+#include "core/radial/distance_field.h"
 #include "core/radial/refinement.h"
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
@@ -67,8 +69,10 @@ Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
   const double theta = options.theta_degrees * std::numbers::pi / 180;
   StageClock clock;
   clock.enter(Stage::distance_and_heat);
-  std::vector<BoneId> bone_of = radial::nearest_bone_by_heat(
-      setup.mesh, setup.reference, *setup.rig, {options.grid_resolution, options.smoothing_passes});
+  const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
+  std::vector<BoneId> bone_of =
+      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig,
+                                   {std::max(1, full / options.coarsening), options.smoothing_passes});
 
   clock.enter(Stage::decomposition);
   radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);

@@ -8,7 +8,7 @@ namespace cscd {
 struct DrvbcOptions {
   double gamma = 0.05;        // merge while fewer than this share of a candidate's triangles is not positive
   double theta_degrees = 10;  // rotation trial of the choice of observers
-  int grid_resolution = 64;   // coarse distance field: cells along the longest side (the paper gives none)
+  int coarsening = 4;         // cells of the distance field, in mean edges (the paper gives none)
   int smoothing_passes = 5;   // over the mesh, before the field (the paper gives none)
   bool relative_boxes = true;
 };
