@@ -1,0 +1,47 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/record.h"
+#include "bench/statistics.h"
+
+// The tables of the paper with published figures beside measured ones. What a column is,
+// bench/paper_tables.json says; what was published, bench/published.json. No strategy is known by name here.
+namespace cscd::bench {
+
+// A cell that cannot be measured says why.
+struct Cell {
+  std::optional<double> published;
+  std::optional<double> measured;
+  std::optional<Estimate> interval;  // absent for what has no noise: counters and sizes
+  std::string reason;                // empty when measured
+};
+
+struct Column {
+  std::string key, title, unit;
+};
+
+struct Row {
+  std::string scene;
+  std::vector<Cell> cells;  // one a column
+};
+
+struct PaperTable {
+  std::string id, title;
+  std::vector<Column> columns;
+  std::vector<Row> rows;
+};
+
+// At most one record a scene. Rows are the published scenes and those of the records; `only_scene`, unless
+// empty, leaves the others out.
+std::vector<PaperTable> paper_tables(std::span<const Record> records, const std::string& only_scene = {});
+// The same from other definitions and figures.
+std::vector<PaperTable> paper_tables(const nlohmann::ordered_json& definitions,
+                                     const nlohmann::ordered_json& published, std::span<const Record> records,
+                                     const std::string& only_scene = {});
+
+}  // namespace cscd::bench

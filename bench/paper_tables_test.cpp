@@ -1,0 +1,164 @@
+#include "bench/paper_tables.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "bench/data.h"
+#include "bench/json_text.h"
+#include "bench/tables_text.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// Two strategies, two timed of three intervals, three repetitions; `swift` is three times as fast in every
+// one.
+Record sample_record() {
+  Record record;
+  record.environment = {{"cpu", "a, \"quoted\" machine"}, {"commit", "0123456789abcdef"}, {"dirty", false}};
+  record.command = {"cscd", "run"};
+  record.scene = {"rope", "A rope.", "00ff", 4, 8, 1, 4};
+  record.elementary = "newton";
+  record.intervals = 3;
+  record.timed_intervals = {0, 2};
+  record.verification.reference = "slow";
+  record.verification.elementary = "exact";
+  record.verification.intervals = {0, 1, 2};
+  record.verification.strategies = {{"slow", "complete", 2, 2, 1, {}},
+                                    {"swift", "first_contact", 2, 1, 1, {}}};
+  StrategyRecord slow;
+  slow.name = "slow";
+  slow.guarantee = "complete";
+  slow.counts = {{"bvot", {100, 200, 300}}};
+  slow.digests = {"a", "b", "c"};
+  slow.ms = {{"refit", {{1, 1}, {1, 1}, {1, 1}}}, {"traversal", {{6, 12}, {30, 60}, {3, 9}}}};
+  StrategyRecord swift = slow;
+  swift.name = "swift";
+  swift.counts = {{"bvot", {10, 20, 30}}};
+  swift.ms["traversal"] = {{1, 3}, {5, 15}, {1, 1}};
+  swift.ms["rv_update"] = {{1, 1}, {5, 5}, {1, 1}};
+  swift.preparation.decomposition_ms = {4, 2};
+  swift.preparation.atomic_clusters = 7;
+  record.strategies = {slow, swift};
+  return record;
+}
+
+nlohmann::ordered_json one_column(const nlohmann::ordered_json& column) {
+  return {{"tables", {{{"id", "t"}, {"title", "T"}, {"scenes", "t"}, {"columns", {column}}}}}};
+}
+
+Cell cell(nlohmann::ordered_json column, const std::string& scene = "rope") {
+  column["key"] = column["title"] = "k";
+  const nlohmann::ordered_json published = {{"t", {{"rope", {{"k", 2.5}}}, {"hand", {{"k", 3.5}}}}}};
+  const std::vector<Record> records = {sample_record()};
+  return paper_tables(one_column(column), published, records, scene).at(0).rows.at(0).cells.at(0);
+}
+
+TEST(PaperTables, CountsAreExact) {
+  const Cell mean = cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"scale", 0.001}});
+  EXPECT_DOUBLE_EQ(mean.measured.value(), 0.2);
+  EXPECT_FALSE(mean.interval);
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"statistic", "max"}}).measured, 300);
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "swift"}, {"over", "slow"}}).measured, 0.1);
+}
+
+TEST(PaperTables, TimesAreMediansOfRepetitions) {
+  const Cell time = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}});
+  EXPECT_EQ(time.measured, 9);  // of 9, 45 and 6; `slow` has no rv_update
+  EXPECT_EQ(time.interval.value().low, 6);
+  EXPECT_EQ(time.interval.value().high, 45);
+  EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured, 10);
+}
+
+TEST(PaperTables, RatiosArePairedWithinARepetition) {
+  const Cell ratio = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}, {"over", "swift"}});
+  EXPECT_DOUBLE_EQ(ratio.measured.value(), 3);
+  EXPECT_DOUBLE_EQ(ratio.interval.value().low, 3);
+  EXPECT_DOUBLE_EQ(ratio.interval.value().high, 3);
+}
+
+TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
+  EXPECT_EQ(cell({{"quantity", "scene.triangles"}, {"published", "t.{scene}.k"}}).published, 2.5);
+  EXPECT_FALSE(cell({{"quantity", "scene.triangles"}, {"published", "t.{scene}.other"}}).published);
+  EXPECT_FALSE(cell({{"quantity", "scene.triangles"}}).published);
+}
+
+TEST(PaperTables, EmptyCellsSayWhy) {
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).reason, "nowhere: not built yet");
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).reason, "base: not run in this record");
+  EXPECT_EQ(cell({{"quantity", "ms.rv_update"}, {"strategy", "slow"}}).reason,
+            "slow: has no stage rv_update");
+  EXPECT_EQ(cell({{"quantity", "counts.clusters"}, {"strategy", "slow"}}).reason,
+            "slow: does not count clusters");
+  EXPECT_EQ(cell({{"quantity", "preparation.decomposition_ms"}, {"strategy", "slow"}}).reason,
+            "slow: has no such preparation");
+  const Cell other =
+      cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"published", "t.{scene}.k"}}, "hand");
+  EXPECT_EQ(other.reason, "no record of hand was given");
+  EXPECT_EQ(other.published, 3.5);
+}
+
+// The definitions that ship: every published figure of Tables 1 to 3 has its column, and every column that
+// names a published figure finds it for the rope.
+TEST(PaperTables, ShippedDefinitionsCoverThePublishedTables) {
+  const nlohmann::ordered_json definitions = data_json("paper_tables.json"),
+                               published = data_json("published.json");
+  std::vector<std::string> named;
+  for (const auto& table : definitions["tables"])
+    for (const auto& column : table["columns"])
+      if (column.contains("published")) named.push_back(column["published"]);
+  for (const char* table : {"table1", "table2", "table3"}) {
+    const nlohmann::ordered_json row = published[table]["rope"].flatten();
+    for (const auto& [pointer, figure] : row.items()) {
+      std::string path = std::string(table) + ".{scene}" + pointer;
+      std::replace(path.begin(), path.end(), '/', '.');
+      EXPECT_NE(std::find(named.begin(), named.end(), path), named.end()) << path;
+    }
+  }
+  const std::vector<Record> none;
+  std::size_t found = 0;
+  for (const PaperTable& table : paper_tables(definitions, published, none, "rope"))
+    for (const Cell& cell : table.rows.at(0).cells) found += cell.published.has_value();
+  EXPECT_EQ(found, named.size());
+}
+
+TEST(Record, SurvivesBeingWrittenAndRead) {
+  const Record record = sample_record();
+  const std::string text = json_text(to_json(record));
+  EXPECT_EQ(json_text(to_json(parse_record(text, "test"))), text);
+}
+
+TEST(Record, RefusesWhatIsNotWhole) {
+  const nlohmann::ordered_json whole = to_json(sample_record());
+  const auto refusal = [](const nlohmann::ordered_json& document) -> std::string {
+    try {
+      parse_record(document.dump(), "r.json");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(whole), "");
+  nlohmann::ordered_json other = whole, short_counts = whole, short_times = whole, keyless = whole;
+  other["schema"] = "cscd.run/0";
+  EXPECT_NE(refusal(other).find("its schema is cscd.run/0"), std::string::npos);
+  short_counts["strategies"][0]["counts"]["bvot"].erase(0);
+  EXPECT_NE(refusal(short_counts).find("counts of bvot"), std::string::npos);
+  short_times["strategies"][1]["ms"]["refit"].erase(0);
+  EXPECT_NE(refusal(short_times).find("times of"), std::string::npos);
+  keyless.erase("verification");
+  EXPECT_NE(refusal(keyless).find("r.json"), std::string::npos);
+}
+
+TEST(TablesText, CsvHasOneLineACellAndQuotesCommas) {
+  const std::vector<Record> records = {sample_record()};
+  const nlohmann::ordered_json column = {
+      {"key", "k"}, {"title", "swift, slow"}, {"quantity", "ms.traversal"}, {"strategy", "slow"}};
+  const auto tables = paper_tables(one_column(column), {{"t", nlohmann::ordered_json::object()}}, records);
+  EXPECT_EQ(tables_csv(tables),
+            "table,scene,key,title,unit,published,measured,low,high,reason\n"
+            "t,rope,k,\"swift, slow\",,,9,6,45,\n");
+}
+
+}  // namespace
+}  // namespace cscd::bench

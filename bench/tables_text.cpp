@@ -1,0 +1,167 @@
+#include "bench/tables_text.h"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "bench/data.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Four significant digits, or all digits of a whole number.
+std::string number(double value) {
+  char text[40];
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
+  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.4g", value);
+  return text;
+}
+
+std::string number(const std::optional<double>& value) {
+  return value ? number(*value) : "";
+}
+
+std::string interval(const Cell& cell, const char* between) {
+  if (!cell.interval) return "";
+  std::string text = number(cell.interval->low);
+  return text.append(between).append(number(cell.interval->high));
+}
+
+ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : nullptr;
+}
+
+ordered_json cell_json(const Column& column, const Cell& cell) {
+  ordered_json out = {{"key", column.key},
+                      {"title", column.title},
+                      {"unit", column.unit},
+                      {"published", number_or_null(cell.published)},
+                      {"measured", number_or_null(cell.measured)}};
+  if (cell.interval) out["interval"] = {cell.interval->low, cell.interval->high};
+  if (!cell.reason.empty()) out["reason"] = cell.reason;
+  return out;
+}
+
+std::string text(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+ordered_json source_json(const Record& record) {
+  const VerificationRecord& v = record.verification;
+  return {{"scene", record.scene.name},
+          {"digest", record.scene.digest},
+          {"command", record.command},
+          {"environment", record.environment},
+          {"intervals", record.intervals},
+          {"timed_intervals", record.timed_intervals.size()},
+          {"verified_intervals", v.intervals.size()},
+          {"unembedded_intervals", v.unembedded.size()}};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out.append(out.empty() ? "" : " ").append(word);
+  return out;
+}
+
+std::size_t repetitions(const Record& record) {
+  return record.strategies.empty() || record.strategies.front().ms.empty()
+             ? 0
+             : record.strategies.front().ms.begin()->second.size();
+}
+
+// Where the numbers come from and what stands behind them.
+std::string provenance(const Record& record) {
+  const ordered_json& e = record.environment;
+  const VerificationRecord& v = record.verification;
+  const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
+  std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") +
+                    " cores, one thread; " + get("compiler") + ", " + get("build_type") + "; commit " +
+                    get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
+                    get("date") + ".\n";
+  out += "Made by `" + joined(record.command) + "`.\n";
+  out += std::to_string(record.timed_intervals.size()) + " of " + std::to_string(record.intervals) +
+         " intervals timed, " + std::to_string(repetitions(record)) +
+         " repetitions, interleaved; counters of all. ";
+  out += "Answers verified on " + std::to_string(v.intervals.size()) + " intervals against `" + v.reference +
+         "` with the elementary test `" + v.elementary + "`: no strategy failed its guarantee";
+  out += v.unembedded.empty() ? ", every start was embedded.\n"
+                              : "; " + std::to_string(v.unembedded.size()) +
+                                    " starts were not embedded, where `first_contact` promises nothing.\n";
+  out += "The timed test `" + record.elementary + "` on " + std::to_string(v.accuracy_tests) +
+         " feature pairs of these: " + std::to_string(v.accuracy.misses) + " misses, " +
+         std::to_string(v.accuracy.false_alarms) + " false alarms, " + std::to_string(v.accuracy.undecided) +
+         " undecided.\n";
+  return out;
+}
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (const char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+}  // namespace
+
+ordered_json tables_json(std::span<const PaperTable> tables, std::span<const Record> records) {
+  ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
+  for (const Record& record : records) sources.push_back(source_json(record));
+  for (const PaperTable& table : tables) {
+    ordered_json rows = ordered_json::array();
+    for (const Row& row : table.rows) {
+      ordered_json cells = ordered_json::array();
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        cells.push_back(cell_json(table.columns[i], row.cells[i]));
+      rows.push_back({{"scene", row.scene}, {"cells", std::move(cells)}});
+    }
+    out_tables.push_back({{"id", table.id}, {"title", table.title}, {"rows", std::move(rows)}});
+  }
+  const ordered_json published = data_json("published.json");
+  return {{"schema", kTablesSchema},
+          {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
+          {"records", std::move(sources)},
+          {"tables", std::move(out_tables)}};
+}
+
+std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records) {
+  const ordered_json published = data_json("published.json");
+  std::string out;
+  for (const Record& record : records) out += provenance(record) + "\n";
+  out += "Published: " + text(published.at("machine")) + ".\n";
+  for (const PaperTable& table : tables) {
+    out += "\n### " + table.title + "\n";
+    for (const Row& row : table.rows) {
+      out += "\n| " + row.scene + " | published | measured | 95 % interval |\n|---|---:|---:|---:|\n";
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        const Cell& cell = row.cells[i];
+        const Column& column = table.columns[i];
+        out += "| " + column.title + (column.unit.empty() ? "" : " (" + column.unit + ")") + " | " +
+               number(cell.published) + " | " + (cell.reason.empty() ? number(cell.measured) : cell.reason) +
+               " | " + interval(cell, " to ") + " |\n";
+      }
+    }
+  }
+  return out;
+}
+
+std::string tables_csv(std::span<const PaperTable> tables) {
+  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason\n";
+  for (const PaperTable& table : tables)
+    for (const Row& row : table.rows)
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        const Cell& cell = row.cells[i];
+        const Column& column = table.columns[i];
+        out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
+               column.unit + "," + number(cell.published) + "," + number(cell.measured) + "," +
+               (cell.interval ? interval(cell, ",") : std::string(",")) + "," + quoted(cell.reason) + "\n";
+      }
+  return out;
+}
+
+}  // namespace cscd::bench
