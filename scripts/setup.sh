@@ -1,0 +1,41 @@
+# shellcheck shell=bash disable=SC2034,SC2154
+# Sourced by the other scripts: what they need from Debian, in one place, and how they build.
+# Each package has its line of reason in README.md.
+
+packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libhdf5-dev libgmp-dev
+                libgtest-dev python3)
+packages_figures=(python3-matplotlib)
+packages_clang=(clang)
+
+say() { printf '\n== %s\n' "$*"; }
+die() { printf '%s: %s\n' "${0##*/}" "$*" >&2; exit 2; }
+
+# Installs those of the given packages that are missing; touches nothing when none is.
+install_packages() {
+  local missing=() package
+  command -v dpkg-query >/dev/null || die "needs Debian 12 or a system like it; install by hand: $*"
+  for package in "$@"; do
+    dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+  done
+  if [ ${#missing[@]} -eq 0 ]; then echo "all ${#} packages are there"; return; fi
+  echo "installing ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "neither root nor sudo; install by hand: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q </dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -q --no-install-recommends "${missing[@]}" </dev/null
+}
+
+# build FOLDER CACHE-FILE COMPILER TARGET...: configures and builds below the repository's root.
+build() {
+  local folder=$1 cache=$2 compiler=$3
+  shift 3
+  local cxx=g++ cc=gcc
+  [ "$compiler" = clang ] && cxx=clang++ cc=clang
+  cmake -S "$root" -B "$root/$folder" -G Ninja -C "$root/scripts/cmake/$cache.cmake" \
+    -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >/dev/null
+  ninja -C "$root/$folder" "$@"
+}
