@@ -9,15 +9,15 @@ namespace cscd {
 // Half an ulp of 1: the largest relative error of one correctly rounded operation.
 inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
-// The next float below x; x = -infinity stays. Branch-free, so that loops over it vectorise.
+// The next float below x; -infinity and NaN stay. Branch-free, so that loops over it vectorise.
 inline float next_below(float x) {
-  const std::int32_t bits = std::bit_cast<std::int32_t>(x);
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   // Positive floats order like their bits, negative ones the other way round; both zeros step to the first
   // negative subnormal.
-  const std::int32_t stepped = x > 0 ? bits - 1 : bits + 1;
-  const std::int32_t smallest_negative = std::numeric_limits<std::int32_t>::min() + 1;
-  const std::int32_t chosen = x == 0 ? smallest_negative : stepped;
-  return x == -std::numeric_limits<float>::infinity() ? x : std::bit_cast<float>(chosen);
+  const std::uint32_t stepped = x > 0 ? bits - 1 : bits + 1;
+  const std::uint32_t smallest_negative = 0x80000001;
+  const std::uint32_t chosen = x == 0 ? smallest_negative : stepped;
+  return x > -std::numeric_limits<float>::infinity() ? std::bit_cast<float>(chosen) : x;
 }
 
 // The largest float that is not above the exact sum x + y.

@@ -1,10 +1,10 @@
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
-#   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes)
+#   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes TEST_LINK gmp)
 #
-# USES names the rooms below it, LINK outside libraries, TEST_USES rooms that only its tests may see.
+# USES names the rooms below it, LINK outside libraries, TEST_USES and TEST_LINK those that only its tests may see.
 function(cscd_room path)
-  cmake_parse_arguments(ROOM "" "" "USES;LINK;TEST_USES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "USES;LINK;TEST_USES;TEST_LINK" ${ARGN})
   string(REPLACE "/" "_" room ${path})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*_test.cpp)
@@ -27,7 +27,7 @@ function(cscd_room path)
 
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
-    target_link_libraries(${room}_test PRIVATE ${room} ${test_below} GTest::gtest_main cscd_flags)
+    target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${ROOM_TEST_LINK} GTest::gtest_main cscd_flags)
     gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()
 endfunction()
