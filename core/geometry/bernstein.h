@@ -33,6 +33,11 @@ struct BernsteinCubic {
   }
 };
 
+// Below kTinyProduct, products in between may be subnormal and lose more than a relative rounding; above
+// kHugeProduct they may overflow.
+inline constexpr double kTinyProduct = 1e-280, kHugeProduct = 1e300;
+inline constexpr double kTripleProductError = 72 * kUnitRoundoff;
+
 // (a x b) . c. Each component of a, b and c may carry one rounding (a difference of two doubles), and in
 // addition those of c may be off by `c_slack` in absolute terms.
 //
@@ -48,19 +53,21 @@ inline BernsteinCubic triple_product(const MovingVector& a, const MovingVector& 
   const Vec3 n2 = a.end.cross(b.end);
   const double area = a.largest() * b.largest();
   const double volume = area * c.largest();
-  // Below this, products in between may be subnormal and lose more than a relative rounding.
-  constexpr double tiny = 1e-280, huge = 1e300;
-  const bool known = area >= tiny && volume >= tiny && volume <= huge;
-  return {{n0.dot(c.start), (n1.dot(c.start) + n0.dot(c.end)) / 3, (n1.dot(c.end) + n2.dot(c.start)) / 3,
-           n2.dot(c.end)},
-          known ? 72 * kUnitRoundoff * volume + 7 * area * c_slack : std::numeric_limits<double>::infinity()};
+  const bool known =
+      area >= kTinyProduct && area <= kHugeProduct && volume >= kTinyProduct && volume <= kHugeProduct;
+  return {
+      {n0.dot(c.start), (n1.dot(c.start) + n0.dot(c.end)) / 3, (n1.dot(c.end) + n2.dot(c.start)) / 3,
+       n2.dot(c.end)},
+      known ? kTripleProductError * volume + 7 * area * c_slack : std::numeric_limits<double>::infinity()};
 }
 
-// +1: positive for every t in [0, 1]; -1: negative for every t; 0: not certain.
+// +1: positive for every t in [0, 1]; -1: negative for every t; 0: not certain. Coefficient by coefficient,
+// because a minimum may forget a NaN.
 inline int certain_sign(const BernsteinCubic& f) {
-  const double low = std::min(std::min(f.c[0], f.c[1]), std::min(f.c[2], f.c[3]));
-  const double high = std::max(std::max(f.c[0], f.c[1]), std::max(f.c[2], f.c[3]));
-  return low > f.error ? 1 : high < -f.error ? -1 : 0;
+  const double e = f.error;
+  const bool above = (f.c[0] > e) & (f.c[1] > e) & (f.c[2] > e) & (f.c[3] > e);
+  const bool below = (f.c[0] < -e) & (f.c[1] < -e) & (f.c[2] < -e) & (f.c[3] < -e);
+  return above - below;
 }
 
 }  // namespace cscd
