@@ -7,8 +7,8 @@
 
 // The one pair-descent and the one self-descent. Strategies differ in the callables:
 //   is_leaf(node)     where the descent stops: tree leaves, or the roots of cluster trees
-//   skip(a, b)        true if no pair below these two nodes has to be looked at (a == b: no pair below this
-//   one) emit(a, b)        takes two leaves whose bounds overlap
+//   skip(a, b)        true if no pair below these two nodes has to be looked at; a == b: none below this one
+//   emit(a, b)        takes two leaves whose bounds overlap
 // Both return the number of bounding volume overlap tests.
 namespace cscd {
 

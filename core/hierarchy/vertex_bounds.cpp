@@ -13,14 +13,14 @@ using Row = double[kBlock];
 void lower(const Row& x, float* at_least) {
   for (std::size_t v = 0; v < kBlock; ++v) {
     const float bound = float_below(x[v]);
-    at_least[v] = bound < at_least[v] ? bound : at_least[v];
+    at_least[v] = at_least[v] < bound ? at_least[v] : bound;  // of equal zeros the later, as in united
   }
 }
 // The same for the exact sum x + sign y.
 void lower_sum(const Row& x, const Row& y, float* at_least) {
   for (std::size_t v = 0; v < kBlock; ++v) {
     const float bound = float_below_sum(x[v], y[v]);
-    at_least[v] = bound < at_least[v] ? bound : at_least[v];
+    at_least[v] = at_least[v] < bound ? at_least[v] : bound;  // of equal zeros the later, as in united
   }
 }
 

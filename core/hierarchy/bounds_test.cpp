@@ -1,0 +1,168 @@
+#include "core/hierarchy/bounds.h"
+
+#include <array>
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/geometry/exact_kdop.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+std::array<std::uint32_t, 16> bits_of(const Kdop16& volume) {
+  return std::bit_cast<std::array<std::uint32_t, 16>>(volume);
+}
+
+struct Ends {
+  std::vector<Vec3> start, end;
+  Motion motion() const { return {start, end}; }
+};
+
+double assorted_coordinate(std::mt19937_64& random) {
+  constexpr double special[] = {0.0,           -0.0,          1,           -1,
+                                0x1p-60,       -0x1p-60,      1e-310,      DBL_TRUE_MIN,
+                                -DBL_TRUE_MIN, FLT_MAX,       -FLT_MAX,    0x1.ffffffp127,
+                                1e39,          -1e300,        DBL_MAX,     -DBL_MAX,
+                                FLT_TRUE_MIN,  1.0 + 0x1p-24, -1 - 0x1p-24};
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  switch (random() % 5) {
+    case 0:
+      return special[random() % std::size(special)];
+    case 1:
+      return static_cast<float>(unit());
+    case 2:
+      return std::ldexp(unit(), static_cast<int>(random() % 2000) - 1000);
+    default:
+      return 100 * unit();
+  }
+}
+
+Ends assorted_motion(std::size_t count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  Ends ends;
+  for (std::size_t v = 0; v < count; ++v) {
+    Vec3 a, b;
+    for (int k = 0; k < 3; ++k) {
+      a[k] = assorted_coordinate(random);
+      b[k] = random() % 4 == 0 ? -a[k] : random() % 3 == 0 ? a[k] : assorted_coordinate(random);
+    }
+    ends.start.push_back(a);
+    ends.end.push_back(b);
+  }
+  return ends;
+}
+
+TEST(SweptVertexBounds, EqualTheirScalarTwinBitForBit) {
+  for (const std::size_t count : {1u, 2u, 7u, 8u, 15u, 16u, 31u, 32u, 33u, 63u, 64u, 65u, 10'000u}) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      const Ends ends = assorted_motion(count, seed);
+      const Kdop16 untouched{{42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42}};
+      std::vector<Kdop16> bounds(count + 1, untouched);
+      swept_vertex_bounds(ends.motion(), std::span(bounds).first(count));
+      for (std::size_t v = 0; v < count; ++v)
+        ASSERT_EQ(bits_of(bounds[v]), bits_of(kdop_of(ends.motion()[VertexId{static_cast<std::int32_t>(v)}])))
+            << "vertex " << v << " of " << count << ": " << ends.start[v].transpose() << " -> "
+            << ends.end[v].transpose();
+      ASSERT_EQ(bits_of(bounds[count]), bits_of(untouched));
+    }
+  }
+}
+
+// Zeros of either sign in every combination.
+TEST(SweptVertexBounds, EqualTheirScalarTwinOnNegativeZeros) {
+  Ends ends;
+  for (int signs = 0; signs < 64; ++signs) {
+    const auto zero = [&](int bit) { return signs >> bit & 1 ? -0.0 : 0.0; };
+    ends.start.emplace_back(zero(0), zero(1), zero(2));
+    ends.end.emplace_back(zero(3), zero(4), zero(5));
+  }
+  std::vector<Kdop16> bounds(64);
+  swept_vertex_bounds(ends.motion(), bounds);
+  for (int v = 0; v < 64; ++v)
+    EXPECT_EQ(bits_of(bounds[static_cast<std::size_t>(v)]), bits_of(kdop_of(ends.motion()[VertexId{v}])))
+        << v;
+}
+
+// Whether every node contains the paths of the triangles below it, decided in rational arithmetic.
+bool all_contained(const TriangleMesh& mesh, const Tree& tree, const Motion& motion, const auto& bound_of) {
+  std::vector<NodeIndex> ancestors;
+  for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
+    // The subtree of `node` ends where the first node behind its last leaf stands.
+    NodeIndex last = node;
+    while (!tree.is_leaf(last)) last = tree.right(last);
+    for (NodeIndex n = node; n <= last; ++n) {
+      if (!tree.is_leaf(n)) continue;
+      for (const VertexId v : mesh.corners(tree.triangle(n)))
+        if (!test::contains(bound_of(node), motion[v])) return false;
+    }
+  }
+  return true;
+}
+
+TEST(SweptBounds, EveryNodeContainsThePathsBelowIt) {
+  const test::Shape shape = test::icosphere(1);
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  SweptBounds bounds(mesh, tree);
+  const auto bound_of = [&](NodeIndex n) -> const Kdop16& { return bounds[n]; };
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    const Ends ends = assorted_motion(shape.positions.size(), seed);
+    bounds.refit(mesh, tree, ends.motion());
+    EXPECT_TRUE(all_contained(mesh, tree, ends.motion(), bound_of));
+  }
+}
+
+// Every bound of every node is attained by some vertex below: nothing is left over from earlier intervals,
+// and nodes are as small as they can be. With containment this fixes every bound.
+TEST(SweptBounds, AreTheUnionOfWhatIsBelowWhateverCameBefore) {
+  const test::Shape shape = test::torus();
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  SweptBounds used(mesh, tree);
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Ends ends = assorted_motion(shape.positions.size(), seed);
+    used.refit(mesh, tree, ends.motion());
+    SweptBounds fresh(mesh, tree);
+    fresh.refit(mesh, tree, ends.motion());
+    for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node) {
+      ASSERT_EQ(bits_of(used[node]), bits_of(fresh[node]));
+      const auto expected = [&](std::size_t k) {
+        if (!tree.is_leaf(node))
+          return std::min(used[tree.left(node)].at_least[k], used[tree.right(node)].at_least[k]);
+        float least = std::numeric_limits<float>::infinity();
+        for (const VertexId v : mesh.corners(tree.triangle(node)))
+          least = std::min(least, kdop_of(ends.motion()[v]).at_least[k]);
+        return least;
+      };
+      for (std::size_t k = 0; k < 16; ++k) ASSERT_EQ(used[node].at_least[k], expected(k));
+    }
+  }
+}
+
+// Saboteur: one bound of one node, drawn in by one unit in the last place, is noticed.
+TEST(SweptBounds, OneBoundDrawnInByOneUlpIsNoticed) {
+  const test::Shape shape = test::octahedron();
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  SweptBounds bounds(mesh, tree);
+  std::mt19937_64 random(3);
+  Ends ends{shape.positions, shape.positions};
+  for (Vec3& p : ends.end) p += Vec3(0.1 * assorted_coordinate(random) / DBL_MAX, 0.25, 0.125);
+  bounds.refit(mesh, tree, ends.motion());
+  for (NodeIndex sabotaged = 0; sabotaged < static_cast<NodeIndex>(tree.node_count()); ++sabotaged)
+    for (std::size_t k = 0; k < 16; ++k) {
+      Kdop16 drawn_in = bounds[sabotaged];
+      drawn_in.at_least[k] = std::nextafter(drawn_in.at_least[k], std::numeric_limits<float>::infinity());
+      const auto bound_of = [&](NodeIndex n) -> const Kdop16& {
+        return n == sabotaged ? drawn_in : bounds[n];
+      };
+      ASSERT_FALSE(all_contained(mesh, tree, ends.motion(), bound_of)) << "node " << sabotaged << ", " << k;
+    }
+}
+
+}  // namespace
+}  // namespace cscd
