@@ -41,7 +41,7 @@ test::Shape uneven_sphere(int splits) {
   test::Shape shape = test::icosphere(splits);
   std::mt19937 random(1);
   for (Vec3& p : shape.positions)
-    for (double& x : p) x += 1e-9 * random();
+    for (double& x : p) x += 1e-10 * static_cast<double>(random());
   return shape;
 }
 
