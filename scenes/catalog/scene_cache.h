@@ -10,7 +10,7 @@ namespace cscd::scenes {
 
 // Raise when the same scene file gives other frames than before: caches of older versions are then left
 // alone.
-inline constexpr int kGeneratorVersion = 1;
+inline constexpr int kGeneratorVersion = 2;
 
 // $CSCD_CACHE, else `.cache` beside the scenes' folder.
 std::filesystem::path cache_folder();

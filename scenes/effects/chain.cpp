@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/error.h"
+#include "scenes/effects/rotation.h"
 
 namespace cscd::scenes {
 namespace {
@@ -20,7 +21,7 @@ Eigen::Matrix3d smallest_rotation(const Vec3& from, const Vec3& to) {
   }
   Eigen::Matrix3d cross;
   cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-  return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + cosine);
+  return Eigen::Matrix3d::Identity() + cross + composed(cross, cross) / (1 + cosine);
 }
 
 Vec3 direction(const Bone& bone) {
@@ -53,11 +54,11 @@ void pose_chain(const std::vector<Vec3>& joints, SceneState& state) {
   const Vec3 steady_before = direction(state.bones[steady]);
   for (std::size_t bone = 0; bone < count; ++bone) state.bones[bone] = {joints[bone], joints[bone + 1]};
   state.rotations[steady] =
-      smallest_rotation(steady_before, direction(state.bones[steady])) * state.rotations[steady];
+      composed(smallest_rotation(steady_before, direction(state.bones[steady])), state.rotations[steady]);
   const auto follow = [&](std::size_t bone, std::size_t neighbour) {
-    const Vec3 carried = state.rotations[neighbour] * direction(state.shape.rig.reference[bone]);
+    const Vec3 carried = rotated(state.rotations[neighbour], direction(state.shape.rig.reference[bone]));
     state.rotations[bone] =
-        smallest_rotation(carried, direction(state.bones[bone])) * state.rotations[neighbour];
+        composed(smallest_rotation(carried, direction(state.bones[bone])), state.rotations[neighbour]);
   };
   for (std::size_t bone = steady + 1; bone < count; ++bone) follow(bone, bone - 1);
   for (std::size_t bone = steady; bone-- > 0;) follow(bone, bone + 1);

@@ -1,4 +1,5 @@
 #include "scenes/effects/effect.h"
+#include "scenes/effects/rotation.h"
 
 namespace cscd::scenes {
 namespace {
@@ -12,14 +13,14 @@ class SkinningLinear final : public Effect {
     const std::vector<Bone>& reference = state.shape.rig.reference;
     offset_.resize(reference.size());
     for (std::size_t bone = 0; bone < reference.size(); ++bone)
-      offset_[bone] = state.bones[bone].head - state.rotations[bone] * reference[bone].head;
+      offset_[bone] = state.bones[bone].head - rotated(state.rotations[bone], reference[bone].head);
     for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex) {
       const JointWeights& weights = state.shape.weights[vertex];
       Vec3 blended = Vec3::Zero();
       for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k) {
         const std::size_t bone = +weights.bone[k];
-        blended +=
-            weights.weight[k] * (state.rotations[bone] * state.shape.positions[vertex] + offset_[bone]);
+        blended += weights.weight[k] *
+                   (rotated(state.rotations[bone], state.shape.positions[vertex]) + offset_[bone]);
       }
       state.positions[vertex] = blended;
     }
