@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -7,14 +9,14 @@
 
 namespace cscd {
 
-// The feature pairs met in this interval, so that each is tested once however many triangle pairs carry it.
-// This keeps trap 1 shut: no triangle owns a feature, the first surviving triangle pair brings it.
+// The feature pairs tested in this interval, so that each is tested once however many triangle pairs carry
+// it. This keeps trap 1 shut: no triangle owns a feature, the first surviving triangle pair brings it.
 //
 // Open addressing with linear probing. An entry carries the interval's number in its top bits, so a new
 // interval forgets the old entries without touching them.
 class FeaturePairSet {
  public:
-  FeaturePairSet() : slots_(1 << 12) {}
+  FeaturePairSet() : slots_(std::size_t{1} << (64 - shift_)) {}
 
   void start_interval() {
     size_ = 0;
@@ -36,28 +38,33 @@ class FeaturePairSet {
   }
 
  private:
-  static constexpr int kIdBits = 28;  // TriangleMesh allows 2^28 vertices and triangles
-  static constexpr int kKeyBits = 2 * kIdBits + 2;
+  static constexpr int kIdBits = 30;
+  static constexpr int kKeyBits = 2 * kIdBits;
   static constexpr std::uint64_t kEpochs = std::uint64_t{1} << (64 - kKeyBits);
 
-  // Edges can be 3/2 times as many as triangles, hence one bit more for the second id.
+  // TriangleMesh allows 2^28 vertices and triangles, so there are at most 3 * 2^28 edges (of loose triangles).
+  // The last quarter of the 30-bit numbers is left for vertices as the first of a pair.
   static std::uint64_t key(const FeaturePair& pair) {
-    return static_cast<std::uint64_t>(pair.kind == FeaturePair::Kind::edge_edge) << (kKeyBits - 1) ^
-           static_cast<std::uint64_t>(pair.a) << (kIdBits + 1) ^ static_cast<std::uint64_t>(pair.b);
+    constexpr std::uint64_t first_vertex = std::uint64_t{3} << 28;
+    const bool vertex = pair.kind == FeaturePair::Kind::vertex_face;
+    const std::uint64_t first = static_cast<std::uint64_t>(pair.a) + (vertex ? first_vertex : 0);
+    return first << kIdBits | static_cast<std::uint64_t>(pair.b);
   }
   std::uint64_t& find(std::uint64_t entry) {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> 20 & mask;
+    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> shift_;  // the top bits depend on all of the key
     while (slots_[i] >> kKeyBits == epoch_ && slots_[i] != entry) i = (i + 1) & mask;
     return slots_[i];
   }
   void grow() {
+    --shift_;
     std::vector<std::uint64_t> old(2 * slots_.size());
     old.swap(slots_);
     for (const std::uint64_t entry : old)
       if (entry >> kKeyBits == epoch_) find(entry) = entry;
   }
 
+  int shift_ = 52;  // 64 less the binary logarithm of the table's size
   std::vector<std::uint64_t> slots_;
   std::size_t size_ = 0;
   std::uint64_t epoch_ = 1;

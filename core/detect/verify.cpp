@@ -52,6 +52,11 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
   std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(),
                       std::back_inserter(surplus), by_pair);
   result.found_contacts = expected.size() - missing.size();
+  // Both asked the same exact test, so a pair has one time.
+  const auto wrong = std::find_if(found.begin(), found.end(), [&](const Contact& contact) {
+    const auto same = std::lower_bound(expected.begin(), expected.end(), contact, by_pair);
+    return same != expected.end() && same->pair == contact.pair && same->time != contact.time;
+  });
   const auto fail = [&](std::string text) {
     result.ok = false;
     result.failure = std::move(text);
@@ -59,6 +64,8 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
 
   if (!surplus.empty()) {
     fail("the reference lacks " + describe(surplus.front()));
+  } else if (wrong != found.end()) {
+    fail("wrong time: " + describe(*wrong));
   } else if (guarantee == Guarantee::complete && !missing.empty()) {
     fail("lost " + describe(missing.front()) + " (guarantee complete)");
   } else if (guarantee == Guarantee::first_contact && starts_embedded && !expected.empty()) {
