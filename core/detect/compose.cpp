@@ -2,7 +2,7 @@
 
 #include "core/base/stage_clock.h"
 #include "core/detect/feature_pair_set.h"
-#include "core/elementary/filter.h"
+#include "core/detect/filter_block.h"
 #include "core/elementary/relative_box.h"
 
 namespace cscd {
@@ -38,9 +38,13 @@ class PairTester : public TrianglePairSink {
  private:
   void take(const std::vector<TrianglePair>& block) override {
     clock_.enter(Stage::elementary);
-    fresh_.clear();
+    carried_.clear();
     for (const TrianglePair& pair : block) expand(pair);
-    for (const FeaturePair& pair : fresh_) test(pair);
+    counts_.feature_pairs += carried_.size();
+    left_.clear();
+    filter(mesh_, *motion_, carried_, left_);
+    for (const FeaturePair& pair : left_)
+      if (met_.insert(pair)) test(pair);
     clock_.enter(Stage::traversal);
   }
 
@@ -53,12 +57,12 @@ class PairTester : public TrianglePairSink {
       return;
     }
     for (const VertexId vertex : a)
-      if (!contains(b, vertex)) meet(FeaturePair::of(vertex, pair.b));
+      if (!contains(b, vertex)) carried_.push_back(FeaturePair::of(vertex, pair.b));
     for (const VertexId vertex : b)
-      if (!contains(a, vertex)) meet(FeaturePair::of(vertex, pair.a));
+      if (!contains(a, vertex)) carried_.push_back(FeaturePair::of(vertex, pair.a));
     for (const EdgeId e : mesh_.edges_of(pair.a))
       for (const EdgeId f : mesh_.edges_of(pair.b))
-        if (!adjacent || !share_vertex(mesh_.ends(e), mesh_.ends(f))) meet(FeaturePair::of(e, f));
+        if (!adjacent || !share_vertex(mesh_.ends(e), mesh_.ends(f))) carried_.push_back(FeaturePair::of(e, f));
   }
 
   bool relative_boxes_apart(const TrianglePair& pair) const {
@@ -67,22 +71,10 @@ class PairTester : public TrianglePairSink {
     return cscd::relative_boxes_apart({m[a[0]], m[a[1]], m[a[2]]}, {m[b[0]], m[b[1]], m[b[2]]});
   }
 
-  void meet(const FeaturePair& pair) {
-    if (met_.insert(pair)) fresh_.push_back(pair);
-  }
-
   void test(const FeaturePair& pair) {
-    ++counts_.feature_pairs;
-    if (filtered(pair)) return;
     ++counts_.elementary_tests;
     const Answer answer = ask(test_, mesh_, *motion_, pair);
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
-  }
-
-  bool filtered(const FeaturePair& pair) const {
-    if (pair.kind == FeaturePair::Kind::vertex_face)
-      return never_coplanar(vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
-    return never_coplanar(edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}));
   }
 
   const TriangleMesh& mesh_;
@@ -92,8 +84,9 @@ class PairTester : public TrianglePairSink {
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   PairCounts counts_;
-  FeaturePairSet met_;
-  std::vector<FeaturePair> fresh_;  // not met before this block
+  std::vector<FeaturePair> carried_;  // by the block's triangle pairs; one may be carried by several
+  std::vector<FeaturePair> left_;     // of those, what the filter could not prove apart
+  FeaturePairSet met_;                // tested in this interval
 };
 
 class ComposedDetector : public Detector {

@@ -29,13 +29,28 @@ constexpr double kParallel = 0x1p-26;
 
 enum class Touch { no, yes, unclear };
 
+// Is the point within kInside of the segment a + [0, 1] ab, in lengths of the segment or of its own distance
+// from a?
+bool near_segment(const Vec3& p, const Vec3& a, const Vec3& ab) {
+  const Vec3 ap = p - a;
+  const double length = ab.squaredNorm();
+  const double u = length > 0 ? std::clamp(ap.dot(ab) / length, 0.0, 1.0) : 0;
+  return (ap - u * ab).squaredNorm() <= kInside * kInside * std::max(length, ap.squaredNorm());
+}
+
 // Is the point, known to be in the plane, inside the triangle at time t?
 Touch touch(const MovingVertexFace& q, double t) {
   const Vec3 a = q.corner[0].at(t), ab = q.corner[1].at(t) - a, ac = q.corner[2].at(t) - a,
              av = q.vertex.at(t) - a;
   const Vec3 n = ab.cross(ac);
   const double area = n.squaredNorm();
-  if (!(area > kParallel * kParallel * ab.squaredNorm() * ac.squaredNorm())) return Touch::unclear;
+  if (!(area > kParallel * kParallel * ab.squaredNorm() * ac.squaredNorm())) {
+    // Hardly more than its edges.
+    const Vec3 v = q.vertex.at(t);
+    return near_segment(v, a, ab) || near_segment(v, a, ac) || near_segment(v, a + ab, ac - ab)
+               ? Touch::unclear
+               : Touch::no;
+  }
   const double u = av.cross(ac).dot(n) / area, v = ab.cross(av).dot(n) / area;
   return u >= -kInside && v >= -kInside && u + v <= 1 + kInside ? Touch::yes : Touch::no;
 }
@@ -46,7 +61,12 @@ Touch touch(const MovingEdgeEdge& q, double t) {
              cd = q.second[1].at(t) - c;
   const Vec3 n = ab.cross(cd), ac = c - a;
   const double area = n.squaredNorm();
-  if (!(area > kParallel * kParallel * ab.squaredNorm() * cd.squaredNorm())) return Touch::unclear;
+  if (!(area > kParallel * kParallel * ab.squaredNorm() * cd.squaredNorm())) {
+    // Parallel segments are nearest to each other at an end.
+    const bool near = near_segment(a, c, cd) || near_segment(a + ab, c, cd) || near_segment(c, a, ab) ||
+                      near_segment(c + cd, a, ab);
+    return near ? Touch::unclear : Touch::no;
+  }
   const double u = ac.cross(cd).dot(n) / area, v = ac.cross(ab).dot(n) / area;
   return u >= -kInside && u <= 1 + kInside && v >= -kInside && v <= 1 + kInside ? Touch::yes : Touch::no;
 }

@@ -5,7 +5,8 @@
 
 namespace cscd {
 
-// The two kinds of elementary query. Features are closed: corners and edges belong to a face, ends to an edge.
+// The two kinds of elementary query. Features are closed: corners and edges belong to a face, ends to an
+// edge.
 struct MovingVertexFace {
   MovingPoint vertex, corner[3];
 };

@@ -1,55 +1,85 @@
 #include <algorithm>
+#include <limits>
 
+#include "core/geometry/lanes.h"
 #include "core/hierarchy/bounds.h"
 
-// Projections of blocks of vertices with the block index innermost, so that plain loops become vector code.
+// Eight vertices at a time. A projection is an exact sum of two coordinates, kept as its rounded value and
+// the error; the smaller of both ends is rounded down, the larger one up.
 namespace cscd {
 namespace {
 
-constexpr std::size_t kBlock = 32;
-using Row = double[kBlock];
+using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Int8 = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
-// at_least[v] = min(at_least[v], largest float <= x[v]).
-void lower(const Row& x, float* at_least) {
-  for (std::size_t v = 0; v < kBlock; ++v) {
-    const float bound = float_below(x[v]);
-    at_least[v] = at_least[v] < bound ? at_least[v] : bound;  // of equal zeros the later, as in united
-  }
-}
-// The same for the exact sum x + sign y.
-void lower_sum(const Row& x, const Row& y, float* at_least) {
-  for (std::size_t v = 0; v < kBlock; ++v) {
-    const float bound = float_below_sum(x[v], y[v]);
-    at_least[v] = at_least[v] < bound ? at_least[v] : bound;  // of equal zeros the later, as in united
-  }
+// value + error, exactly.
+struct Exact8 {
+  Lane8 value, error;
+  Exact8 operator-() const { return {-value, -error}; }
+};
+
+Exact8 sum(Lane8 x, Lane8 y) {
+  const Lane8 value = x + y, y_part = value - x;
+  return {value, (x - (value - y_part)) + (y - y_part)};
 }
 
-void lower_by_end(std::span<const Vec3> points, float (&rows)[16][kBlock]) {
-  Row x, y, z, nx, ny, nz;
-  for (std::size_t v = 0; v < kBlock; ++v) {
-    const Vec3& p = points[std::min(v, points.size() - 1)];  // a short last block repeats its last vertex
-    x[v] = p.x(), y[v] = p.y(), z[v] = p.z();
+Exact8 lesser(const Exact8& a, const Exact8& b) {
+  const Sign8 second = (b.value < a.value) | ((b.value == a.value) & (b.error < a.error));
+  return {second ? b.value : a.value, second ? b.error : a.error};
+}
+
+// The largest float not above each number: float_below_sum for eight.
+Float8 rounded_down(const Exact8& x) {
+  const Float8 nearest = __builtin_convertvector(x.value, Float8);
+  const Lane8 widened = __builtin_convertvector(nearest, Lane8);
+  const Lane8 infinity = Lane8{} + std::numeric_limits<double>::infinity();
+  const Sign8 above = (widened > x.value) | ((widened == x.value) & (x.error < 0)) | (x.value == infinity);
+
+  Int8 bits;
+  static_assert(sizeof bits == sizeof nearest);
+  __builtin_memcpy(&bits, &nearest, sizeof bits);
+  const Int8 smallest_negative = Int8{} + (std::numeric_limits<std::int32_t>::min() + 1);
+  const Int8 stepped = nearest == 0 ? smallest_negative : nearest > 0 ? bits - 1 : bits + 1;
+  const Float8 lowest = Float8{} - std::numeric_limits<float>::infinity();
+  const Int8 steps = __builtin_convertvector(above, Int8) & (nearest != lowest);
+  const Int8 chosen = steps ? stepped : bits;
+  Float8 out;
+  __builtin_memcpy(&out, &chosen, sizeof out);
+  return out;
+}
+
+struct Position8 {
+  Lane8 x, y, z;
+};
+
+Position8 load(std::span<const Vec3> points, std::size_t first) {
+  Position8 p;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const Vec3& point =
+        points[std::min(first + l, points.size() - 1)];  // a short last block repeats its last vertex
+    p.x[l] = point.x(), p.y[l] = point.y(), p.z[l] = point.z();
   }
-  for (std::size_t v = 0; v < kBlock; ++v) nx[v] = -x[v], ny[v] = -y[v], nz[v] = -z[v];
-  lower(x, rows[0]), lower(y, rows[1]), lower(z, rows[2]);
-  lower_sum(x, y, rows[3]), lower_sum(x, z, rows[4]), lower_sum(y, z, rows[5]);
-  lower_sum(x, ny, rows[6]), lower_sum(x, nz, rows[7]);
-  lower(nx, rows[8]), lower(ny, rows[9]), lower(nz, rows[10]);
-  lower_sum(nx, ny, rows[11]), lower_sum(nx, nz, rows[12]), lower_sum(ny, nz, rows[13]);
-  lower_sum(nx, y, rows[14]), lower_sum(nx, z, rows[15]);
+  return p;
 }
 
 }  // namespace
 
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out) {
-  for (std::size_t first = 0; first < out.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, out.size() - first);
-    alignas(64) float rows[16][kBlock];
-    std::fill(&rows[0][0], &rows[0][0] + 16 * kBlock, std::numeric_limits<float>::infinity());
-    lower_by_end(motion.start().subspan(first, count), rows);
-    lower_by_end(motion.end().subspan(first, count), rows);
-    for (std::size_t v = 0; v < count; ++v)
-      for (std::size_t k = 0; k < 16; ++k) out[first + v].at_least[k] = rows[k][v];
+  for (std::size_t first = 0; first < out.size(); first += kLanes) {
+    const Position8 p = load(motion.start(), first), q = load(motion.end(), first);
+    const Lane8 none = {};
+    const Exact8 at_start[8] = {{p.x, none},   {p.y, none},   {p.z, none},    sum(p.x, p.y),
+                                sum(p.x, p.z), sum(p.y, p.z), sum(p.x, -p.y), sum(p.x, -p.z)};
+    const Exact8 at_end[8] = {{q.x, none},   {q.y, none},   {q.z, none},    sum(q.x, q.y),
+                              sum(q.x, q.z), sum(q.y, q.z), sum(q.x, -q.y), sum(q.x, -q.z)};
+    Float8 rows[16];
+    for (int k = 0; k < 8; ++k) {
+      rows[k] = rounded_down(lesser(at_start[k], at_end[k]));
+      rows[8 + k] = rounded_down(lesser(-at_start[k], -at_end[k]));
+    }
+    const std::size_t count = std::min(kLanes, out.size() - first);
+    for (std::size_t l = 0; l < count; ++l)
+      for (std::size_t k = 0; k < 16; ++k) out[first + l].at_least[k] = rows[k][l];
   }
 }
 

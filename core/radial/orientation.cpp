@@ -18,9 +18,6 @@
 namespace cscd::radial {
 namespace {
 
-constexpr double kErrorFactor = 72 * kUnitRoundoff;  // see triple_product
-constexpr double kTiny = 1e-280, kHuge = 1e300;
-
 Orientation from_sign(int sign) {
   return sign > 0 ? Orientation::positive : sign < 0 ? Orientation::negative : Orientation::uncertain;
 }
@@ -91,9 +88,12 @@ OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std
   for (const std::vector<TriangleId>& group : groups) {
     first_block_.push_back(lanes_.size());
     for (std::size_t first = 0; first < group.size(); first += kLanes) {
-      std::array<std::int32_t, kLanes>& lane = lanes_.emplace_back();
-      for (std::size_t l = 0; l < kLanes; ++l)
-        lane[l] = static_cast<std::int32_t>(group[std::min(first + l, group.size() - 1)]);
+      TriangleLanes& lanes = lanes_.emplace_back();
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        const TriangleId triangle = group[std::min(first + l, group.size() - 1)];
+        lanes.triangle[l] = triangle;
+        for (std::size_t k = 0; k < 3; ++k) lanes.corner[k].set(l, mesh.corners(triangle)[k]);
+      }
     }
   }
   first_block_.push_back(lanes_.size());
@@ -102,39 +102,10 @@ OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std
 
 void OrientationTable::update(const Motion& motion) {
   motion_ = motion;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    Block& block = blocks_[b];
-    Row a[2][3], c[2][3];  // the edges from the first corner, at both ends, by component
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const Triangle& corner = mesh_.triangles()[static_cast<std::size_t>(lanes_[b][l])];
-      for (int end = 0; end < 2; ++end) {
-        const std::span<const Vec3> x = end == 0 ? motion.start() : motion.end();
-        const Vec3 &p = x[+corner[0]], &q = x[+corner[1]], &r = x[+corner[2]];
-        for (int i = 0; i < 3; ++i) {
-          block.corner[end][i][l] = p[i];
-          a[end][i][l] = q[i] - p[i];
-          c[end][i][l] = r[i] - p[i];
-        }
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        block.normal[0][i][l] = a[0][j][l] * c[0][k][l] - a[0][k][l] * c[0][j][l];
-        block.normal[1][i][l] = (a[0][j][l] * c[1][k][l] - a[0][k][l] * c[1][j][l]) +
-                                (a[1][j][l] * c[0][k][l] - a[1][k][l] * c[0][j][l]);
-        block.normal[2][i][l] = a[1][j][l] * c[1][k][l] - a[1][k][l] * c[1][j][l];
-      }
-    }
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      double largest_a = 0, largest_c = 0;
-      for (int end = 0; end < 2; ++end)
-        for (int i = 0; i < 3; ++i) {
-          largest_a = std::max(largest_a, std::abs(a[end][i][l]));
-          largest_c = std::max(largest_c, std::abs(c[end][i][l]));
-        }
-      block.area[l] = largest_a * largest_c;
-    }
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const auto& [first, second, third] = lanes_[i].corner;
+    const VectorLanes corner = gather(motion, first);
+    blocks_[i] = {cross(gather(motion, second) - corner, gather(motion, third) - corner), corner};
   }
 }
 
@@ -145,38 +116,22 @@ void OrientationTable::classify(std::size_t group, const Observer& observer,
       out[member] = classify(group, member, observer);
     return;
   }
-  const Vec3 &q0 = observer.head.start, &q1 = observer.head.end;
+  VectorLanes viewed_from;
+  for (int i = 0; i < 3; ++i) {
+    viewed_from.at[0][i] = Lane8{} + observer.head.start[i];
+    viewed_from.at[1][i] = Lane8{} + observer.head.end[i];
+  }
   for (std::size_t b = first_block_[group], first = 0; first < out.size(); ++b, first += kLanes) {
-    const Block& block = blocks_[b];
-    std::array<std::uint8_t, kLanes> result;
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const double x0 = block.corner[0][0][l] - q0.x(), y0 = block.corner[0][1][l] - q0.y(),
-                   z0 = block.corner[0][2][l] - q0.z();
-      const double x1 = block.corner[1][0][l] - q1.x(), y1 = block.corner[1][1][l] - q1.y(),
-                   z1 = block.corner[1][2][l] - q1.z();
-      const auto dot = [&block, l](int n, double x, double y, double z) {
-        return block.normal[n][0][l] * x + block.normal[n][1][l] * y + block.normal[n][2][l] * z;
-      };
-      const double k0 = dot(0, x0, y0, z0), k1 = (dot(1, x0, y0, z0) + dot(0, x1, y1, z1)) / 3,
-                   k2 = (dot(1, x1, y1, z1) + dot(2, x0, y0, z0)) / 3, k3 = dot(2, x1, y1, z1);
-      const double distance = std::max(std::max(std::max(std::abs(x0), std::abs(y0)), std::abs(z0)),
-                                       std::max(std::max(std::abs(x1), std::abs(y1)), std::abs(z1)));
-      const double volume = block.area[l] * distance;
-      const bool known = (block.area[l] >= kTiny) & (volume >= kTiny) & (volume <= kHuge);
-      const double error = known ? kErrorFactor * volume : std::numeric_limits<double>::infinity();
-      const double low = std::min(std::min(k0, k1), std::min(k2, k3));
-      const double high = std::max(std::max(k0, k1), std::max(k2, k3));
-      result[l] = low > error ? 1 : high < -error ? 2 : 4;
-    }
+    const Sign8 signs = certain_signs(blocks_[b].normal, blocks_[b].corner - viewed_from);
     const std::size_t count = std::min(kLanes, out.size() - first);
-    for (std::size_t l = 0; l < count; ++l) out[first + l] = static_cast<Orientation>(result[l]);
+    for (std::size_t l = 0; l < count; ++l) out[first + l] = from_sign(static_cast<int>(signs[l]));
   }
 }
 
 Orientation OrientationTable::classify(std::size_t group, std::size_t member,
                                        const Observer& observer) const {
   const std::size_t block = first_block_[group] + member / kLanes;
-  const Triangle& c = mesh_.triangles()[static_cast<std::size_t>(lanes_[block][member % kLanes])];
+  const Triangle& c = mesh_.corners(lanes_[block].triangle[member % kLanes]);
   const Motion& m = *motion_;
   return orientation({m[c[0]], m[c[1]], m[c[2]]}, observer);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/vec3.h"
-#include "core/geometry/bernstein.h"
+#include "core/geometry/triple_product_lanes.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -37,8 +37,6 @@ Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer
 // so that an observer is tried on a whole cluster in vector code.
 class OrientationTable {
  public:
-  static constexpr std::size_t kLanes = 8;
-
   // `groups`: the triangles of each cluster.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups);
 
@@ -51,16 +49,17 @@ class OrientationTable {
   Orientation classify(std::size_t group, std::size_t member, const Observer& observer) const;
 
  private:
-  using Row = std::array<double, kLanes>;
-  struct alignas(64) Block {
-    Row normal[3][3];  // Bernstein control vectors n0, 2 n1, n2 of the normal, by component
-    Row corner[2][3];  // the first corner at both ends
-    Row area;          // product of the largest edge components: scale of the error bound
+  struct TriangleLanes {
+    std::array<TriangleId, kLanes> triangle;
+    std::array<VertexLanes, 3> corner;
+  };
+  struct Block {
+    NormalLanes normal;
+    VectorLanes corner;  // the first one
   };
   const TriangleMesh& mesh_;
   std::vector<std::size_t> first_block_;  // of each group, one more at the end
-  std::vector<std::array<std::int32_t, kLanes>>
-      lanes_;  // triangles of each block; a short one repeats its last
+  std::vector<TriangleLanes> lanes_;      // of each block; a short one repeats its last triangle
   std::vector<Block> blocks_;
   std::optional<Motion> motion_;
 };

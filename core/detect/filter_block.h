@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/detect/contact.h"
+
+namespace cscd {
+
+// Appends to `left` the pairs that the non-penetration filter cannot prove apart, in order. Eight at a time
+// in vector code; pair by pair it is what never_coplanar (its scalar twin) says.
+void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
+            std::vector<FeaturePair>& left);
+
+}  // namespace cscd

@@ -1,0 +1,54 @@
+#include "core/detect/filter_block.h"
+
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/elementary/filter.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+// Vertices far and near, large and small, some left in one plane.
+std::vector<Vec3> scattered(std::size_t count, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double flat = random() % 3 == 0 ? 0 : random() % 3 == 0 ? 1e-13 : 1;
+    out.emplace_back(unit(random), unit(random), flat * unit(random));
+  }
+  return out;
+}
+
+TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
+  const TriangleMesh mesh = test::icosphere(1).mesh();
+  std::mt19937_64 random(7);
+  for (const double scale : {1.0, 1e-160, 1e-90, 1e110}) {
+    std::vector<Vec3> start = scattered(mesh.vertex_count(), random),
+                      end = scattered(mesh.vertex_count(), random);
+    for (Vec3& x : start) x *= scale;
+    for (Vec3& x : end) x *= scale;
+    const Motion motion(start, end);
+    std::vector<FeaturePair> pairs, expected, left;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t)
+      for (std::int32_t i = 0; i < static_cast<std::int32_t>(mesh.vertex_count()); ++i) {
+        pairs.push_back(FeaturePair::of(VertexId{i}, TriangleId{t}));
+        pairs.push_back(FeaturePair::of(EdgeId{i}, EdgeId{t}));
+      }
+    pairs.resize(pairs.size() - 3);  // the last block is short
+    for (const FeaturePair& pair : pairs) {
+      const bool apart = pair.kind == FeaturePair::Kind::vertex_face
+                             ? never_coplanar(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
+                             : never_coplanar(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+      if (!apart) expected.push_back(pair);
+    }
+    filter(mesh, motion, pairs, left);
+    EXPECT_EQ(left, expected) << "scale " << scale;
+    if (scale == 1 || scale == 1e-90) {
+      EXPECT_LT(left.size(), pairs.size());  // at the others, products leave the range and nothing is certain
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cscd

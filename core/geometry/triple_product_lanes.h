@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "core/geometry/bernstein.h"
+#include "core/geometry/lanes.h"
+#include "core/mesh/motion.h"
+
+// Eight triple products side by side, in the vector type that gcc and clang share: one AVX-512 register, or
+// several smaller ones. Operation for operation what triple_product and certain_sign do, which is their
+// scalar twin: equal bits, equal signs.
+namespace cscd {
+
+// Eight moving vectors: [end][component].
+struct VectorLanes {
+  Lane8 at[2][3];
+
+  Lane8 largest_component() const {
+    const auto largest = [this](int end) {
+      return larger(larger(absolute(at[end][0]), absolute(at[end][1])), absolute(at[end][2]));
+    };
+    return larger(largest(0), largest(1));
+  }
+};
+
+// Eight vertices, as offsets of their x coordinate in an array of positions.
+struct VertexLanes {
+  std::array<std::int32_t, kLanes> offset;
+  void set(std::size_t lane, VertexId vertex) { offset[lane] = 3 * static_cast<std::int32_t>(vertex); }
+
+  Lane8 gather(const double* x) const {
+    const auto& o = offset;
+    return Lane8{x[o[0]], x[o[1]], x[o[2]], x[o[3]], x[o[4]], x[o[5]], x[o[6]], x[o[7]]};
+  }
+};
+
+inline VectorLanes gather(const Motion& motion, const VertexLanes& vertex) {
+  const double* const ends[2] = {motion.start().data()->data(), motion.end().data()->data()};
+  VectorLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = vertex.gather(ends[end] + i);
+  return out;
+}
+
+inline VectorLanes operator-(const VectorLanes& to, const VectorLanes& from) {
+  VectorLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
+  return out;
+}
+
+// a(t) x b(t) for eight pairs: control vectors n0, 2 n1, n2, and the scale of their rounding.
+struct NormalLanes {
+  Lane8 control[3][3];
+  Lane8 area;
+};
+
+inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
+  NormalLanes normal;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    normal.control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
+    normal.control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) +
+                           (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
+    normal.control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
+  }
+  normal.area = a.largest_component() * b.largest_component();
+  return normal;
+}
+
+// +1 or -1 where (a x b) . c certainly has that sign for every t in [0, 1], else 0.
+inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c) {
+  const auto dot = [&](int n, int end) {
+    return normal.control[n][0] * c.at[end][0] + normal.control[n][1] * c.at[end][1] +
+           normal.control[n][2] * c.at[end][2];
+  };
+  const Lane8 c0 = dot(0, 0), c1 = (dot(1, 0) + dot(0, 1)) / 3, c2 = (dot(1, 1) + dot(2, 0)) / 3,
+              c3 = dot(2, 1);
+  const Lane8 volume = normal.area * c.largest_component();
+  const Sign8 known = (normal.area >= kTinyProduct) & (volume >= kTinyProduct) & (volume <= kHugeProduct);
+  const Lane8 unknown = Lane8{} + std::numeric_limits<double>::infinity();
+  const Lane8 error = known ? kTripleProductError * volume : unknown;
+  // A true comparison is -1 in its lane.
+  const Sign8 positive = smaller(smaller(c0, c1), smaller(c2, c3)) > error;
+  const Sign8 negative = larger(larger(c0, c1), larger(c2, c3)) < -error;
+  return negative - positive;
+}
+
+}  // namespace cscd
