@@ -1,17 +1,10 @@
 #include "bench/contestant.h"
 
-#include <algorithm>
-
 #include "bench/catalogue.h"
-#include "bench/data.h"
 #include "bench/progress.h"
 
 namespace cscd::bench {
 namespace {
-
-nlohmann::ordered_json left_out() {
-  return data_json("run.json").at("left_out");
-}
 
 void add(const Preparation& sample, PreparationRecord& record) {
   if (sample.distance_and_heat_ms) record.distance_and_heat_ms.push_back(*sample.distance_and_heat_ms);
@@ -41,24 +34,13 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
 }
 
 std::vector<const Strategy*> default_strategies(const Input& input) {
-  const nlohmann::ordered_json rows = left_out();
   std::vector<const Strategy*> chosen;
   for (const Strategy& strategy : strategies()) {
-    const bool named = std::any_of(rows.begin(), rows.end(), [&](const nlohmann::ordered_json& row) {
-      return row.at("strategy").get<std::string>() == strategy.name;
-    });
     const bool rigged = input.rig || !strategy.needs_rig;
     const bool allowed = input.mesh.closed_and_oriented() || strategy.guarantee == Guarantee::complete;
-    if (!named && rigged && allowed) chosen.push_back(&strategy);
+    if (&strategy != &all_pairs() && rigged && allowed) chosen.push_back(&strategy);
   }
   return chosen;
-}
-
-std::string left_out_text() {
-  std::string text;
-  for (const nlohmann::ordered_json& row : left_out())
-    text += "\n  " + row.at("strategy").get<std::string>() + ": " + row.at("reason").get<std::string>();
-  return text;
 }
 
 }  // namespace cscd::bench

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "bench/input.h"
@@ -22,10 +21,7 @@ struct Contestant {
 std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
                                          const ElementaryTest& exact, const ElementaryTest& timed);
 
-// Those of the catalogue that the input allows, without those that bench/run.json leaves out.
+// Those of the catalogue that the input allows, without all_pairs(), which is quadratic.
 std::vector<const Strategy*> default_strategies(const Input& input);
-
-// "base: reason" lines of what bench/run.json leaves out.
-std::string left_out_text();
 
 }  // namespace cscd::bench

@@ -151,13 +151,14 @@ void add_run(CLI::App& app) {
       "the failures and no times. Then the strategies are timed interleaved, interval by interval in a "
       "seeded\n"
       "random order. The record keeps every sample; `cscd tables` makes tables of it.\n\n"
-      "Left out unless named:" +
-          left_out_text());
+      "All pairs of triangles (" +
+          std::string(all_pairs().name) +
+          ") run only when named: a thousand million pairs on the rope, at every interval.");
   command->add_option("--scene", options->scene, "a scene (cscd list) or a .h5 point cache")
       ->capture_default_str();
   command
       ->add_option("--strategy", options->strategies,
-                   "strategies, with commas between; default all but those above")
+                   "strategies, with commas between; default all but all pairs")
       ->delimiter(',');
   command->add_option("--elementary", options->elementary, "the elementary test that is timed")
       ->capture_default_str();
