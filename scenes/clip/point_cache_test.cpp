@@ -14,9 +14,11 @@
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/test_clips.h"
 
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
+// On damaged files libhdf5 loses memory of its own. What we could lose are identifiers, and those are
+// counted.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libhdf5";
+}
 
 namespace cscd::scenes {
 namespace {
@@ -25,12 +27,8 @@ namespace fs = std::filesystem;
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool kAddressSanitizer = true;
-using LeakCheckPause = __lsan::ScopedDisabler;
 #else
 constexpr bool kAddressSanitizer = false;
-struct LeakCheckPause {
-  LeakCheckPause() {}  // so that an instance counts as used
-};
 #endif
 
 class PointCache : public testing::Test {
@@ -40,7 +38,10 @@ class PointCache : public testing::Test {
     folder = mkdtemp(pattern.data());
     file = folder / "clip.h5";
   }
-  ~PointCache() override { fs::remove_all(folder); }
+  ~PointCache() override {
+    EXPECT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << "all that was opened is closed";
+    fs::remove_all(folder);
+  }
 
   void write(const SmallClip& what) {
     Clip clip = small_clip(what);
@@ -193,12 +194,7 @@ TEST_F(PointCache, SurvivesFlippedBytes) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(~damaged[at]);
     std::ofstream(file, std::ios::binary | std::ios::trunc) << damaged;
-    {
-      const LeakCheckPause libhdf5_leaks_where_it_finds_damage;
-      refusal();  // a complaint or none, but no crash
-    }
-    ASSERT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0)
-        << "byte " << at << ": all that we opened is closed";
+    refusal();  // a complaint or none, but no crash
   }
 }
 
