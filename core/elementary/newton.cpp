@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/elementary/filter.h"
 #include "core/elementary/relative_box.h"
@@ -38,48 +39,89 @@ bool near_segment(const Vec3& p, const Vec3& a, const Vec3& ab) {
   return (ap - u * ab).squaredNorm() <= kInside * kInside * std::max(length, ap.squaredNorm());
 }
 
-// Is the point, known to be in the plane, inside the triangle at time t?
-Touch touch(const MovingVertexFace& q, double t) {
+// Do two vectors whose cross product has this squared length span a plane? Not if they are parallel, nor if
+// one is so much shorter that rounding may have made its direction. False for NaN.
+bool spans(double squared_cross, const Vec3& a, const Vec3& b) {
+  const double longest = std::max(a.squaredNorm(), b.squaredNorm());
+  return squared_cross > kParallel * kParallel * longest * longest;
+}
+
+// Of two features known to be in one plane at time t: how far, in barycentric terms, the touching point is
+// inside each border, all at least 0 where they touch. Nothing where a feature collapses or the two are
+// parallel.
+std::optional<std::array<double, 3>> margins(const MovingVertexFace& q, double t) {
   const Vec3 a = q.corner[0].at(t), ab = q.corner[1].at(t) - a, ac = q.corner[2].at(t) - a,
              av = q.vertex.at(t) - a;
   const Vec3 n = ab.cross(ac);
   const double area = n.squaredNorm();
-  if (!(area > kParallel * kParallel * ab.squaredNorm() * ac.squaredNorm())) {
-    // Hardly more than its edges.
-    const Vec3 v = q.vertex.at(t);
-    return near_segment(v, a, ab) || near_segment(v, a, ac) || near_segment(v, a + ab, ac - ab)
-               ? Touch::unclear
-               : Touch::no;
-  }
+  if (!spans(area, ab, ac)) return std::nullopt;
   const double u = av.cross(ac).dot(n) / area, v = ab.cross(av).dot(n) / area;
-  return u >= -kInside && v >= -kInside && u + v <= 1 + kInside ? Touch::yes : Touch::no;
+  return std::array{u, v, 1 - u - v};
 }
-
-// Do two segments, known to be in one plane, cross at time t?
-Touch touch(const MovingEdgeEdge& q, double t) {
+std::optional<std::array<double, 4>> margins(const MovingEdgeEdge& q, double t) {
   const Vec3 a = q.first[0].at(t), ab = q.first[1].at(t) - a, c = q.second[0].at(t),
              cd = q.second[1].at(t) - c;
   const Vec3 n = ab.cross(cd), ac = c - a;
   const double area = n.squaredNorm();
-  if (!(area > kParallel * kParallel * ab.squaredNorm() * cd.squaredNorm())) {
-    // Parallel segments are nearest to each other at an end.
-    const bool near = near_segment(a, c, cd) || near_segment(a + ab, c, cd) || near_segment(c, a, ab) ||
-                      near_segment(c + cd, a, ab);
-    return near ? Touch::unclear : Touch::no;
-  }
+  if (!spans(area, ab, cd)) return std::nullopt;
   const double u = ac.cross(cd).dot(n) / area, v = ac.cross(ab).dot(n) / area;
-  return u >= -kInside && u <= 1 + kInside && v >= -kInside && v <= 1 + kInside ? Touch::yes : Touch::no;
+  return std::array{u, 1 - u, v, 1 - v};
 }
 
-// The first time at which `touches` says yes or unclear among those offered in ascending order.
+// Where there are no margins. The triangle is hardly more than its edges.
+bool near_collapsed(const MovingVertexFace& q, double t) {
+  const Vec3 v = q.vertex.at(t), a = q.corner[0].at(t), b = q.corner[1].at(t), c = q.corner[2].at(t);
+  return near_segment(v, a, b - a) || near_segment(v, b, c - b) || near_segment(v, c, a - c);
+}
+// Parallel segments are nearest to each other at an end.
+bool near_collapsed(const MovingEdgeEdge& q, double t) {
+  const Vec3 a = q.first[0].at(t), b = q.first[1].at(t), c = q.second[0].at(t), d = q.second[1].at(t);
+  return near_segment(a, c, d - c) || near_segment(b, c, d - c) || near_segment(c, a, b - a) ||
+         near_segment(d, a, b - a);
+}
+
+// Do the features touch at time t, when they are known to be in one plane?
 template <class Query>
+Touch touch(const Query& q, double t) {
+  const auto inside = margins(q, t);
+  if (!inside) return near_collapsed(q, t) ? Touch::unclear : Touch::no;
+  return *std::min_element(inside->begin(), inside->end()) >= -kInside ? Touch::yes : Touch::no;
+}
+
+MovingPoint during(const MovingPoint& p, double low, double high) {
+  return {p.at(low), p.at(high)};
+}
+MovingVertexFace during(const MovingVertexFace& q, double low, double high) {
+  const auto part = [=](const MovingPoint& p) { return during(p, low, high); };
+  return {part(q.vertex), {part(q.corner[0]), part(q.corner[1]), part(q.corner[2])}};
+}
+MovingEdgeEdge during(const MovingEdgeEdge& q, double low, double high) {
+  const auto part = [=](const MovingPoint& p) { return during(p, low, high); };
+  return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
+}
+
+// The same when all that is known is that they may be in one plane between two times, near a double root
+// mostly. "No" only where one border keeps them apart by more than its margin changes.
+template <class Query>
+Touch touch_between(const Query& q, double low, double high) {
+  if (relative_boxes_apart(during(q, low, high))) return Touch::no;
+  const auto first = margins(q, low), middle = margins(q, (low + high) / 2), last = margins(q, high);
+  if (!first || !middle || !last) return Touch::unclear;
+  bool inside = true;
+  for (std::size_t k = 0; k < middle->size(); ++k) {
+    const auto [least, most] = std::minmax({(*first)[k], (*middle)[k], (*last)[k]});
+    if (most + (most - least) < -kInside) return Touch::no;
+    inside = inside && least >= -kInside;
+  }
+  return inside ? Touch::yes : Touch::unclear;
+}
+
+// What the search has found; "apart" until something touches.
 struct FirstTouch {
-  const Query& query;
   Answer answer{Verdict::apart, 0};
 
   // Returns true when the search is over.
-  bool offer(double t, double earliest) {
-    const Touch found = touch(query, t);
+  bool offer(Touch found, double earliest) {
     if (found == Touch::no) return false;
     answer = {found == Touch::yes ? Verdict::contact : Verdict::undecided, earliest};
     return true;
@@ -95,16 +137,15 @@ double blossom(const double (&c)[4], double r, double s, double t) {
 
 // Visits enclosures of the roots in [low, high] in ascending order until one ends the search.
 template <class Query>
-bool search_roots(const BernsteinCubic& f, double low, double high, FirstTouch<Query>& search) {
+bool search_roots(const Query& query, const BernsteinCubic& f, double low, double high, FirstTouch& search) {
   while (true) {
     const double control[4] = {blossom(f.c, low, low, low), blossom(f.c, low, low, high),
                                blossom(f.c, low, high, high), blossom(f.c, high, high, high)};
     const auto [least, most] = std::minmax({control[0], control[1], control[2], control[3]});
     if (least > f.error || most < -f.error) return false;
     // Narrow enough, or flat within rounding: no cut tells more about where the root is.
-    if (high - low <= kRootWidth) return search.offer((low + high) / 2, low);
-    if (least >= -f.error && most <= f.error)
-      return search.offer(low, low) || search.offer((low + high) / 2, low) || search.offer(high, low);
+    if (high - low <= kRootWidth) return search.offer(touch(query, (low + high) / 2), low);
+    if (least >= -f.error && most <= f.error) return search.offer(touch_between(query, low, high), low);
 
     // The derivative's range on [low, high], from its own control points.
     const double scale = 3 / (high - low);
@@ -125,80 +166,83 @@ bool search_roots(const BernsteinCubic& f, double low, double high, FirstTouch<Q
         continue;
       }
     }
-    if (search_roots(f, low, middle, search)) return true;
+    if (search_roots(query, f, low, middle, search)) return true;
     low = middle;
   }
 }
 
-// Signed area of (a, b, p) projected along `axis`, as a quadratic in t in Bernstein form.
-std::array<double, 3> signed_area(const MovingPoint& a, const MovingPoint& b, const MovingPoint& p,
-                                  int axis) {
-  const MovingVector ab = difference(a, b), ap = difference(a, p);
-  const auto cross = [axis](const Vec3& x, const Vec3& y) { return x.cross(y)[axis]; };
-  return {cross(ab.start, ap.start), (cross(ab.start, ap.end) + cross(ab.end, ap.start)) / 2,
-          cross(ab.end, ap.end)};
-}
-
-// At most t = 0 and two roots for each of four lines.
+// Both ends, and at most two roots for each of four lines and one for each of three axes of four pairs.
 struct Times {
-  std::array<double, 9> at{};
+  std::array<double, 22> at{};
   std::size_t count = 0;
-  void add(double t) { at[count++] = t; }
+  void add(double t) {
+    if (t >= 0 && t <= 1) at[count++] = t;
+  }
 };
 
-// The roots of the quadratic that lie in [0, 1].
-void add_roots(const std::array<double, 3>& c, Times& times) {
-  const double a = c[0] - 2 * c[1] + c[2], half_b = c[1] - c[0];
-  const double discriminant = std::max(0.0, half_b * half_b - a * c[0]);
+// When p is on the line ab: the roots of twice the signed area of (a, b, p), a quadratic in Bernstein form,
+// projected along the axis that shows most of it.
+void add_crossings(const MovingPoint& a, const MovingPoint& b, const MovingPoint& p, Times& times) {
+  const MovingVector ab = difference(a, b), ap = difference(a, p);
+  const Vec3 area[3] = {ab.start.cross(ap.start), (ab.start.cross(ap.end) + ab.end.cross(ap.start)) / 2,
+                        ab.end.cross(ap.end)};
+  int axis = 0;
+  (area[0].cwiseAbs() + area[1].cwiseAbs() + area[2].cwiseAbs()).maxCoeff(&axis);
+  const double c0 = area[0][axis], c1 = area[1][axis], c2 = area[2][axis];
+  const double square = c0 - 2 * c1 + c2, half_b = c1 - c0;
+  const double discriminant = std::max(0.0, half_b * half_b - square * c0);
   const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-  for (const double root : {q / a, c[0] / q})
-    if (root >= 0 && root <= 1) times.add(root);
+  times.add(q / square);
+  times.add(c0 / q);
 }
 
-// Coplanar throughout: features can begin to touch only at t = 0 or when a point crosses the line of an edge.
+// When p and q have a coordinate in common: for what moves along one line, where nothing crosses a line.
+void add_meetings(const MovingPoint& p, const MovingPoint& q, Times& times) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double start = q.start[axis] - p.start[axis], end = q.end[axis] - p.end[axis];
+    times.add(start / (start - end));
+  }
+}
+
+// Coplanar throughout: features can begin to touch only at t = 0 or when a point crosses the line of an edge,
+// or, on one line, meets another point.
+void add_events(const MovingVertexFace& q, Times& times) {
+  for (int k = 0; k < 3; ++k) {
+    add_crossings(q.corner[k], q.corner[(k + 1) % 3], q.vertex, times);
+    add_meetings(q.corner[k], q.vertex, times);
+  }
+}
+void add_events(const MovingEdgeEdge& q, Times& times) {
+  for (int k = 0; k < 2; ++k) {
+    add_crossings(q.first[0], q.first[1], q.second[k], times);
+    add_crossings(q.second[0], q.second[1], q.first[k], times);
+    for (int l = 0; l < 2; ++l) add_meetings(q.first[k], q.second[l], times);
+  }
+}
+
 template <class Query>
-Answer planar(const Query& query, const Vec3& normal,
-              std::initializer_list<std::array<const MovingPoint*, 3>> lines) {
-  int axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
+Answer planar(const Query& query) {
+  if (relative_boxes_apart(query)) return {Verdict::apart, 0};
   Times times;
   times.add(0);
-  for (const auto& [a, b, p] : lines) add_roots(signed_area(*a, *b, *p, axis), times);
+  times.add(1);  // a root there may be rounded past it
+  add_events(query, times);
   std::sort(times.at.begin(), times.at.begin() + times.count);
-  FirstTouch<Query> search{query};
+  FirstTouch search;
   for (std::size_t i = 0; i < times.count; ++i)
-    if (search.offer(times.at[i], times.at[i])) break;
+    if (search.offer(touch(query, times.at[i]), times.at[i])) break;
   return search.answer;
-}
-
-Answer planar(const MovingVertexFace& q) {
-  if (relative_boxes_apart(q)) return {Verdict::apart, 0};
-  const MovingVector ab = difference(q.corner[0], q.corner[1]), ac = difference(q.corner[0], q.corner[2]);
-  return planar(q, ab.start.cross(ac.start) + ab.end.cross(ac.end),
-                {{&q.corner[0], &q.corner[1], &q.vertex},
-                 {&q.corner[1], &q.corner[2], &q.vertex},
-                 {&q.corner[2], &q.corner[0], &q.vertex}});
-}
-
-Answer planar(const MovingEdgeEdge& q) {
-  if (relative_boxes_apart(q)) return {Verdict::apart, 0};
-  const MovingVector ab = difference(q.first[0], q.first[1]), cd = difference(q.second[0], q.second[1]);
-  return planar(q, ab.start.cross(cd.start) + ab.end.cross(cd.end),
-                {{&q.first[0], &q.first[1], &q.second[0]},
-                 {&q.first[0], &q.first[1], &q.second[1]},
-                 {&q.second[0], &q.second[1], &q.first[0]},
-                 {&q.second[0], &q.second[1], &q.first[1]}});
 }
 
 template <class Query>
 Answer newton(const Query& query) {
   const BernsteinCubic f = coplanarity(query);
   if (certain_sign(f) != 0) return {Verdict::apart, 0};
-  if (!std::isfinite(f.error)) return {Verdict::undecided, 0};
+  if (!std::isfinite(f.error)) return {relative_boxes_apart(query) ? Verdict::apart : Verdict::undecided, 0};
   const auto [least, most] = std::minmax({f.c[0], f.c[1], f.c[2], f.c[3]});
   if (least >= -f.error && most <= f.error) return planar(query);
-  FirstTouch<Query> search{query};
-  search_roots(f, 0, 1, search);
+  FirstTouch search;
+  search_roots(query, f, 0, 1, search);
   return search.answer;
 }
 

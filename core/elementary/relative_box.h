@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/geometry/feature_motion.h"
@@ -10,8 +11,7 @@
 //
 // Why a strict comparison of rounded numbers proves the sets apart: the common translation may be any vector,
 // so the rounding of the mean itself does not matter; each translated coordinate is one correctly rounded
-// subtraction, and rounding is monotone, so fl(x) < fl(y) implies x < y. NaN compares false and keeps the
-// pair.
+// subtraction, and rounding is monotone, so fl(x) < fl(y) implies x < y.
 namespace cscd {
 
 template <std::size_t N, std::size_t M>
@@ -21,6 +21,7 @@ bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) 
     for (const MovingPoint& p : a) mean += p.end[axis] - p.start[axis];
     for (const MovingPoint& p : b) mean += p.end[axis] - p.start[axis];
     mean /= static_cast<double>(N + M);
+    if (!std::isfinite(mean)) continue;  // overflow: this axis says nothing
 
     double low_a = a[0].start[axis], high_a = low_a, low_b = b[0].start[axis], high_b = low_b;
     for (const MovingPoint& p : a) {

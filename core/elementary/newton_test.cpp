@@ -1,0 +1,306 @@
+#include "core/elementary/newton.h"
+
+#include <chrono>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <string>
+
+#include "core/elementary/exact.h"
+#include "core/elementary/filter.h"
+#include "core/elementary/test_queries.h"
+
+namespace cscd {
+namespace {
+
+using test::FourMovingPoints;
+using test::query_of;
+using test::QueryMaker;
+
+Answer newton(const MovingVertexFace& q) {
+  return newton_vertex_face(q);
+}
+Answer newton(const MovingEdgeEdge& q) {
+  return newton_edge_edge(q);
+}
+
+// How newton did on a family, the referee having answered the same queries.
+struct Tally {
+  int contacts = 0, misses = 0, false_alarms = 0, undecided = 0;
+  double largest_time_error = 0;
+  std::string first_miss, first_false_alarm;
+
+  template <class Query>
+  void add(const FourMovingPoints& points) {
+    const Query query = query_of<Query>(points);
+    const auto truth = exact::first_contact(query);
+    const Answer answer = newton(query);
+    contacts += truth.has_value();
+    undecided += answer.verdict == Verdict::undecided;
+    if (!truth && answer.verdict == Verdict::contact && false_alarms++ == 0)
+      first_false_alarm = text(points, answer.time);
+    if (truth && answer.verdict == Verdict::apart && misses++ == 0) first_miss = text(points, truth->lo);
+    if (truth && answer.verdict == Verdict::contact)
+      largest_time_error = std::max(largest_time_error, std::abs(answer.time - truth->lo));
+    // A bound from below, up to what double precision hides.
+    if (truth && answer.verdict == Verdict::undecided) {
+      EXPECT_LE(answer.time, truth->hi + 1e-6) << text(points, truth->lo);
+    }
+  }
+  static std::string text(const FourMovingPoints& points, double time) {
+    std::ostringstream out;
+    for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
+    out << "touch at " << time;
+    return out.str();
+  }
+  void expect_spotless() const {
+    EXPECT_EQ(misses, 0) << first_miss;
+    EXPECT_EQ(false_alarms, 0) << first_false_alarm;
+    EXPECT_EQ(undecided, 0);
+    EXPECT_LT(largest_time_error, 1e-9);
+  }
+};
+
+class Newton : public testing::Test {
+ protected:
+  QueryMaker make_{7};
+};
+
+TEST_F(Newton, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
+  Tally vf, ee;
+  for (int i = 0; i < 6000; ++i) {
+    vf.add<MovingVertexFace>(make_.any());
+    ee.add<MovingEdgeEdge>(make_.any());
+  }
+  vf.expect_spotless();
+  ee.expect_spotless();
+  EXPECT_GT(vf.contacts, 200);
+  EXPECT_GT(ee.contacts, 200);
+}
+
+TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
+  Tally vf, ee;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = make_.uniform(0.01, 0.99), u = make_.uniform(0.01, 0.49), v = make_.uniform(0.01, 0.49);
+    vf.add<MovingVertexFace>(test::vertex_meets_face(make_, t, u, v));
+    ee.add<MovingEdgeEdge>(test::edge_meets_edge(make_, t, 2 * u, 2 * v));
+  }
+  vf.expect_spotless();
+  ee.expect_spotless();
+  EXPECT_EQ(vf.contacts, 3000);
+  EXPECT_EQ(ee.contacts, 3000);
+}
+
+// A hundred thousandth of the feature's size inside or outside, at any of its borders.
+TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
+  Tally vf, ee;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = make_.uniform(0.05, 0.95), hair = i % 2 ? 1e-5 : -1e-5;
+    const double along = make_.uniform(0.1, 0.9);
+    const double sides[3][2] = {{along, hair}, {hair, along}, {along - hair, 1 - along}};
+    const double(&s)[2] = sides[i % 3];
+    vf.add<MovingVertexFace>(test::vertex_meets_face(make_, t, s[0], s[1]));
+    const double end = i % 3 ? hair : 1 - hair;
+    ee.add<MovingEdgeEdge>(i % 4 < 2 ? test::edge_meets_edge(make_, t, end, along)
+                                     : test::edge_meets_edge(make_, t, along, end));
+  }
+  vf.expect_spotless();
+  ee.expect_spotless();
+  for (const Tally* tally : {&vf, &ee}) {
+    EXPECT_GT(tally->contacts, 1000);
+    EXPECT_LT(tally->contacts, 2000);
+  }
+}
+
+// Traps 8 and 9: small integer coordinates meet every degenerate case.
+TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
+  Tally vf, ee;
+  for (int i = 0; i < 12'000; ++i) {
+    vf.add<MovingVertexFace>(make_.lattice(1 + i % 3));
+    ee.add<MovingEdgeEdge>(make_.lattice(1 + i % 3));
+  }
+  EXPECT_EQ(vf.misses, 0) << vf.first_miss;
+  EXPECT_EQ(ee.misses, 0) << ee.first_miss;
+  EXPECT_EQ(vf.false_alarms, 0) << vf.first_false_alarm;
+  EXPECT_EQ(ee.false_alarms, 0) << ee.first_false_alarm;
+  for (const Tally* tally : {&vf, &ee}) EXPECT_GT(tally->contacts, 3000);
+  RecordProperty("undecided of 12000, vertex-face", vf.undecided);
+  RecordProperty("undecided of 12000, edge-edge", ee.undecided);
+}
+
+MovingPoint still(double x, double y, double z) {
+  return {{x, y, z}, {x, y, z}};
+}
+MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
+  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
+}
+
+template <class Query>
+void expect_not_apart(const Query& query) {
+  ASSERT_TRUE(exact::first_contact(query));
+  EXPECT_NE(newton(query).verdict, Verdict::apart);
+}
+
+TEST_F(Newton, ContactAtTheEndsOfTheIntervalCounts) {
+  for (const Vec3& on : {Vec3(1, 1, 0), Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 4, 0)}) {
+    for (const Vec3& away : {Vec3(0, 0, 1), Vec3(0.25, 0.5, -2), Vec3(-1, -1, 1e-3)}) {
+      const Answer start = newton(against_triangle(on, on + away)),
+                   end = newton(against_triangle(on + away, on));
+      EXPECT_EQ(start.verdict, Verdict::contact);
+      EXPECT_EQ(start.time, 0);
+      EXPECT_EQ(end.verdict, Verdict::contact);
+      EXPECT_NEAR(end.time, 1, 1e-9);
+    }
+  }
+}
+
+// Coplanar throughout.
+TEST_F(Newton, ContactAtTheEndsOfTheIntervalCountsInThePlane) {
+  for (const Vec3& on : {Vec3(0, 1, 0), Vec3(0, 0, 0), Vec3(2, 2, 0), Vec3(3, 0, 0)}) {
+    const Vec3 out = 2.5 * on - Vec3(1.5, 1.5, 0);
+    expect_not_apart(against_triangle(out, on));
+    expect_not_apart(against_triangle(on, out));
+  }
+  for (int i = 0; i < 2000; ++i) {
+    const double u = make_.uniform(0, 4);
+    const Vec3 on[3] = {Vec3(0, u, 0), Vec3(u, 0, 0), Vec3(u, 4 - u, 0)};
+    const Vec3 to = on[i % 3], from = to + make_.uniform(0.1, 3) * (to - Vec3(1.3, 1.3, 0));
+    const MovingVertexFace query = against_triangle(from, to);
+    if (exact::first_contact(query)) {
+      EXPECT_NE(newton(query).verdict, Verdict::apart) << from.transpose() << " -> " << to.transpose();
+    }
+  }
+}
+
+// The vertex comes to the plane, touches and turns back: a double root of the coplanarity cubic, which is
+// known to half of its digits only.
+TEST_F(Newton, DoubleRootsAreContactOrUndecided) {
+  for (const double t : {0.5, 0.25, 1.0 / 3, 0.7}) {
+    for (const Vec3& on : {Vec3(1, 1, 0), Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(2, 2, 0), Vec3(1, 0, 0)}) {
+      for (const Vec3& slide : {Vec3(0, 0, 0), Vec3(1, -2, 0), Vec3(-3, 1, 0)}) {
+        const auto path = [&](const Vec3& x, const Vec3& speed) {
+          return MovingPoint{x - t * speed, x + (1 - t) * speed};
+        };
+        // The triangle tilts about its corner at the origin as fast as the vertex slides: at that corner the
+        // height of the vertex is of second order in time.
+        const MovingVertexFace query{path(on, slide),
+                                     {path({0, 0, 0}, {0, 0, 0}), path({4, 0, 0}, {0, 0, slide.x()}),
+                                      path({0, 4, 0}, {0, 0, slide.y()})}};
+        if (exact::first_contact(query)) {
+          EXPECT_NE(newton(query).verdict, Verdict::apart) << on.transpose() << ", " << slide.transpose();
+        }
+      }
+    }
+  }
+}
+
+// Double roots at corners and borders in general position: touching is judged with a root that is off by
+// 1e-8.
+TEST_F(Newton, DoubleRootsAtBordersAreContactOrUndecided) {
+  int touching = 0, missed = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto dyadic = [&] { return make_.below(65) / 32.0 - 1; };
+    const auto vec = [&] { return Vec3(dyadic(), dyadic(), dyadic()); };
+    const double t = (1 + make_.below(7)) / 8.0;
+    const Vec3 a = vec(), b = vec(), c = vec();
+    const double u = make_.below(3) / 2.0, v = make_.below(2) * (1 - u);
+    const Vec3 x = a + u * (b - a) + v * (c - a);
+    // All slide within the plane at time t, in first order: the vertex's height has a double root there.
+    const Vec3 n = (b - a).cross(c - a);
+    const double wb = dyadic(), wc = dyadic();
+    const Vec3 slide = dyadic() * (b - a) + dyadic() * (c - a);
+    const Vec3 height = u * wb * n + v * wc * n;
+    const auto path = [&](const Vec3& p, const Vec3& speed) {
+      return MovingPoint{p - t * speed, p + (1 - t) * speed};
+    };
+    const MovingVertexFace query{path(x, slide + height),
+                                 {path(a, Vec3::Zero()), path(b, wb * n), path(c, wc * n)}};
+    if (!exact::first_contact(query)) continue;
+    ++touching;
+    missed += newton(query).verdict == Verdict::apart;
+  }
+  EXPECT_GT(touching, 1000);
+  EXPECT_EQ(missed, 0);
+}
+
+TEST_F(Newton, ZeroMotionInContact) {
+  expect_not_apart(against_triangle({1, 1, 0}, {1, 1, 0}));
+  expect_not_apart(against_triangle({0, 0, 0}, {0, 0, 0}));
+  EXPECT_EQ(newton(against_triangle({1, 1, 1}, {1, 1, 1})).verdict, Verdict::apart);
+  EXPECT_EQ(newton(against_triangle({9, 9, 0}, {9, 9, 0})).verdict, Verdict::apart);
+  expect_not_apart(MovingEdgeEdge{{still(0, 0, 0), still(4, 0, 0)}, {still(1, -1, 0), still(1, 1, 0)}});
+  expect_not_apart(MovingEdgeEdge{{still(0, 0, 0), still(4, 0, 0)}, {still(1, 0, 0), still(9, 0, 0)}});
+}
+
+// The plane of motion is z = 0 and the triangle turns over in it: normals at both ends cancel.
+TEST_F(Newton, ATriangleThatTurnsInsideOutInItsPlane) {
+  const MovingVertexFace query{{{-1, 1, 0}, {3, 1, 0}},
+                               {{{0, 0, 0}, {0, 0, 0}}, {{4, 0, 0}, {4, 0, 0}}, {{0, 4, 0}, {0, -4, 0}}}};
+  expect_not_apart(query);
+}
+
+// Sliding along one line, the edges meet end to end.
+TEST_F(Newton, EdgesThatSlideAlongOneLine) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto on = [&](double from, double to) {
+      MovingPoint p{{1, 1, 1}, {1, 1, 1}};
+      p.start[axis] = from;
+      p.end[axis] = to;
+      return p;
+    };
+    expect_not_apart(MovingEdgeEdge{{on(0, 0), on(1, 1)}, {on(4, 0.5), on(5, 1.5)}});
+    expect_not_apart(MovingVertexFace{on(-3, 2), {on(0, 0), on(1, 1), on(2, 2)}});
+  }
+  const auto diagonal = [](double from, double to) {
+    return MovingPoint{from * Vec3(1, 2, 3), to * Vec3(1, 2, 3)};
+  };
+  expect_not_apart(MovingEdgeEdge{{diagonal(0, 0), diagonal(1, 1)}, {diagonal(4, 0.5), diagonal(5, 1.5)}});
+}
+
+TEST_F(Newton, CollapsedFeatures) {
+  const MovingPoint falls{{1, 1, 1}, {1, 1, -1}}, far{{9, 9, 9}, {9, 9, 8}};
+  // Zero-length edge onto an edge; zero-area triangles.
+  expect_not_apart(MovingEdgeEdge{{falls, falls}, {still(0, 1, 0), still(4, 1, 0)}});
+  expect_not_apart(MovingVertexFace{falls, {still(0, 1, 0), still(4, 1, 0), still(2, 1, 0)}});
+  expect_not_apart(MovingVertexFace{falls, {still(1, 1, 0), still(1, 1, 0), still(1, 1, 0)}});
+  // Boxes prove these apart, whatever the cubic says.
+  EXPECT_EQ(newton(MovingEdgeEdge{{far, far}, {still(0, 1, 0), still(4, 1, 0)}}).verdict, Verdict::apart);
+  EXPECT_EQ(newton(MovingVertexFace{far, {still(1, 1, 0), still(1, 1, 0), still(1, 1, 0)}}).verdict,
+            Verdict::apart);
+}
+
+// Far too large or small for the error bound: nothing is known, and nothing is claimed.
+TEST_F(Newton, BeyondTheRangeIsUndecidedOrRight) {
+  for (const double scale : {1e-320, 1e-200, 1e-110, 1e110, 1e160, 1e307}) {
+    for (int i = 0; i < 200; ++i) {
+      FourMovingPoints p = test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
+      for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
+      const auto query = query_of<MovingVertexFace>(p);
+      if (exact::first_contact(query)) {
+        ASSERT_NE(newton(query).verdict, Verdict::apart) << scale;
+      }
+    }
+  }
+}
+
+// Cubics that are almost zero leave nothing to cut. Generous: a thousandth of a second each on a slow machine
+// under a sanitizer would pass.
+TEST_F(Newton, TheSearchEndsSoonOnFlatCubics) {
+  const auto begin = std::chrono::steady_clock::now();
+  constexpr int kQueries = 3000;
+  for (int i = 0; i < kQueries; ++i) {
+    FourMovingPoints p = make_.any();
+    const double thin = std::ldexp(1.0, -20 - i % 60);
+    for (MovingPoint& x : p) x.start.z() *= thin, x.end.z() *= thin;
+    newton(query_of<MovingVertexFace>(p));
+    newton(query_of<MovingEdgeEdge>(p));
+    // Triple roots: three factors that vanish at once.
+    for (MovingPoint& x : p) x.end = -x.start + thin * make_.vector();
+    newton(query_of<MovingVertexFace>(p));
+    newton(query_of<MovingEdgeEdge>(p));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(kQueries));
+}
+
+}  // namespace
+}  // namespace cscd
