@@ -10,7 +10,9 @@ namespace cscd {
 namespace {
 
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
-using Int8 = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
+using Mask8 = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
+// Unsigned: lanes that are not selected step as well, and may wrap.
+using Bits8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 
 // value + error, exactly.
 struct Exact8 {
@@ -35,14 +37,14 @@ Float8 rounded_down(const Exact8& x) {
   const Lane8 infinity = Lane8{} + std::numeric_limits<double>::infinity();
   const Sign8 above = (widened > x.value) | ((widened == x.value) & (x.error < 0)) | (x.value == infinity);
 
-  Int8 bits;
+  Bits8 bits;
   static_assert(sizeof bits == sizeof nearest);
   __builtin_memcpy(&bits, &nearest, sizeof bits);
-  const Int8 smallest_negative = Int8{} + (std::numeric_limits<std::int32_t>::min() + 1);
-  const Int8 stepped = nearest == 0 ? smallest_negative : nearest > 0 ? bits - 1 : bits + 1;
+  const Bits8 smallest_negative = Bits8{} + 0x80000001u;
+  const Bits8 stepped = nearest == 0 ? smallest_negative : nearest > 0 ? bits - 1 : bits + 1;
   const Float8 lowest = Float8{} - std::numeric_limits<float>::infinity();
-  const Int8 steps = __builtin_convertvector(above, Int8) & (nearest != lowest);
-  const Int8 chosen = steps ? stepped : bits;
+  const Mask8 steps = __builtin_convertvector(above, Mask8) & (nearest != lowest);
+  const Bits8 chosen = steps ? stepped : bits;
   Float8 out;
   __builtin_memcpy(&out, &chosen, sizeof out);
   return out;
