@@ -12,9 +12,6 @@ inline constexpr std::size_t kLanes = 8;
 using Lane8 = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Sign8 = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
-inline Lane8 smaller(Lane8 a, Lane8 b) {
-  return b < a ? b : a;
-}
 inline Lane8 larger(Lane8 a, Lane8 b) {
   return a < b ? b : a;
 }

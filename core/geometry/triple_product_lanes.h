@@ -80,12 +80,13 @@ inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c) {
   const Lane8 c0 = dot(0, 0), c1 = (dot(1, 0) + dot(0, 1)) / 3, c2 = (dot(1, 1) + dot(2, 0)) / 3,
               c3 = dot(2, 1);
   const Lane8 volume = normal.area * c.largest_component();
-  const Sign8 known = (normal.area >= kTinyProduct) & (volume >= kTinyProduct) & (volume <= kHugeProduct);
+  const Sign8 known = (normal.area >= kTinyProduct) & (normal.area <= kHugeProduct) &
+                      (volume >= kTinyProduct) & (volume <= kHugeProduct);
   const Lane8 unknown = Lane8{} + std::numeric_limits<double>::infinity();
   const Lane8 error = known ? kTripleProductError * volume : unknown;
-  // A true comparison is -1 in its lane.
-  const Sign8 positive = smaller(smaller(c0, c1), smaller(c2, c3)) > error;
-  const Sign8 negative = larger(larger(c0, c1), larger(c2, c3)) < -error;
+  // A true comparison is -1 in its lane. Coefficient by coefficient, because a minimum may forget a NaN.
+  const Sign8 positive = (c0 > error) & (c1 > error) & (c2 > error) & (c3 > error);
+  const Sign8 negative = (c0 < -error) & (c1 < -error) & (c2 < -error) & (c3 < -error);
   return negative - positive;
 }
 

@@ -44,16 +44,17 @@ TEST(TripleProductLanes, SayWhatTheScalarTwinSays) {
             (*end)[static_cast<int>(random() % 3)] = special[random() % std::size(special)];
         }
       }
-      a.set(lane, vectors[0][lane].start, vectors[0][lane].end);
-      b.set(lane, vectors[1][lane].start, vectors[1][lane].end);
-      c.set(lane, vectors[2][lane].start, vectors[2][lane].end);
+      VectorLanes* const lanes[3] = {&a, &b, &c};
+      for (int v = 0; v < 3; ++v)
+        for (int i = 0; i < 3; ++i) {
+          lanes[v]->at[0][i][lane] = vectors[v][lane].start[i];
+          lanes[v]->at[1][i][lane] = vectors[v][lane].end[i];
+        }
     }
-    NormalLanes normal;
-    cross(a, b, normal);
-    const auto signs = certain_signs(normal, c);
+    const Sign8 signs = certain_signs(cross(a, b), c);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const int expected = certain_sign(triple_product(vectors[0][lane], vectors[1][lane], vectors[2][lane]));
-      ASSERT_EQ(int{signs[lane]}, expected) << "lane " << lane;
+      ASSERT_EQ(signs[lane], expected) << "lane " << lane;
       ++seen[expected + 1];
     }
   }
