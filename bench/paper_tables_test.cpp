@@ -120,6 +120,10 @@ TEST(PaperTables, ShippedDefinitionsCoverThePublishedTables) {
   for (const PaperTable& table : paper_tables(definitions, published, none, "rope"))
     for (const Cell& cell : table.rows.at(0).cells) found += cell.published.has_value();
   EXPECT_EQ(found, named.size());
+
+  // Without a choice of scene, every row is a scene.
+  for (const PaperTable& table : paper_tables(definitions, published, none))
+    for (const Row& row : table.rows) EXPECT_TRUE(published["scenes"].contains(row.scene)) << row.scene;
 }
 
 TEST(Record, SurvivesBeingWrittenAndRead) {
