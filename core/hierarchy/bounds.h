@@ -24,8 +24,8 @@ class SweptBounds {
   std::vector<Kdop16> vertex_, node_;
 };
 
-// The bounds of every vertex's path: vectorised over vertices, bit for bit what kdop_of gives (its scalar
-// twin).
+// The bounds of every vertex's path: vectorised over vertices, equal to what kdop_of gives (its scalar twin).
+// Only a zero may have the other sign, which no comparison sees.
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out);
 
 }  // namespace cscd
