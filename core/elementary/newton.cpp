@@ -100,22 +100,6 @@ MovingEdgeEdge during(const MovingEdgeEdge& q, double low, double high) {
   return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
 }
 
-// The same when all that is known is that they may be in one plane between two times, near a double root
-// mostly. "No" only where one border keeps them apart by more than its margin changes.
-template <class Query>
-Touch touch_between(const Query& q, double low, double high) {
-  if (relative_boxes_apart(during(q, low, high))) return Touch::no;
-  const auto first = margins(q, low), middle = margins(q, (low + high) / 2), last = margins(q, high);
-  if (!first || !middle || !last) return Touch::unclear;
-  bool inside = true;
-  for (std::size_t k = 0; k < middle->size(); ++k) {
-    const auto [least, most] = std::minmax({(*first)[k], (*middle)[k], (*last)[k]});
-    if (most + (most - least) < -kInside) return Touch::no;
-    inside = inside && least >= -kInside;
-  }
-  return inside ? Touch::yes : Touch::unclear;
-}
-
 // What the search has found; "apart" until something touches.
 struct FirstTouch {
   Answer answer{Verdict::apart, 0};
@@ -127,49 +111,6 @@ struct FirstTouch {
     return true;
   }
 };
-
-// Polar form of the cubic: its control points on [a, b] are blossom(a,a,a), (a,a,b), (a,b,b), (b,b,b).
-double blossom(const double (&c)[4], double r, double s, double t) {
-  const auto mix = [](double x, double y, double w) { return (1 - w) * x + w * y; };
-  const double d0 = mix(c[0], c[1], r), d1 = mix(c[1], c[2], r), d2 = mix(c[2], c[3], r);
-  return mix(mix(d0, d1, s), mix(d1, d2, s), t);
-}
-
-// Visits enclosures of the roots in [low, high] in ascending order until one ends the search.
-template <class Query>
-bool search_roots(const Query& query, const BernsteinCubic& f, double low, double high, FirstTouch& search) {
-  while (true) {
-    const double control[4] = {blossom(f.c, low, low, low), blossom(f.c, low, low, high),
-                               blossom(f.c, low, high, high), blossom(f.c, high, high, high)};
-    const auto [least, most] = std::minmax({control[0], control[1], control[2], control[3]});
-    if (least > f.error || most < -f.error) return false;
-    // Narrow enough, or flat within rounding: no cut tells more about where the root is.
-    if (high - low <= kRootWidth) return search.offer(touch(query, (low + high) / 2), low);
-    if (least >= -f.error && most <= f.error) return search.offer(touch_between(query, low, high), low);
-
-    // The derivative's range on [low, high], from its own control points.
-    const double scale = 3 / (high - low);
-    const auto [slope_least, slope_most] =
-        std::minmax({scale * (control[1] - control[0]), scale * (control[2] - control[1]),
-                     scale * (control[3] - control[2])});
-    const double middle = (low + high) / 2;
-    double new_low = low, new_high = high;
-    if (slope_least > 0 || slope_most < 0) {
-      const double value = blossom(f.c, middle, middle, middle);
-      const double pad = f.error / std::min(std::abs(slope_least), std::abs(slope_most));
-      const double r = middle - value / slope_least, s = middle - value / slope_most;
-      new_low = std::max(low, std::min(r, s) - pad);
-      new_high = std::min(high, std::max(r, s) + pad);
-      if (new_low > new_high) return false;
-      if (new_high - new_low < (high - low) / 2) {
-        low = new_low, high = new_high;
-        continue;
-      }
-    }
-    if (search_roots(query, f, low, middle, search)) return true;
-    low = middle;
-  }
-}
 
 // Both ends, and at most two roots for each of four lines and one for each of three axes of four pairs.
 struct Times {
@@ -232,6 +173,67 @@ Answer planar(const Query& query) {
   for (std::size_t i = 0; i < times.count; ++i)
     if (search.offer(touch(query, times.at[i]), times.at[i])) break;
   return search.answer;
+}
+
+// The same when all that is known is that they may be in one plane between two times, near a double root
+// mostly. "No" only where one border keeps them apart by more than its margin changes, or where parallel
+// features stay apart as if they were in one plane throughout.
+template <class Query>
+Touch touch_between(const Query& q, double low, double high) {
+  if (relative_boxes_apart(during(q, low, high))) return Touch::no;
+  const auto first = margins(q, low), middle = margins(q, (low + high) / 2), last = margins(q, high);
+  if (!first || !middle || !last)
+    return planar(during(q, low, high)).verdict == Verdict::apart ? Touch::no : Touch::unclear;
+  bool inside = true;
+  for (std::size_t k = 0; k < middle->size(); ++k) {
+    const auto [least, most] = std::minmax({(*first)[k], (*middle)[k], (*last)[k]});
+    if (most + (most - least) < -kInside) return Touch::no;
+    inside = inside && least >= -kInside;
+  }
+  return inside ? Touch::yes : Touch::unclear;
+}
+
+// Polar form of the cubic: its control points on [a, b] are blossom(a,a,a), (a,a,b), (a,b,b), (b,b,b).
+double blossom(const double (&c)[4], double r, double s, double t) {
+  const auto mix = [](double x, double y, double w) { return (1 - w) * x + w * y; };
+  const double d0 = mix(c[0], c[1], r), d1 = mix(c[1], c[2], r), d2 = mix(c[2], c[3], r);
+  return mix(mix(d0, d1, s), mix(d1, d2, s), t);
+}
+
+// Visits enclosures of the roots in [low, high] in ascending order until one ends the search.
+template <class Query>
+bool search_roots(const Query& query, const BernsteinCubic& f, double low, double high, FirstTouch& search) {
+  while (true) {
+    const double control[4] = {blossom(f.c, low, low, low), blossom(f.c, low, low, high),
+                               blossom(f.c, low, high, high), blossom(f.c, high, high, high)};
+    const auto [least, most] = std::minmax({control[0], control[1], control[2], control[3]});
+    if (least > f.error || most < -f.error) return false;
+    // Narrow enough, or flat within rounding: no cut tells more about where the root is.
+    if (high - low <= kRootWidth) return search.offer(touch(query, (low + high) / 2), low);
+    if (least >= -f.error && most <= f.error) return search.offer(touch_between(query, low, high), low);
+
+    // The derivative's range on [low, high], from its own control points.
+    const double scale = 3 / (high - low);
+    const auto [slope_least, slope_most] =
+        std::minmax({scale * (control[1] - control[0]), scale * (control[2] - control[1]),
+                     scale * (control[3] - control[2])});
+    const double middle = (low + high) / 2;
+    double new_low = low, new_high = high;
+    if (slope_least > 0 || slope_most < 0) {
+      const double value = blossom(f.c, middle, middle, middle);
+      const double pad = f.error / std::min(std::abs(slope_least), std::abs(slope_most));
+      const double r = middle - value / slope_least, s = middle - value / slope_most;
+      new_low = std::max(low, std::min(r, s) - pad);
+      new_high = std::min(high, std::max(r, s) + pad);
+      if (new_low > new_high) return false;
+      if (new_high - new_low < (high - low) / 2) {
+        low = new_low, high = new_high;
+        continue;
+      }
+    }
+    if (search_roots(query, f, low, middle, search)) return true;
+    low = middle;
+  }
 }
 
 template <class Query>
