@@ -1,5 +1,6 @@
 #include "bench/random_verification.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "bench/catalogue.h"
@@ -10,12 +11,26 @@
 namespace cscd::bench {
 namespace {
 
+// The elementary test while a strategy runs: every pair that gets past the certified filter is put off, so
+// that the referee answers it once, however many strategies pass it on.
+constexpr ElementaryTest kPutOff{"put off",
+                                 "everything is undecided",
+                                 false,
+                                 false,
+                                 [](const MovingVertexFace&) -> Answer {
+                                   return {Verdict::undecided, 0};
+                                 },
+                                 [](const MovingEdgeEdge&) -> Answer {
+                                   return {Verdict::undecided, 0};
+                                 }};
+
 // One random interval, ready for any strategy.
 struct Subject {
   std::uint64_t seed;
   scenes::RandomInterval random;
   TriangleMesh mesh;
   std::optional<Rig> rig;
+  std::map<FeaturePair, Answer> answers;  // the referee's
 
   explicit Subject(std::uint64_t seed_in)
       : seed(seed_in),
@@ -23,16 +38,47 @@ struct Subject {
         mesh(random.clip.header().triangles, random.clip.header().vertex_count, "random interval"),
         rig(scenes::rig_of(random.clip)) {}
 
-  ContactSet run(const Strategy& strategy, const ElementaryTest& test) {
+  struct Result {
+    ContactSet passed_on, found;
+    Report report;
+  };
+  Result run(const Strategy& strategy, const ElementaryTest& referee) {
     const std::unique_ptr<Detector> detector =
-        strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test}).detector;
+        strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, kPutOff}).detector;
+    const scenes::ClipInterval interval = random.clip.interval(0);
+    Result result;
+    result.report =
+        detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, result.passed_on);
+    for (const Contact& contact : result.passed_on.contacts) {
+      const auto [entry, fresh] = answers.try_emplace(contact.pair);
+      if (fresh) entry->second = ask(referee, mesh, interval.motion, contact.pair);
+      if (entry->second.verdict != Verdict::apart)
+        result.found.contacts.push_back({contact.pair, entry->second.verdict, entry->second.time});
+    }
+    result.found.sort();
+    return result;
+  }
+  ContactSet ask_all(const ElementaryTest& test, const ContactSet& pairs) const {
     const scenes::ClipInterval interval = random.clip.interval(0);
     ContactSet found;
-    detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
-    found.sort();
+    for (const Contact& contact : pairs.contacts) {
+      const Answer answer = ask(test, mesh, interval.motion, contact.pair);
+      if (answer.verdict != Verdict::apart)
+        found.contacts.push_back({contact.pair, answer.verdict, answer.time});
+    }
     return found;
   }
 };
+
+// How many of the reference's contacts of the earliest time the answer lacks.
+std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& answer) {
+  const auto attaining_first = [&](const ContactSet& set) {
+    return std::count_if(set.contacts.begin(), set.contacts.end(), [&](const Contact& contact) {
+      return contact.time == reference.contacts.front().time;
+    });
+  };
+  return static_cast<std::size_t>(attaining_first(reference) - attaining_first(answer));
+}
 
 }  // namespace
 
@@ -45,24 +91,36 @@ RandomSummary verify_random(const RandomVerification& plan, std::span<const Stra
     Subject subject(plan.first_seed + i);
     const bool by_all_pairs = i % plan.brute_every == 0;
     const Strategy& judge = by_all_pairs ? oracle : stand_in;
-    const ContactSet reference = subject.run(judge, exact);
-    EmbeddingTest embedding(subject.mesh, subject.random.clip.frame(0).positions);
-    const bool embedded = embedding.embedded(subject.random.clip.frame(0).positions);
+    const Subject::Result judged = subject.run(judge, exact);
+    const ContactSet& reference = judged.found;
+    const std::span<const Vec3> start = subject.random.clip.frame(0).positions;
+    const bool embedded = EmbeddingTest(subject.mesh, start).embedded(start);
+    const bool at_stake = embedded && !reference.contacts.empty();
 
     ++summary.intervals;
     summary.embedded += embedded;
     summary.contacts += reference.contacts.size();
     summary.with_contacts += !reference.contacts.empty();
-    if (embedded && !reference.contacts.empty()) {
-      ++summary.embedded_with_contacts;
-      ++summary.embedded_hits_of[std::string(subject.random.family)];
-    }
-    summary.newton.add(compare_elementary(reference, subject.run(judge, inexact)));
+    summary.embedded_with_contacts += at_stake;
+    if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
+    summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
+
     for (const Strategy& strategy : strategies) {
       if (&strategy == &oracle && !by_all_pairs) continue;
-      const ContactSet answer = &strategy == &judge ? reference : subject.run(strategy, exact);
-      const Verification verdict = verify(reference, answer, strategy.guarantee, embedded);
-      summary.found_by[std::string(strategy.name)] += verdict.found_contacts;
+      const Subject::Result own = &strategy == &judge ? Subject::Result{} : subject.run(strategy, exact);
+      const Subject::Result& result = &strategy == &judge ? judged : own;
+      const Verification verdict = verify(reference, result.found, strategy.guarantee, embedded);
+      RandomRow& row = summary.rows[std::string(strategy.name)];
+      ++row.intervals;
+      row.contacts_expected += verdict.reference_contacts;
+      row.contacts_found += verdict.found_contacts;
+      row.triangle_pairs += result.report.cull.pctp;
+      row.feature_pairs += result.report.pairs.feature_pairs;
+      if (at_stake) {
+        const std::size_t missing = first_pairs_missing(reference, result.found);
+        row.first_pairs_missing += missing;
+        row.firsts_thinned += missing > 0;
+      }
       if (!verdict.ok)
         summary.failures.push_back(
             {subject.seed, std::string(subject.random.family), std::string(strategy.name), verdict.failure});
@@ -83,8 +141,12 @@ std::string describe(const RandomSummary& summary) {
     first = false;
   }
   text += "); " + count(summary.contacts) + " contacts in all\n";
-  for (const auto& [strategy, found] : summary.found_by)
-    text += "  " + strategy + ": reports " + count(found) + "\n";
+  for (const auto& [strategy, row] : summary.rows)
+    text += "  " + strategy + ", " + count(row.intervals) + " intervals: passes on " +
+            count(row.triangle_pairs) + " triangle pairs, " + count(row.feature_pairs) +
+            " feature pairs; reports " + count(row.contacts_found) + " of " + count(row.contacts_expected) +
+            " contacts; lacks " + count(row.first_pairs_missing) + " pairs of the earliest time in " +
+            count(row.firsts_thinned) + " intervals\n";
   text += "  " + std::string(elementary_tests().front().name) +
           " on the same pairs: " + count(summary.newton.misses) + " misses, " +
           count(summary.newton.false_alarms) + " false alarms, " + count(summary.newton.undecided) +

@@ -25,9 +25,19 @@ struct RandomFailure {
   std::string family, strategy, what;
 };
 
+// What one strategy did on its intervals.
+struct RandomRow {
+  std::size_t intervals = 0;
+  std::uint64_t contacts_expected = 0, contacts_found = 0;
+  std::uint64_t triangle_pairs = 0, feature_pairs = 0;  // passed on
+  // Over embedded starts with contacts: contacts of the earliest time that are not reported, and the
+  // intervals that lack some. The guarantee first_contact allows all but one.
+  std::size_t first_pairs_missing = 0, firsts_thinned = 0;
+};
+
 struct RandomSummary {
   std::size_t intervals = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0, contacts = 0;
-  std::map<std::string, std::size_t> found_by;          // of those contacts, by strategy
+  std::map<std::string, RandomRow> rows;                // by strategy
   std::map<std::string, std::size_t> embedded_hits_of;  // embedded starts with contacts, by family
   Accuracy newton;                                      // of the first elementary test, on the same pairs
   std::vector<RandomFailure> failures;

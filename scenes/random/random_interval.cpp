@@ -1,5 +1,6 @@
 #include "scenes/random/random_interval.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -33,10 +34,12 @@ struct Warp {
 
 struct Build {
   Surface surface;
+  std::vector<Vec3> target;  // of the vertices at the end, before the warp; empty where they stay
   std::vector<BoneId> parent;
   std::vector<Bone> bones;
   Warp start, end;
-  double noise = 0;  // of every vertex at the end, in units of space
+  double start_noise = 0.02, noise = 0;  // of every vertex at the start and at the end, in units of space
+  bool lattice = false;                  // small integers that have to stay exact
 
   // A chain of bones along z inside a tube, or one bone where that is all there is room for.
   void add_chain(int count, double length, const Vec3& centre = Vec3::Zero()) {
@@ -56,9 +59,9 @@ Tube random_tube(Random& random, double length) {
 
 Build noisy_ball(Random& random) {
   Build build;
-  append_sphere(build.surface, 2, 1, Vec3::Zero());
+  append_sphere(build.surface, random.integer(1, 2), 1, Vec3::Zero());
   build.add_chain(random.integer(1, 3), 1);
-  build.noise = random.uniform(0.05, 0.6);
+  build.noise = random.uniform(0.05, 0.5);
   build.end.linear.diagonal() =
       Vec3(random.uniform(0.2, 1.5), random.uniform(0.2, 1.5), random.uniform(0.2, 1.5));
   return build;
@@ -73,7 +76,7 @@ Build folding_tube(Random& random) {
   build.start.bend = random.uniform(0, 0.75) * circle;
   build.end.bend = random.uniform(0.7, 1.3) * circle;
   build.end.twist = random.uniform(-0.4, 0.4);
-  build.noise = random.uniform(0, 0.1);
+  build.noise = random.integer(0, 1) * random.uniform(0, 0.1);
   return build;
 }
 
@@ -126,9 +129,19 @@ Build several_components(Random& random) {
 Build nested_components(Random& random) {
   Build build;
   append_sphere(build.surface, 1, 2, Vec3::Zero());
+  const std::size_t outer = build.surface.positions.size();
   append_sphere(build.surface, random.integer(0, 1), random.uniform(0.3, 0.8), random.in_box(0.3));
-  build.add_chain(random.integer(1, 2), 2);
-  build.noise = random.uniform(0.2, 1.2);
+  if (random.integer(0, 1) == 0) {
+    build.noise = random.uniform(0.2, 1.2);
+    build.add_chain(random.integer(1, 2), 2);
+  } else {
+    // The outer shell closes down on the inner one; both stay positive.
+    build.target = build.surface.positions;
+    const double shrink = random.uniform(0.1, 0.4);
+    for (std::size_t i = 0; i < outer; ++i) build.target[i] *= shrink;
+    build.noise = random.uniform(0, 0.05);
+    build.add_chain(1, random.uniform(0.1, 1));
+  }
   return build;
 }
 
@@ -146,6 +159,96 @@ Build closing_fold(Random& random) {
   return build;
 }
 
+// A ball that is positive almost everywhere, so that culling drops nearly all it could: only horns stand out
+// and come down on it, or on each other, from the side.
+Build horned_ball(Random& random) {
+  Build build;
+  append_sphere(build.surface, 2, 1, Vec3::Zero());
+  std::vector<Vec3>& x = build.surface.positions;
+  build.target = x;
+  for (int horn = random.integer(1, 3); horn > 0; --horn) {
+    const auto tip = static_cast<std::size_t>(random.integer(0, static_cast<int>(x.size()) - 1));
+    const Vec3 up = x[tip].normalized();
+    const Vec3 aside = up.cross(random.in_box(1)).normalized();
+    const double fall = random.uniform(0.3, 1.2), high = random.uniform(1.3, 2.2);
+    const double low = random.uniform(0.6, 1.1);
+    x[tip] = high * up;
+    build.target[tip] = low * (std::cos(fall) * up + std::sin(fall) * aside);
+  }
+  build.add_chain(random.integer(1, 2), 1);
+  build.noise = random.integer(0, 1) * random.uniform(0, 0.05);
+  return build;
+}
+
+// A smooth tube round one or a few bones whose middle is dented from the side until the walls meet, or whose
+// ends are bent onto each other.
+Build dented_tube(Random& random) {
+  Build build;
+  const double length = random.uniform(4, 6);
+  const Tube tube{random.integer(7, 10), random.integer(6, 9), length, {0.6, random.uniform(0.4, 0.8), 0.6}};
+  append_tube(build.surface, tube);
+  build.target = build.surface.positions;
+  const double angle = random.uniform(0, 2 * std::numbers::pi), centre = random.uniform(-0.3, 0.3) * length;
+  const double depth = random.uniform(0.6, 1.6), width = random.uniform(0.3, 0.8);
+  const Vec3 inward(-std::cos(angle), -std::sin(angle), 0);
+  for (Vec3& p : build.target) {
+    const double along = (p.z() - centre) / width, facing = std::max(0.0, -p.dot(inward));
+    p += depth * facing * std::exp(-along * along) / 0.6 * inward;
+  }
+  build.add_chain(random.integer(1, 3), length);
+  build.start.bend = random.uniform(0, 0.6) * 2 * std::numbers::pi / length;
+  build.end.bend = build.start.bend + random.uniform(0, 0.4) * 2 * std::numbers::pi / length;
+  return build;
+}
+
+// A fingertip whose underside is positive towards the bone from one corner and negative from another: the
+// case in which a segment observer has to look at all three vertices.
+Build finger_over_segment(Random& random) {
+  Build build;
+  build.start_noise = 0;
+  append_hooked_finger(build.surface);
+  for (Triangle& corner : build.surface.triangles)
+    std::rotate(corner.begin(), corner.begin() + random.integer(0, 2), corner.end());
+  build.target = build.surface.positions;
+  const Vec3 poke = random.uniform(0.9, 1.5) * kFingerPoke + random.in_box(0.02);
+  for (std::size_t i = 0; i < 4; ++i) build.target[i] += poke;
+  build.parent = {BoneId{-1}};
+  build.bones = {{{-1, 0, 0}, {1, 0, 0}}};
+  build.noise = random.integer(0, 1) * random.uniform(0, 0.01);
+  return build;
+}
+
+// Boxes and octahedra with integer corners that come to touch exactly: face on face, edge on edge, tip on
+// face. Bounds that are too tight by a single ulp lose them.
+Build touching_lattice(Random& random) {
+  Build build;
+  build.lattice = true;
+  build.start_noise = 0;
+  append_box(build.surface, {-4, -4, -4}, {4, 4, 4});
+  build.target = build.surface.positions;
+  build.add_chain(1, 4);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0 && random.integer(0, 1) == 0) continue;
+    const double side = random.integer(0, 1) == 0 ? -1 : 1;
+    const int size = random.integer(1, 3);
+    Vec3 centre(random.integer(-5, 5), random.integer(-5, 5), random.integer(-5, 5));
+    centre[axis] = side * (4 + size);  // touches the side of the box, where it is not beside it
+    const std::size_t first = build.surface.positions.size();
+    if (random.integer(0, 1) == 0)
+      append_sphere(build.surface, 0, size, centre);
+    else
+      append_box(build.surface, centre - Vec3::Constant(size), centre + Vec3::Constant(size));
+    Vec3 away(random.integer(-1, 1), random.integer(-1, 1), random.integer(-1, 1));
+    away[axis] = side * random.integer(5, 9);
+    for (std::size_t i = first; i < build.surface.positions.size(); ++i) {
+      build.target.push_back(build.surface.positions[i]);
+      build.surface.positions[i] += away + 20 * side * Vec3::Unit(axis);
+    }
+    build.add_chain(1, 1, centre);
+  }
+  return build;
+}
+
 struct Family {
   std::string_view name;
   Build (*make)(Random&);
@@ -158,6 +261,10 @@ constexpr std::array kFamilies = {
     Family{"several_components", several_components},
     Family{"nested_components", nested_components},
     Family{"closing_fold", closing_fold},
+    Family{"horned_ball", horned_ball},
+    Family{"dented_tube", dented_tube},
+    Family{"finger_over_segment", finger_over_segment},
+    Family{"touching_lattice", touching_lattice},
 };
 
 constexpr auto kNames = [] {
@@ -171,8 +278,12 @@ struct Place {
   double scale = 1;
   Vec3 offset = Vec3::Zero(), rush = Vec3::Zero();
 };
-Place random_place(Random& random) {
+Place random_place(Random& random, bool lattice) {
   Place place;
+  if (lattice) {
+    place.scale = std::ldexp(1, random.integer(-20, 20));
+    return place;
+  }
   switch (random.integer(0, 4)) {
     case 0:
       place.offset = random.in_box(std::pow(10, random.integer(2, 7)));
@@ -202,8 +313,9 @@ RandomInterval make_random_interval(std::uint64_t seed) {
   Random random(seed * 0x9e3779b97f4a7c15u + 1);
   const Family& family = kFamilies[seed % kFamilies.size()];
   Build build = family.make(random);
-  const Place place = random_place(random);
-  build.end.shift += random.in_box(0.3);
+  const Place place = random_place(random, build.lattice);
+  if (!build.lattice) build.end.shift += random.in_box(0.3);
+  if (build.target.empty()) build.target = build.surface.positions;
 
   ClipHeader header{build.surface.triangles, build.surface.positions.size(), build.parent, false};
   Clip clip(std::move(header));
@@ -213,8 +325,8 @@ RandomInterval make_random_interval(std::uint64_t seed) {
       return place.scale * (warp(p) + (at_end ? place.rush : Vec3::Zero())) + place.offset;
     };
     std::vector<Vec3> positions;
-    for (const Vec3& p : build.surface.positions) {
-      const Vec3 noise = random.in_box(at_end ? build.noise : 0.02);
+    for (const Vec3& p : at_end ? build.target : build.surface.positions) {
+      const Vec3 noise = random.in_box(at_end ? build.noise : build.start_noise);
       positions.push_back(put(p) + place.scale * noise);
     }
     std::vector<Bone> bones;

@@ -40,6 +40,19 @@ void append_sphere(Surface& surface, int splits, double radius, const Vec3& cent
   for (const auto& [a, b, c] : faces) surface.triangles.push_back(triangle(first + a, first + b, first + c));
 }
 
+void append_box(Surface& surface, const Vec3& low, const Vec3& high) {
+  constexpr std::size_t kQuads[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const std::size_t first = surface.positions.size();
+  for (unsigned corner = 0; corner < 8; ++corner)
+    surface.positions.emplace_back(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
+                                   corner & 4 ? high.z() : low.z());
+  for (const auto& [a, b, c, d] : kQuads) {
+    surface.triangles.push_back(triangle(first + a, first + b, first + c));
+    surface.triangles.push_back(triangle(first + a, first + c, first + d));
+  }
+}
+
 void append_tube(Surface& surface, const Tube& tube) {
   const std::size_t first = surface.positions.size();
   const auto rings = static_cast<std::size_t>(tube.rings), sides = static_cast<std::size_t>(tube.sides);
@@ -67,6 +80,37 @@ void append_tube(Surface& surface, const Tube& tube) {
     }
     surface.triangles.push_back(triangle(top, at(rings - 1, side), at(rings - 1, side + 1)));
   }
+}
+
+void append_hooked_finger(Surface& surface) {
+  const std::size_t first = surface.positions.size();
+  std::vector<Vec3>& x = surface.positions;
+  const Vec3 tip(1, 0, 1.2), section[3] = {{-1, -0.97, -1.467}, {-1, 1.09, -1.467}, {-0.71, -0.6, 1.4}};
+  x.push_back(tip);
+  x.insert(x.end(), section, section + 3);
+  const auto turned = [](const Vec3& p, double angle, double shift) -> Vec3 {
+    constexpr double kX = -1, kZ = 3.5;  // the bends' axis
+    const double u = p.x() - kX, w = p.z() - kZ, c = std::cos(angle), s = std::sin(angle);
+    return {kX + shift + c * u + s * w, p.y(), kZ - s * u + c * w};
+  };
+  for (int bend = 0; bend < 2; ++bend)
+    for (int step = bend == 0 ? 1 : 0; step <= 4; ++step)
+      for (const Vec3& p : section)
+        x.push_back(turned(p, (bend + step / 4.0) * std::numbers::pi, bend == 0 ? 0 : 4));
+  const Vec3 way = kFingerPoke.normalized(), up(-way.z(), 0, way.x());
+  for (const Vec3& p : {Vec3(0, -0.09, -0.06), Vec3(0, 0.09, -0.06), Vec3(0, 0, 0.1)})
+    x.push_back(tip + 0.968 * kFingerPoke + p.y() * Vec3::UnitY() + p.z() * up);
+
+  const std::size_t sections = (x.size() - first - 1) / 3;
+  const auto at = [&](std::size_t k, std::size_t i) { return first + 1 + 3 * k + i % 3; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    surface.triangles.push_back(triangle(at(0, i), at(0, i + 1), first));
+    for (std::size_t k = 0; k + 1 < sections; ++k) {
+      surface.triangles.push_back(triangle(at(k, i), at(k + 1, i + 1), at(k, i + 1)));
+      surface.triangles.push_back(triangle(at(k, i), at(k + 1, i), at(k + 1, i + 1)));
+    }
+  }
+  surface.triangles.push_back(triangle(at(sections - 1, 0), at(sections - 1, 2), at(sections - 1, 1)));
 }
 
 }  // namespace cscd::scenes

@@ -35,6 +35,9 @@ struct Surface {
 // triangles.
 void append_sphere(Surface& surface, int splits, double radius, const Vec3& centre);
 
+// Twelve triangles.
+void append_box(Surface& surface, const Vec3& low, const Vec3& high);
+
 // Tube along z from -length / 2 to length / 2 with pointed ends; radius(s) for s in [0, 1] along it. 2 sides
 // * rings triangles.
 struct Tube {
@@ -43,5 +46,12 @@ struct Tube {
   std::vector<double> radii;  // control values along the tube, interpolated linearly
 };
 void append_tube(Surface& surface, const Tube& tube);
+
+// A pointed finger over the segment from (-1, 0, 0) to (1, 0, 0) whose other end is led round in two bends to
+// a small face before its tip: one connected surface. The finger is the first four vertices, the tip the very
+// first; moved by kFingerPoke the tip goes through the face. Its underside changes sign towards the segment
+// between the tip (negative) and the other corners (positive); all else at tip and face is positive.
+void append_hooked_finger(Surface& surface);
+inline const Vec3 kFingerPoke = -0.155 * Vec3(-0.85, 0, 0.52678);
 
 }  // namespace cscd::scenes

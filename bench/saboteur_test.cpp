@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include "bench/random_verification.h"
+#include "bench/saboteurs.h"
+
+// Tests of the verification itself: strategies with one flaw each, which `cscd verify` has to catch on the
+// random intervals, beside sound twins that it has to pass.
+namespace cscd::bench {
+namespace {
+
+using test::Flaw;
+
+Strategy plain(const char* name, Prepared (*make)(const Setup&)) {
+  return {name, "for tests", Guarantee::complete, false, make};
+}
+Strategy first_contact(const char* name, Prepared (*make)(const Setup&)) {
+  return {name, "for tests", Guarantee::first_contact, true, make};
+}
+
+// Verifies on `intervals` random intervals and returns how many failed.
+std::map<std::string, std::size_t> failures(std::span<const Strategy> strategies, std::size_t intervals) {
+  std::map<std::string, std::size_t> count;
+  for (const Strategy& strategy : strategies) count[std::string(strategy.name)] = 0;
+  const RandomVerification plan{intervals, 1, intervals};  // the first one by all pairs
+  for (const RandomFailure& failure : verify_random(plan, strategies).failures) ++count[failure.strategy];
+  for (const auto& [name, failed] : count) testing::Test::RecordProperty(name, static_cast<int>(failed));
+  return count;
+}
+
+TEST(Saboteurs, PlainStrategiesThatLosePairsAreCaught) {
+  const Strategy strategies[] = {
+      plain("sound", test::make_plain<Flaw::none>),
+      plain("forgetful", test::make_plain<Flaw::one_feature_pair_in_10000_lost>),
+      plain("one_ulp_tighter", test::make_plain<Flaw::bounds_one_ulp_too_tight>),
+      plain("skips_last_leaf", test::make_plain<Flaw::last_leaf_skipped>),
+  };
+  const auto failed = failures(strategies, 400);
+  EXPECT_EQ(failed.at("sound"), 0u);
+  EXPECT_GT(failed.at("forgetful"), 0u);
+  EXPECT_GT(failed.at("one_ulp_tighter"), 0u);
+  EXPECT_GT(failed.at("skips_last_leaf"), 0u);
+}
+
+template <radial::ObserverKind kind>
+void expect_radial_saboteurs_are_caught(std::size_t intervals) {
+  const Strategy strategies[] = {
+      first_contact("sound", test::make_radial<Flaw::none, kind>),
+      first_contact("representative_triangles", test::make_radial<Flaw::representative_triangles, kind>),
+      first_contact("uncertain_is_positive", test::make_radial<Flaw::uncertain_called_positive, kind>),
+      first_contact("segment_by_one_vertex", test::make_radial<Flaw::segment_by_one_vertex, kind>),
+      first_contact("spans_components", test::make_radial<Flaw::clusters_span_components, kind>),
+      first_contact("mixes_observers", test::make_radial<Flaw::observers_mixed, kind>),
+  };
+  const auto failed = failures(strategies, intervals);
+  EXPECT_EQ(failed.at("sound"), 0u);
+  EXPECT_GT(failed.at("representative_triangles"), 0u);
+  EXPECT_GT(failed.at("uncertain_is_positive"), 0u);
+  EXPECT_GT(failed.at("spans_components"), 0u);
+  EXPECT_GT(failed.at("mixes_observers"), 0u);
+  if (kind == radial::ObserverKind::bone_segment) {
+    EXPECT_GT(failed.at("segment_by_one_vertex"), 0u);
+  } else {
+    EXPECT_EQ(failed.at("segment_by_one_vertex"), 0u) << "nothing is viewed from a segment";
+  }
+}
+
+TEST(Saboteurs, RadialStrategiesThatLoseFirstContactsAreCaught) {
+  expect_radial_saboteurs_are_caught<radial::ObserverKind::bone_centre>(400);
+}
+
+TEST(Saboteurs, RadialStrategiesThatLoseFirstContactsAreCaughtWithSegments) {
+  expect_radial_saboteurs_are_caught<radial::ObserverKind::bone_segment>(400);
+}
+
+}  // namespace
+}  // namespace cscd::bench

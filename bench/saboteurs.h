@@ -1,0 +1,267 @@
+#pragma once
+
+// For tests only: strategies made of the house's own parts in which one thing at a time is broken.
+// `Flaw::none` is the sound twin.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "core/detect/compose.h"
+#include "core/hierarchy/descent.h"
+#include "core/radial/cluster_hierarchy.h"
+#include "core/radial/distance_field.h"
+#include "core/radial/nearest_point.h"
+#include "core/radial/observer.h"
+#include "core/radial/orientation.h"
+#include "core/radial/segmentation.h"
+#include "core/radial/setup.h"
+
+namespace cscd::test {
+
+enum class Flaw {
+  none,
+  one_feature_pair_in_10000_lost,
+  bounds_one_ulp_too_tight,
+  last_leaf_skipped,
+  representative_triangles,
+  uncertain_called_positive,
+  segment_by_one_vertex,
+  clusters_span_components,
+  observers_mixed,
+};
+
+// All pairs of triangles whose swept bounds overlap, through a descent.
+template <Flaw flaw>
+class PlainCuller : public Culler {
+ public:
+  explicit PlainCuller(const Setup& setup)
+      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+
+  void refit(const Motion& motion) override {
+    bounds_.refit(mesh_, tree_, motion);
+    leaf_.clear();
+    for (NodeIndex n = 0; n < static_cast<NodeIndex>(tree_.node_count()); ++n) {
+      if (!tree_.is_leaf(n)) continue;
+      last_ = n;
+      leaf_.push_back({tree_.triangle(n), bounds_[n]});
+      if (flaw == Flaw::bounds_one_ulp_too_tight)
+        for (float& bound : leaf_.back().bound.at_least)
+          bound = std::nextafter(bound, std::numeric_limits<float>::infinity());
+    }
+  }
+  CullCounts cull(TrianglePairSink& sink) override {
+    CullCounts counts;
+    if (flaw == Flaw::bounds_one_ulp_too_tight) {
+      for (std::size_t i = 0; i < leaf_.size(); ++i)
+        for (std::size_t j = i + 1; j < leaf_.size(); ++j)
+          if (overlap(leaf_[i].bound, leaf_[j].bound)) sink.add(leaf_[i].triangle, leaf_[j].triangle);
+      return counts;
+    }
+    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+    const auto skip = [&](NodeIndex a, NodeIndex b) {
+      return flaw == Flaw::last_leaf_skipped && (a == last_ || b == last_);
+    };
+    const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
+    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
+    return counts;
+  }
+
+ private:
+  struct Leaf {
+    TriangleId triangle;
+    Kdop16 bound;
+  };
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+  std::vector<Leaf> leaf_;
+  NodeIndex last_ = 0;
+};
+
+// Clusters by bone, viewed from their bones; `merge_all` lets them all act as one (sound only as long as they
+// share one observer: Flaw::observers_mixed).
+template <Flaw flaw>
+class RadialCuller : public Culler {
+ public:
+  RadialCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds)
+      : mesh_(setup.mesh),
+        clusters_(std::move(clusters)),
+        kinds_(std::move(kinds)),
+        hierarchy_(mesh_, setup.reference, clusters_),
+        table_(mesh_, hierarchy_.groups()),
+        labels_(clusters_.clusters.size(), 0) {
+    if (flaw != Flaw::observers_mixed) std::iota(labels_.begin(), labels_.end(), 0);
+  }
+  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+  bool classify(const Motion& motion, const Rig::Interval* bones) override {
+    table_.update(motion);
+    for (std::size_t c = 0; c < kinds_.size(); ++c) {
+      const std::size_t bone = +clusters_.clusters[c].bone;
+      const radial::Observer observer = radial::observer(kinds_[c], bones->start[bone], bones->end[bone]);
+      const std::span<radial::Orientation> classes = hierarchy_.classes(c);
+      table_.classify(c, observer, classes);
+      for (std::size_t member = 0; member < classes.size(); ++member)
+        spoil(classes[member], motion, hierarchy_.groups()[c][member], observer);
+    }
+    radial_ = hierarchy_.finish_classes();
+    return true;
+  }
+  CullCounts cull(TrianglePairSink& sink) override {
+    CullCounts counts = hierarchy_.cull(labels_, sink);
+    counts.radial = radial_;
+    return counts;
+  }
+
+ private:
+  void spoil(radial::Orientation& found, const Motion& motion, TriangleId triangle,
+             const radial::Observer& observer) const {
+    if (flaw == Flaw::uncertain_called_positive && found == radial::Orientation::uncertain)
+      found = radial::Orientation::positive;
+    if (flaw != Flaw::segment_by_one_vertex || !observer.is_segment) return;
+    const Triangle& c = mesh_.corners(triangle);
+    const MovingPoint corner[3] = {motion[c[0]], motion[c[1]], motion[c[2]]};
+    const auto seen_from = [&](const Vec3& p, const Vec3& head, const Vec3& tail) {
+      return radial::nearest_on_segment(p, head, tail);
+    };
+    found = orientation(
+        corner, radial::Observer::point({seen_from(corner[0].start, observer.head.start, observer.tail.start),
+                                         seen_from(corner[0].end, observer.head.end, observer.tail.end)}));
+  }
+
+  const TriangleMesh& mesh_;
+  radial::AtomicClusters clusters_;
+  std::vector<radial::ObserverKind> kinds_;
+  radial::ClusterHierarchy hierarchy_;
+  radial::OrientationTable table_;
+  std::vector<std::int32_t> labels_;
+  RadialCounts radial_;
+};
+
+// Every vertex and edge belongs to the first triangle at it, and is tested with that triangle alone.
+class RepresentativeDetector : public Detector {
+ public:
+  RepresentativeDetector(std::unique_ptr<Culler> culler, const Setup& setup)
+      : culler_(std::move(culler)), mesh_(setup.mesh), test_(setup.elementary) {}
+
+  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    out.clear();
+    Sink sink(*this, motion, out);
+    culler_->refit(motion);
+    culler_->classify(motion, bones);
+    Report report;
+    report.cull = culler_->cull(sink);
+    sink.flush();
+    report.cull.pctp = sink.count();
+    return report;
+  }
+
+ private:
+  struct Sink : TrianglePairSink {
+    RepresentativeDetector& detector;
+    const Motion& motion;
+    ContactSet& out;
+    Sink(RepresentativeDetector& d, const Motion& m, ContactSet& o) : detector(d), motion(m), out(o) {}
+    void take(const std::vector<TrianglePair>& block) override {
+      for (const TrianglePair& pair : block) detector.test(pair, motion, out);
+    }
+  };
+  void test(const TrianglePair& pair, const Motion& motion, ContactSet& out) const {
+    const auto owns = [&](TriangleId triangle, auto feature) {
+      return mesh_.triangles_at(feature).front() == triangle;
+    };
+    const auto has = [](const auto& items, VertexId v) {
+      return std::find(items.begin(), items.end(), v) != items.end();
+    };
+    const auto answer = [&](const FeaturePair& features) {
+      const Answer a = ask(test_, mesh_, motion, features);
+      if (a.verdict != Verdict::apart) out.contacts.push_back({features, a.verdict, a.time});
+    };
+    for (const auto& [one, other] : {std::pair{pair.a, pair.b}, std::pair{pair.b, pair.a}})
+      for (const VertexId v : mesh_.corners(one))
+        if (owns(one, v) && !has(mesh_.corners(other), v)) answer(FeaturePair::of(v, other));
+    for (const EdgeId e : mesh_.edges_of(pair.a))
+      for (const EdgeId f : mesh_.edges_of(pair.b)) {
+        const Edge &ends = mesh_.ends(e), &others = mesh_.ends(f);
+        if (owns(pair.a, e) && owns(pair.b, f) && !has(others, ends[0]) && !has(others, ends[1]))
+          answer(FeaturePair::of(e, f));
+      }
+  }
+
+  std::unique_ptr<Culler> culler_;
+  const TriangleMesh& mesh_;
+  const ElementaryTest& test_;
+};
+
+// Forgets the contacts of one feature pair in 10,000, by a hash of the pair and its number in the stream.
+class ForgetfulDetector : public Detector {
+ public:
+  explicit ForgetfulDetector(std::unique_ptr<Detector> inner) : inner_(std::move(inner)) {}
+  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    const Report report = inner_->detect(motion, bones, out);
+    const std::uint64_t salt = std::bit_cast<std::uint64_t>(motion.start()[0].x());
+    std::erase_if(out.contacts, [&](const Contact& contact) {
+      std::uint64_t hash = salt;
+      for (const std::int32_t id : {contact.pair.a, contact.pair.b})
+        hash = (hash ^ static_cast<std::uint64_t>(id)) * 0x9e3779b97f4a7c15u;
+      return (hash >> 20) % 10000 == 0;
+    });
+    return report;
+  }
+
+ private:
+  std::unique_ptr<Detector> inner_;
+};
+
+template <Flaw flaw>
+Prepared make_plain(const Setup& setup) {
+  auto detector = compose(std::make_unique<PlainCuller<flaw>>(setup), setup.mesh, setup.elementary);
+  if (flaw == Flaw::one_feature_pair_in_10000_lost)
+    return {std::make_unique<ForgetfulDetector>(std::move(detector)), {}};
+  return {std::move(detector), {}};
+}
+
+// One cluster a bone, whatever the components of the mesh.
+inline radial::AtomicClusters clusters_across_components(const TriangleMesh& mesh,
+                                                         std::span<const BoneId> bone_of_triangle) {
+  radial::AtomicClusters clusters;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto known = std::find_if(clusters.clusters.begin(), clusters.clusters.end(),
+                                    [&](const auto& c) { return c.bone == bone_of_triangle[t]; });
+    clusters.of_triangle.push_back(static_cast<std::int32_t>(known - clusters.clusters.begin()));
+    if (known == clusters.clusters.end()) clusters.clusters.push_back({bone_of_triangle[t], {}});
+    clusters.clusters[static_cast<std::size_t>(clusters.of_triangle.back())].triangles.push_back(
+        TriangleId{static_cast<std::int32_t>(t)});
+  }
+  clusters.neighbours.resize(clusters.clusters.size());
+  return clusters;
+}
+
+// From clusters and observers that are given.
+template <Flaw flaw>
+std::unique_ptr<Detector> make_radial(const Setup& setup, radial::AtomicClusters clusters,
+                                      std::vector<radial::ObserverKind> kinds) {
+  auto culler = std::make_unique<RadialCuller<flaw>>(setup, std::move(clusters), std::move(kinds));
+  if (flaw == Flaw::representative_triangles)
+    return std::make_unique<RepresentativeDetector>(std::move(culler), setup);
+  return compose(std::move(culler), setup.mesh, setup.elementary);
+}
+
+// Clusters in the way of rvbc, all of them viewed from their bones as segments or from the bones' centres.
+template <Flaw flaw, radial::ObserverKind kind>
+Prepared make_radial(const Setup& setup) {
+  radial::require_radial_setup(setup, "a saboteur");
+  const std::vector<BoneId> bone_of =
+      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {8, 0});
+  radial::AtomicClusters clusters = flaw == Flaw::clusters_span_components
+                                        ? clusters_across_components(setup.mesh, bone_of)
+                                        : radial::make_atomic_clusters(setup.mesh, bone_of);
+  std::vector<radial::ObserverKind> kinds(clusters.clusters.size(), kind);
+  return {make_radial<flaw>(setup, std::move(clusters), std::move(kinds)), {}};
+}
+
+}  // namespace cscd::test
