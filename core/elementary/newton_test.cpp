@@ -172,6 +172,23 @@ TEST_F(Newton, ContactAtTheEndsOfTheIntervalCountsInThePlane) {
   }
 }
 
+// The vertex reaches a border that moves in the plane, at t = 1 exactly: computed from all four points, the
+// root may be rounded past 1.
+TEST_F(Newton, ContactAtTheEndWithAMovingBorderInThePlane) {
+  int at_the_end = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto flat = [&] { return Vec3(make_.uniform(), make_.uniform(), 0); };
+    const double along = make_.uniform(0.1, 0.9);
+    const MovingVertexFace query{{flat(), {along, along, 0}},
+                                 {{flat(), {0, 0, 0}}, {flat(), {1, 1, 0}}, {flat(), {1, 0, 0}}}};
+    const auto truth = exact::first_contact(query);
+    ASSERT_TRUE(truth);
+    at_the_end += truth->lo == 1;
+    EXPECT_NE(newton(query).verdict, Verdict::apart);
+  }
+  EXPECT_GT(at_the_end, 100);
+}
+
 // The vertex comes to the plane, touches and turns back: a double root of the coplanarity cubic, which is
 // known to half of its digits only.
 TEST_F(Newton, DoubleRootsAreContactOrUndecided) {
