@@ -50,6 +50,7 @@ struct VerificationRecord {
   std::string reference, elementary;    // the complete strategy and the exact test
   std::vector<std::size_t> intervals;   // those verified
   std::vector<std::size_t> unembedded;  // those of them whose start is not embedded
+  std::vector<std::size_t> colliding;   // those of them on which the reference found a contact
   std::vector<VerifiedStrategy> strategies;
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;

@@ -57,7 +57,8 @@ ordered_json source_json(const Record& record) {
           {"intervals", record.intervals},
           {"timed_intervals", record.timed_intervals.size()},
           {"verified_intervals", v.intervals.size()},
-          {"unembedded_intervals", v.unembedded.size()}};
+          {"unembedded_intervals", v.unembedded.size()},
+          {"colliding_intervals", v.colliding.size()}};
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -90,6 +91,8 @@ std::string provenance(const Record& record) {
   out += v.unembedded.empty() ? ", every start was embedded.\n"
                               : "; " + std::to_string(v.unembedded.size()) +
                                     " starts were not embedded, where `first_contact` promises nothing.\n";
+  out += v.colliding.empty() ? "None of them has a contact: here a strategy can fail by inventing one only.\n"
+                             : std::to_string(v.colliding.size()) + " of them have contacts to be lost.\n";
   out += "The timed test `" + record.elementary + "` on " + std::to_string(v.accuracy_tests) +
          " feature pairs of these: " + std::to_string(v.accuracy.misses) + " misses, " +
          std::to_string(v.accuracy.false_alarms) + " false alarms, " + std::to_string(v.accuracy.undecided) +

@@ -69,6 +69,7 @@ VerificationOutcome verify_contestants(Input& input, std::span<Contestant> conte
 
     const Report expected = reference.used->judged->detect(interval.motion, bones, truth);
     truth.sort();
+    if (!truth.contacts.empty()) record.colliding.push_back(i);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
       const Strategy& strategy = *contestants[c].strategy;
       const bool itself = &contestants[c] == reference.used;

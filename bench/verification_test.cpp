@@ -119,6 +119,7 @@ TEST(Verification, HonestStrategiesPassAndAreTimed) {
     EXPECT_TRUE(outcome.verified.record.ok()) << strategy.name;
     EXPECT_FALSE(outcome.void_times) << strategy.name;
     EXPECT_EQ(outcome.verified.record.strategies[1].intervals_promised, 1u);
+    EXPECT_EQ(outcome.verified.record.colliding, std::vector<std::size_t>{0});
     for (const auto& [stage, repetitions] : outcome.records[1].ms) {
       ASSERT_EQ(repetitions.size(), 3u) << stage;
       for (const std::vector<double>& row : repetitions) EXPECT_EQ(row.size(), 1u) << stage;
