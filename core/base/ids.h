@@ -11,9 +11,17 @@ enum class EdgeId : std::int32_t {};
 enum class TriangleId : std::int32_t {};
 enum class BoneId : std::int32_t {};  // -1 stands for "no bone": the parent of a root
 
-constexpr std::size_t operator+(VertexId id) { return static_cast<std::size_t>(id); }
-constexpr std::size_t operator+(EdgeId id) { return static_cast<std::size_t>(id); }
-constexpr std::size_t operator+(TriangleId id) { return static_cast<std::size_t>(id); }
-constexpr std::size_t operator+(BoneId id) { return static_cast<std::size_t>(id); }
+constexpr std::size_t operator+(VertexId id) {
+  return static_cast<std::size_t>(id);
+}
+constexpr std::size_t operator+(EdgeId id) {
+  return static_cast<std::size_t>(id);
+}
+constexpr std::size_t operator+(TriangleId id) {
+  return static_cast<std::size_t>(id);
+}
+constexpr std::size_t operator+(BoneId id) {
+  return static_cast<std::size_t>(id);
+}
 
 }  // namespace cscd

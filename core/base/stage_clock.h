@@ -6,7 +6,8 @@
 
 namespace cscd {
 
-// The stages of one interval, and of the one-time preparation before the first (Table 1 and Table 3 of the paper).
+// The stages of one interval, and of the one-time preparation before the first (Table 1 and Table 3 of the
+// paper).
 enum class Stage { refit, rv_update, traversal, elementary, distance_and_heat, decomposition, count_ };
 
 // The one stage clock: at any moment it charges at most one stage.

@@ -62,7 +62,8 @@ class PairTester : public TrianglePairSink {
       if (!contains(a, vertex)) carried_.push_back(FeaturePair::of(vertex, pair.a));
     for (const EdgeId e : mesh_.edges_of(pair.a))
       for (const EdgeId f : mesh_.edges_of(pair.b))
-        if (!adjacent || !share_vertex(mesh_.ends(e), mesh_.ends(f))) carried_.push_back(FeaturePair::of(e, f));
+        if (!adjacent || !share_vertex(mesh_.ends(e), mesh_.ends(f)))
+          carried_.push_back(FeaturePair::of(e, f));
   }
 
   bool relative_boxes_apart(const TrianglePair& pair) const {

@@ -42,8 +42,8 @@ class FeaturePairSet {
   static constexpr int kKeyBits = 2 * kIdBits;
   static constexpr std::uint64_t kEpochs = std::uint64_t{1} << (64 - kKeyBits);
 
-  // TriangleMesh allows 2^28 vertices and triangles, so there are at most 3 * 2^28 edges (of loose triangles).
-  // The last quarter of the 30-bit numbers is left for vertices as the first of a pair.
+  // TriangleMesh allows 2^28 vertices and triangles, so there are at most 3 * 2^28 edges (of loose
+  // triangles). The last quarter of the 30-bit numbers is left for vertices as the first of a pair.
   static std::uint64_t key(const FeaturePair& pair) {
     constexpr std::uint64_t first_vertex = std::uint64_t{3} << 28;
     const bool vertex = pair.kind == FeaturePair::Kind::vertex_face;

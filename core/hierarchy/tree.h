@@ -12,8 +12,9 @@ namespace cscd {
 
 using NodeIndex = std::int32_t;
 
-// Topology of a binary tree over triangles, built once in the reference pose. Nodes stand in depth-first order: the
-// left child of node n is n + 1, so every subtree is a contiguous range and children follow their parents.
+// Topology of a binary tree over triangles, built once in the reference pose. Nodes stand in depth-first
+// order: the left child of node n is n + 1, so every subtree is a contiguous range and children follow their
+// parents.
 class Tree {
  public:
   std::size_t node_count() const { return link_.size(); }
@@ -33,12 +34,13 @@ class Tree {
   std::vector<NodeIndex> cluster_roots_;
 };
 
-// Median split of triangle centroids along the longest axis of their box (Bridson et al. 2002), one triangle a leaf.
+// Median split of triangle centroids along the longest axis of their box (Bridson et al. 2002), one triangle
+// a leaf.
 Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions);
 
-// A local tree for each cluster, and a global one over their roots (Wong et al. 2013, section 6 of the 2014 paper).
-// `cluster` holds one label in [0, cluster_count) a triangle; every label occurs.
-Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions, std::span<const std::int32_t> cluster,
-                int cluster_count);
+// A local tree for each cluster, and a global one over their roots (Wong et al. 2013, section 6 of the 2014
+// paper). `cluster` holds one label in [0, cluster_count) a triangle; every label occurs.
+Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                std::span<const std::int32_t> cluster, int cluster_count);
 
 }  // namespace cscd
