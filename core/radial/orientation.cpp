@@ -42,7 +42,8 @@ Range viewing_range(const MovingPoint (&corner)[3], const MovingPoint& head, con
   const double length[3] = {d.start.squaredNorm(), d.start.dot(d.end), d.end.squaredNorm()};
   const double shortest = std::min({length[0], length[1], length[2]});
   const double longest = std::max({length[0], length[1], length[2]});
-  if (!(shortest > 0)) return {0, 1};
+  // Outside the range of doubles nothing is known; the triple products are as strict.
+  if (!(shortest > 0 && longest <= kHugeProduct)) return {0, 1};
   double low = std::numeric_limits<double>::infinity(), high = -low, reach = 0;
   for (const MovingPoint& p : corner) {
     const MovingVector w = between(head, p);

@@ -221,6 +221,16 @@ TEST(SegmentObserver, IsNoStricterThanItsTwoEndsWhereTheseSeeTheTriangle) {
   EXPECT_GT(both, 300);
 }
 
+// The squared length of such a bone is infinite, which says nothing about where the triangle projects to: a
+// hundred-thousandth along it, where the observer is in its plane.
+TEST(SegmentObserver, OfALengthWhoseSquareOverflowsProvesNothingWrong) {
+  const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
+  const Observer bone = Observer::segment(still(0, 0, 0), still(1e155, 0, 0));
+  const Corners corner = {still(1e150, 0, 0), still(1e150, 1e70, 0), still(1e150, 0, 1e70)};
+  ASSERT_EQ(test::sampled_sign(corner, bone, 1, 2), 0);
+  EXPECT_EQ(orientation(corner, bone), Orientation::uncertain);
+}
+
 TEST(SegmentObserver, OfLengthZeroIsThePoint) {
   Dice dice(8);
   for (int i = 0; i < 500; ++i) {
