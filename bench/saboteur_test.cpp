@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "bench/catalogue.h"
 #include "bench/random_verification.h"
 #include "bench/saboteurs.h"
+#include "scenes/random/random_interval.h"
 
 // Tests of the verification itself: strategies with one flaw each, which `cscd verify` has to catch on the
 // random intervals, beside sound twins that it has to pass.
@@ -39,6 +41,38 @@ TEST(Saboteurs, PlainStrategiesThatLosePairsAreCaught) {
   EXPECT_GT(failed.at("forgetful"), 0u);
   EXPECT_GT(failed.at("one_ulp_tighter"), 0u);
   EXPECT_GT(failed.at("skips_last_leaf"), 0u);
+}
+
+// On a closed surface a feature pair is carried by at least four triangle pairs, so that the contacts do not
+// tell that one was lost: the number passed on does, beside that of all pairs of overlapping bounds.
+TEST(Saboteurs, ACullerThatLosesOneTrianglePairIn10000IsCaught) {
+  std::uint64_t expected = 0, base = 0, sound = 0, forgetful = 0;
+  std::size_t contacts_differ = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const scenes::RandomInterval random = scenes::make_random_interval(seed);
+    const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
+    const Motion motion = random.clip.interval(0).motion;
+    std::vector<Kdop16> bounds;
+    for (const Triangle& c : mesh.triangles())
+      bounds.push_back(united(united(kdop_of(motion[c[0]]), kdop_of(motion[c[1]])), kdop_of(motion[c[2]])));
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+      for (std::size_t j = i + 1; j < bounds.size(); ++j) expected += overlap(bounds[i], bounds[j]);
+
+    const cscd::Setup setup{mesh, motion.start(), nullptr, elementary_test_named("newton")};
+    ContactSet found[3];
+    base += complete_reference().make(setup).detector->detect(motion, nullptr, found[0]).cull.pctp;
+    sound += test::make_plain<Flaw::none>(setup).detector->detect(motion, nullptr, found[1]).cull.pctp;
+    forgetful += test::make_plain<Flaw::one_triangle_pair_in_10000_lost>(setup)
+                     .detector->detect(motion, nullptr, found[2])
+                     .cull.pctp;
+    for (ContactSet& set : found) set.sort();
+    contacts_differ += digest(found[2]) != digest(found[0]);
+  }
+  EXPECT_EQ(base, expected);
+  EXPECT_EQ(sound, expected);
+  EXPECT_EQ(forgetful, expected - expected / 10000);
+  EXPECT_GE(expected, 20000u);
+  EXPECT_EQ(contacts_differ, 0u);
 }
 
 template <radial::ObserverKind kind>

@@ -25,6 +25,7 @@ namespace cscd::test {
 
 enum class Flaw {
   none,
+  one_triangle_pair_in_10000_lost,
   one_feature_pair_in_10000_lost,
   bounds_one_ulp_too_tight,
   last_leaf_skipped,
@@ -66,7 +67,10 @@ class PlainCuller : public Culler {
     const auto skip = [&](NodeIndex a, NodeIndex b) {
       return flaw == Flaw::last_leaf_skipped && (a == last_ || b == last_);
     };
-    const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
+    const auto emit = [&](NodeIndex a, NodeIndex b) {
+      if (flaw == Flaw::one_triangle_pair_in_10000_lost && ++emitted_ % 10000 == 0) return;
+      sink.add(tree_.triangle(a), tree_.triangle(b));
+    };
     counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
     return counts;
   }
@@ -81,6 +85,7 @@ class PlainCuller : public Culler {
   SweptBounds bounds_;
   std::vector<Leaf> leaf_;
   NodeIndex last_ = 0;
+  static inline std::uint64_t emitted_ = 0;
 };
 
 // Clusters by bone, viewed from their bones; `merge_all` lets them all act as one (sound only as long as they

@@ -188,8 +188,8 @@ TEST(Traps, Trap03AShellThatClosesOnAnotherIsFound) {
       scene.in_one_cluster<Flaw::clusters_span_components>(ObserverKind::bone_centre).contacts.empty());
 }
 
-// Mutations: float_below and float_below_sum return the nearest float (containment); next_below steps up
-// (both); kdop_of(MovingPoint) and swept_vertex_bounds take the start alone (both).
+// Mutations of vertex_bounds.cpp: rounded to the nearest float (only this test notices: rounding is monotone,
+// so bodies that touch still overlap); rounded up; the start alone bounded.
 TEST(Traps, Trap05BoundsContainTheExactMotionAtBothEnds) {
   constexpr int kDirection[8][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
                                     {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
@@ -215,6 +215,7 @@ TEST(Traps, Trap05BoundsContainTheExactMotionAtBothEnds) {
   }
 }
 
+// Mutations of vertex_bounds.cpp: rounded up; the start alone bounded.
 TEST(Traps, Trap05BodiesThatTouchExactlyAreFound) {
   std::size_t touching = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
@@ -470,8 +471,8 @@ std::vector<std::uint64_t> counters(const Report& report) {
           report.pairs.elementary_tests};
 }
 
-// Mutations: MegaClusters::regrow does not reset labels; `fits` returns after the suspects; FeaturePairSet's
-// epoch stays; finish_classes runs once only.
+// Mutations: MegaClusters::regrow does not reset its labels; `fits` accepts once the suspects have passed;
+// FeaturePairSet's epoch stays; finish_classes or the refit of the vertices happens once only.
 TEST(Traps, Trap12AnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
   const ElementaryTest& newton = elementary_test_named("newton");
   for (std::uint64_t seed = 1; seed <= 22; ++seed) {
@@ -512,8 +513,8 @@ TEST(Traps, Trap12AnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
 }
 
 // A thin flap goes through a positive face: the vertices of its underside first, reported; its upper vertex
-// later, positive against positive, which the guarantee allows to be lost. Mutation: verify compares numbers
-// of contacts.
+// later, positive against positive, which the guarantee allows to be lost. Mutations: verify compares numbers
+// of contacts; any contact will do for the first.
 TEST(Traps, Trap13FewerContactsAreNoFailureWhileTheFirstIsKept) {
   const Shape flap{
       {{-0.5, -2, 1.5}, {0.5, -2, 1.5}, {0, -1, 1.5}, {0, -1.6, 1.55}},

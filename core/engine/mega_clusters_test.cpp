@@ -240,8 +240,7 @@ TEST(MegaClusters, NothingMergesWithoutToleranceAndAStraightTubeMergesWithAll) {
   EXPECT_LT(Machine(body, 0.6).run(rest).count, body.clusters.clusters.size() / 2 + 1);
 }
 
-// Mutations: suspects_ decide alone (`return true` after the early loop); classes of a refused candidate are
-// kept; label_ is not reset.
+// Mutations: suspects_ decide alone; label_ is not reset.
 TEST(MegaClusters, Trap12TheCacheChangesNothingInAnyOrderOfIntervals) {
   for (const bool branching : {false, true}) {
     const Body body(branching, 0.3);

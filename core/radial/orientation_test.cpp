@@ -99,7 +99,7 @@ TEST(PointObserver, CoefficientsOfOneSignWellAboveTheBoundAreCertain) {
   EXPECT_GT(certain, 1000);
 }
 
-// Mutation: error bounds set to zero (in bernstein.h, and kErrorFactor here) - wrong signs in both tests.
+// Mutation: kTripleProductError set to zero.
 TEST(Orientation, Trap04SignsBeneathTheErrorBoundAreUncertain) {
   Dice dice(3);
   int wrong_without_bound = 0, certain = 0;
@@ -127,6 +127,7 @@ TEST(Orientation, Trap04SignsBeneathTheErrorBoundAreUncertain) {
   EXPECT_LT(certain, 6000);
 }
 
+// Mutation: coefficients that are zero or positive count as positive.
 TEST(Orientation, Trap04TangentTrianglesAreUncertainNearAndFar) {
   for (const double offset : {0.0, 1e3, 1e9, 1e15}) {
     const Vec3 o(offset, -offset, offset);
