@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Shape {
   std::vector<Triangle> triangles;    // [triangles]
   std::vector<JointWeights> weights;  // [vertices]
   Rig rig;
+  std::vector<std::string> bone_names;  // [bones], no two alike: "left_forearm"
 };
 
 // One row of the list of shapes.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "scenes/shape/bone_chain.h"
 #include "scenes/shape/circle.h"
 
 namespace cscd::scenes {
@@ -26,28 +27,6 @@ ProfilePoint profile_at(double arc, double radius, double length) {
   if (arc <= cap + straight) return {radius + (arc - cap), radius};
   const CirclePoint point = circle_point((2 * cap + straight - arc) / cap / 4);
   return {length - radius * (1 - point.cosine), radius * point.sine};
-}
-
-// Quadratic B-spline weights at `place`, measured in bones from the head of the first. What the spline gives
-// to bones beyond the ends goes to the end bones.
-JointWeights spline_weights(double place, int bones) {
-  const int centre = std::clamp(static_cast<int>(std::floor(place)), 0, bones - 1);
-  const double t = std::clamp(place - centre, 0.0, 1.0);
-  const double share[3] = {(1 - t) * (1 - t) / 2, 0.75 - (t - 0.5) * (t - 0.5), t * t / 2};
-  JointWeights weights;
-  std::size_t used = 0;
-  for (int k = -1; k <= 1; ++k) {
-    const BoneId bone{std::clamp(centre + k, 0, bones - 1)};
-    const double amount = share[k + 1];
-    if (amount == 0) continue;
-    if (used > 0 && weights.bone[used - 1] == bone) {
-      weights.weight[used - 1] += amount;
-    } else {
-      weights.bone[used] = bone;
-      weights.weight[used++] = amount;
-    }
-  }
-  return weights;
 }
 
 // The axis at one arc length, and the frame of the cross-section there.
@@ -151,11 +130,9 @@ Shape tube(const TubeParameters& p) {
       shape.triangles.push_back({a, c, d});
     }
 
-  const auto joint = [&](int i) { return axis.at(p.radius + i * bone_length).centre; };
-  for (int bone = 0; bone < p.bones; ++bone) {
-    shape.rig.parent.push_back(BoneId{bone - 1});
-    shape.rig.reference.push_back({joint(bone), joint(bone + 1)});
-  }
+  std::vector<Vec3> joints;
+  for (int i = 0; i <= p.bones; ++i) joints.push_back(axis.at(p.radius + i * bone_length).centre);
+  append_chain(joints, shape);
   return shape;
 }
 

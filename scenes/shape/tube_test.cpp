@@ -41,6 +41,8 @@ void expect_well_formed(const TubeParameters& p) {
 
   EXPECT_EQ(shape.rig.parent.size(), static_cast<std::size_t>(p.bones));
   EXPECT_NO_THROW(validate(shape.rig));
+  ASSERT_EQ(shape.bone_names.size(), shape.rig.parent.size());
+  EXPECT_EQ(shape.bone_names.back(), "bone_" + std::to_string(p.bones - 1));
   for (const JointWeights& weights : shape.weights) {
     double sum = 0;
     for (std::size_t k = 0; k < JointWeights::most; ++k) {
