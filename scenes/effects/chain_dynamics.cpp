@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "scenes/effects/chain.h"
 #include "scenes/effects/effect.h"
+#include "scenes/effects/keys.h"
 #include "scenes/shape/circle.h"
 
 namespace cscd::scenes {
@@ -22,49 +23,18 @@ namespace {
 class EndPath {
  public:
   EndPath(const Parameters::Table& keys, const Vec3& axis, const std::string& who)
-      : keys_(keys), axis_(axis) {
-    if (keys_.empty()) throw InputError(who + ": the path of an end has no keys");
-    for (std::size_t i = 1; i < keys_.size(); ++i)
-      if (!(keys_[i][0] > keys_[i - 1][0]))
-        throw InputError(who + ": the frames of a path's keys must increase");
-  }
+      : curve_(keys, who), axis_(axis) {}
 
   // Nothing before the first key and after the last: the end is then free.
   std::optional<Vec3> at(double frame) const {
-    if (frame < keys_.front()[0] || frame > keys_.back()[0]) return std::nullopt;
-    std::size_t next = 1;
-    while (next < keys_.size() && keys_[next][0] < frame) ++next;
-    if (next == keys_.size()) return place(keys_.back()[1], keys_.back()[2], keys_.back()[3]);
-    const double t = (frame - keys_[next - 1][0]) / (keys_[next][0] - keys_[next - 1][0]);
-    return place(value(next, t, 1), value(next, t, 2), value(next, t, 3));
+    if (frame < curve_.first_frame() || frame > curve_.last_frame()) return std::nullopt;
+    const double radius = curve_.at(frame, 1), height = curve_.at(frame, 3);
+    const CirclePoint point = circle_point(curve_.at(frame, 2));
+    return Vec3(axis_.x() + radius * point.cosine, axis_.y() + radius * point.sine, axis_.z() + height);
   }
 
  private:
-  // Cubic Hermite through the keys, with slopes that do not overshoot (Fritsch, Butland, "A method for
-  // constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 1984).
-  double value(std::size_t next, double t, std::size_t column) const {
-    const double from = keys_[next - 1][column], to = keys_[next][column];
-    const double span = keys_[next][0] - keys_[next - 1][0];
-    const double a = slope(next - 1, column) * span, b = slope(next, column) * span;
-    const double u = 1 - t;
-    return u * u * (1 + 2 * t) * from + t * u * u * a + t * t * (1 + 2 * u) * to - t * t * u * b;
-  }
-  double slope(std::size_t key, std::size_t column) const {
-    if (key == 0 || key + 1 == keys_.size()) return 0;
-    const double before_span = keys_[key][0] - keys_[key - 1][0],
-                 after_span = keys_[key + 1][0] - keys_[key][0];
-    const double before = (keys_[key][column] - keys_[key - 1][column]) / before_span;
-    const double after = (keys_[key + 1][column] - keys_[key][column]) / after_span;
-    if (before * after <= 0) return 0;
-    const double share = (before_span + 2 * after_span) / (3 * (before_span + after_span));
-    return before * after / (share * after + (1 - share) * before);
-  }
-  Vec3 place(double radius, double turns, double height) const {
-    const CirclePoint point = circle_point(turns);
-    return {axis_.x() + radius * point.cosine, axis_.y() + radius * point.sine, axis_.z() + height};
-  }
-
-  Parameters::Table keys_;
+  KeyCurve curve_;
   Vec3 axis_;
 };
 
@@ -82,8 +52,8 @@ class ChainDynamics final : public Effect {
       throw InputError(p.where() + ": parameter steady_bone is " + std::to_string(steady_) +
                        "; the chain has " + std::to_string(shape.rig.parent.size()) +
                        " bones, numbered from 0");
-    if (p.has("first_end")) ends_[0].emplace(p.table("first_end"), axis, p.where());
-    if (p.has("last_end")) ends_[1].emplace(p.table("last_end"), axis, p.where());
+    for (const auto& [end, name] : {std::pair(0, "first_end"), std::pair(1, "last_end")})
+      if (p.has(name)) ends_[end].emplace(p.table(name), axis, p.where() + ": parameter " + name);
     const double bend_radius = p.number("bend_radius");
     for (const Bone& bone : shape.rig.reference) lengths_.push_back((bone.tail - bone.head).norm());
     for (std::size_t i = 1; i < lengths_.size(); ++i) {

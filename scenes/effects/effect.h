@@ -24,6 +24,7 @@ struct SceneState {
   std::vector<Bone> bones;
   std::vector<Eigen::Matrix3d> rotations;  // of each bone, from its reference pose
   std::vector<Vec3> positions;
+  double posed = 0;             // the time for which kinematic effects have begun a pose from rest
   std::size_t steady_bone = 0;  // of a chain: the one that does not spin about its own axis
 };
 

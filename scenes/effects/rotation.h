@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/base/vec3.h"
+#include "scenes/shape/circle.h"
 
 namespace cscd::scenes {
 
@@ -19,5 +20,37 @@ inline Eigen::Matrix3d composed(const Eigen::Matrix3d& after, const Eigen::Matri
   for (int column = 0; column < 3; ++column) product.col(column) = rotated(after, before.col(column));
   return product;
 }
+
+// About a unit vector. Made orthogonal to the last bits, which circle_point has cut off: poses multiply many.
+inline Eigen::Matrix3d rotation_about(const Vec3& axis, double turns) {
+  CirclePoint point = circle_point(turns);
+  const double length = std::sqrt(point.cosine * point.cosine + point.sine * point.sine);
+  point = {point.cosine / length, point.sine / length};
+  Eigen::Matrix3d rotation;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      rotation(row, column) = (1 - point.cosine) * axis[row] * axis[column];
+  const Vec3 sine = point.sine * axis;
+  rotation(0, 0) += point.cosine;
+  rotation(1, 1) += point.cosine;
+  rotation(2, 2) += point.cosine;
+  rotation(0, 1) -= sine.z();
+  rotation(1, 0) += sine.z();
+  rotation(0, 2) += sine.y();
+  rotation(2, 0) -= sine.y();
+  rotation(1, 2) -= sine.x();
+  rotation(2, 1) += sine.x();
+  return rotation;
+}
+
+// About the direction of `vector`, by its length in turns.
+inline Eigen::Matrix3d rotation_by(const Vec3& vector) {
+  const double turns = vector.norm();
+  if (turns == 0) return Eigen::Matrix3d::Identity();
+  return rotation_about(vector / turns, turns);
+}
+
+// The smallest rotation that takes one unit vector to another.
+Eigen::Matrix3d smallest_rotation(const Vec3& from, const Vec3& to);
 
 }  // namespace cscd::scenes

@@ -24,28 +24,28 @@ std::string shown(double value) {
   return text.str();
 }
 
-void check_value(const Parameters& parameters, const ParameterRow& row) {
+void check_value(const Parameters& parameters, std::string_view name, const ParameterRow& row) {
   switch (row.kind) {
     case ParameterKind::integer:
-      (void)parameters.integer(row.name);
+      (void)parameters.integer(name);
       [[fallthrough]];
     case ParameterKind::number: {
-      const double value = parameters.number(row.name);
+      const double value = parameters.number(name);
       if (value < row.least || value > row.most)
-        refuse(parameters, row.name,
+        refuse(parameters, name,
                "is " + shown(value) + "; it must be in [" + shown(row.least) + ", " + shown(row.most) + "]");
       break;
     }
     case ParameterKind::vector:
-      (void)parameters.vector(row.name);
+      (void)parameters.vector(name);
       break;
     case ParameterKind::text:
-      (void)parameters.text(row.name);
+      (void)parameters.text(name);
       break;
     case ParameterKind::table:
-      for (const std::vector<double>& line : parameters.table(row.name))
+      for (const std::vector<double>& line : parameters.table(name))
         if (line.size() != row.columns)
-          refuse(parameters, row.name,
+          refuse(parameters, name,
                  "has a row of " + std::to_string(line.size()) + " numbers; give " +
                      std::to_string(row.columns) + " (" + std::string(row.meaning) + ")");
       break;
@@ -106,16 +106,15 @@ const Parameters::Table& Parameters::table(std::string_view name) const {
 
 void check(const Parameters& parameters, std::span<const ParameterRow> rows) {
   for (const auto& [name, value] : parameters.values()) {
-    bool known = false;
-    for (const ParameterRow& row : rows) known = known || row.name == name;
+    const ParameterRow* known = nullptr;
+    for (const ParameterRow& row : rows)
+      if (row.name == name || (row.name == "*" && !known)) known = &row;
     if (!known) refuse(parameters, name, "is unknown; known are: " + names(rows));
+    check_value(parameters, name, *known);
   }
-  for (const ParameterRow& row : rows) {
-    if (parameters.has(row.name))
-      check_value(parameters, row);
-    else if (row.required)
+  for (const ParameterRow& row : rows)
+    if (row.required && !parameters.has(row.name))
       refuse(parameters, row.name, "is missing (" + std::string(row.meaning) + "); add it to the scene file");
-  }
 }
 
 }  // namespace cscd::scenes

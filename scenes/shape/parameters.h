@@ -17,7 +17,7 @@ enum class ParameterKind { number, integer, vector, table, text };
 
 // One parameter that a shape or an effect takes.
 struct ParameterRow {
-  std::string_view name;
+  std::string_view name;  // "*" for any name that no other row has: a bone's, say
   ParameterKind kind;
   std::string_view meaning;  // with units, in a line
   bool required = true;

@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <string>
+
+#include "core/base/error.h"
+#include "scenes/effects/keys.h"
+#include "scenes/effects/rotation.h"
+#include "scenes/effects/tree_pose.h"
+
+namespace cscd::scenes {
+namespace {
+
+// Poses bones by keys, as an animator does. Parameters other than the few below name bones; the rotation
+// vectors of all those that name a bone add up.
+class Keyframes final : public Effect {
+ public:
+  Keyframes(const Parameters& p, const Shape& shape, std::span<const ParameterRow> rows)
+      : envelope_(Envelope::from(p)), of_bone_(shape.rig.parent.size()) {
+    require_tree(shape, p.where());
+    const auto curve = [&](const std::string& name) {
+      const std::string who = p.where() + ": parameter " + name;
+      return p.has("period") ? KeyCurve::periodic(p.table(name), p.number("period"), who)
+                             : KeyCurve(p.table(name), who);
+    };
+    for (const auto& [name, value] : p.values()) {
+      bool own = false;
+      for (const ParameterRow& row : rows) own = own || row.name == name;
+      if (own && std::ranges::find(shape.bone_names, name) != shape.bone_names.end())
+        throw InputError(p.where() + ": parameter " + name + " is the name of a bone too; rename the bone");
+      if (own) continue;
+      for (const std::size_t bone : select_bones(shape, name, p.where() + ": parameter " + name))
+        of_bone_[bone].push_back(curves_.size());
+      curves_.push_back(curve(name));
+    }
+    if (p.has("root")) root_ = curves_.size(), curves_.push_back(curve("root"));
+  }
+
+  void step(SceneState& state) override {
+    pose_from_rest(state);
+    const double weight = envelope_.at(state.time);
+    if (weight == 0) return;
+    std::vector<Vec3> values;
+    for (const KeyCurve& curve : curves_)
+      values.push_back(weight *
+                       Vec3(curve.at(state.time, 1), curve.at(state.time, 2), curve.at(state.time, 3)));
+    turn_bones(state, [&](std::size_t bone) {
+      Vec3 turns = Vec3::Zero();
+      for (const std::size_t curve : of_bone_[bone]) turns += values[curve];
+      return rotation_by(turns);
+    });
+    if (root_ == SIZE_MAX) return;
+    for (Bone& bone : state.bones) bone = {bone.head + values[root_], bone.tail + values[root_]};
+  }
+
+ private:
+  Envelope envelope_;
+  std::vector<KeyCurve> curves_;
+  std::vector<std::vector<std::size_t>> of_bone_;  // which curves turn it
+  std::size_t root_ = SIZE_MAX;                    // the curve of the translation
+};
+
+const ParameterRow kRows[] = {
+    {"root", ParameterKind::table, "frame, x, y, z: translation of the whole skeleton", false, -1e300, 1e300,
+     4},
+    {"period", ParameterKind::number, "after which the keys repeat, in frames", false, 1e-9, 1e9},
+    {"start", ParameterKind::number, "frame before which the effect does nothing", false},
+    {"end", ParameterKind::number, "frame after which it does nothing", false},
+    {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
+    {"*", ParameterKind::table,
+     "a bone's name (* for any text): frame, x, y, z: its rotation vector relative to its parent, in turns, "
+     "in "
+     "the axes of the rest pose",
+     false, -1e300, 1e300, 4},
+};
+
+}  // namespace
+
+EffectRow keyframes_row() {
+  return {"keyframes", "poses bones by keys of rotation, interpolated smoothly", Pace::substep, kRows,
+          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+            return std::make_unique<Keyframes>(parameters, shape,
+                                               std::span(kRows).first(std::size(kRows) - 1));
+          }};
+}
+
+}  // namespace cscd::scenes
