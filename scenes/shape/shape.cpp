@@ -3,12 +3,13 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "scenes/shape/box.h"
 #include "scenes/shape/tube.h"
 
 namespace cscd::scenes {
 
 std::span<const ShapeRow> shapes() {
-  static const ShapeRow rows[] = {tube_row()};
+  static const ShapeRow rows[] = {tube_row(), box_row()};
   return rows;
 }
 

@@ -1,0 +1,55 @@
+#include "scenes/shape/box.h"
+
+#include "core/base/error.h"
+#include "scenes/shape/bone_chain.h"
+#include "scenes/shape/box_grid.h"
+
+namespace cscd::scenes {
+
+Shape box(const BoxParameters& p) {
+  const auto [a, b, c] = p.cells;
+  if (a < 1 || b < 1 || c < 1 || p.bones < 1 || !(p.size.minCoeff() > 0))
+    throw InputError("box: needs at least one cell along each axis, a positive size and a bone");
+  if (2.0 * (static_cast<double>(a) * b + static_cast<double>(b) * c + static_cast<double>(c) * a) > 1 << 27)
+    throw InputError("box: more than 2^27 vertices; lower the cells");
+
+  const BoxGrid grid(p.cells);
+  Shape shape;
+  shape.positions.reserve(grid.vertex_count());
+  grid.for_each_node([&](const BoxGrid::Node& node, VertexId) {
+    const auto share = [&](std::size_t axis) { return static_cast<double>(node[axis]) / p.cells[axis]; };
+    shape.positions.push_back(
+        {p.size.x() * (share(0) - 0.5), p.size.y() * (share(1) - 0.5), p.size.z() * share(2)});
+    shape.weights.push_back(spline_weights(p.bones * share(2), p.bones));
+  });
+  for (const BoxGrid::Face& face : BoxGrid::faces())
+    for (int v = 0; v < p.cells[static_cast<std::size_t>(face.v())]; ++v)
+      for (int u = 0; u < p.cells[static_cast<std::size_t>(face.u())]; ++u)
+        append_quad(grid.cell(face, u, v), shape.triangles);
+
+  std::vector<Vec3> joints;
+  for (int i = 0; i <= p.bones; ++i) joints.push_back(Vec3(0, 0, p.size.z() * i / p.bones));
+  append_chain(joints, shape);
+  return shape;
+}
+
+ShapeRow box_row() {
+  static const ParameterRow rows[] = {
+      {"cells_x", ParameterKind::integer, "cells along x", true, 1, 1e5},
+      {"cells_y", ParameterKind::integer, "cells along y", true, 1, 1e5},
+      {"cells_z", ParameterKind::integer, "cells along z, the axis of the bones", true, 1, 1e5},
+      {"size", ParameterKind::vector, "lengths along x, y, z", true},
+      {"bones", ParameterKind::integer, "bones of the chain on the axis", true, 1, 1e5},
+  };
+  return {"box", "sharp-edged box on a chain of bones along z, gridded on all faces", rows,
+          [](const Parameters& parameters) {
+            BoxParameters p;
+            p.cells = {parameters.integer("cells_x"), parameters.integer("cells_y"),
+                       parameters.integer("cells_z")};
+            p.size = parameters.vector("size");
+            p.bones = parameters.integer("bones");
+            return box(p);
+          }};
+}
+
+}  // namespace cscd::scenes
