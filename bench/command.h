@@ -22,5 +22,6 @@ void add_export(CLI::App& app);
 void add_list(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_clusters(CLI::App& app);
+void add_nearness(CLI::App& app);
 
 }  // namespace cscd::bench

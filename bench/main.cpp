@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   cscd::bench::add_elementary(app);
   cscd::bench::add_export(app);
   cscd::bench::add_clusters(app);
+  cscd::bench::add_nearness(app);
   cscd::bench::add_verify(app);
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);

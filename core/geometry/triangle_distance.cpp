@@ -1,0 +1,71 @@
+#include "core/geometry/triangle_distance.h"
+
+#include <algorithm>
+
+// Two triangles that do not cross are nearest at a vertex and a face or at two edges, so the least of six and
+// nine such distances is theirs. If they cross, an edge of one pierces the other.
+namespace cscd {
+namespace {
+
+// Closest points of two segments (Ericson, "Real-Time Collision Detection", 2005, 5.1.9).
+double squared_distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
+  const Vec3 p = p1 - p0, q = q1 - q0, r = p0 - q0;
+  const double a = p.squaredNorm(), e = q.squaredNorm(), b = p.dot(q), c = p.dot(r), f = q.dot(r);
+  const double determinant = a * e - b * b;
+  double s = determinant > 0 ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
+  double t = e > 0 ? (b * s + f) / e : 0.0;
+  if (t < 0 || t > 1 || e == 0) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = a > 0 ? std::clamp((b * t - c) / a, 0.0, 1.0) : 0.0;
+  }
+  return (r + s * p - t * q).squaredNorm();
+}
+
+// On which side of each edge of the triangle, seen along its normal, a point of its plane lies.
+bool above_face(const Vec3& p, const TriangleCorners& t, const Vec3& normal) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3& from = t[k];
+    if ((t[(k + 1) % 3] - from).cross(p - from).dot(normal) < 0) return false;
+  }
+  return true;
+}
+
+struct Faced {
+  const TriangleCorners& corners;
+  Vec3 normal;
+  explicit Faced(const TriangleCorners& t) : corners(t), normal((t[1] - t[0]).cross(t[2] - t[0])) {}
+  double height(const Vec3& p) const { return (p - corners[0]).dot(normal); }  // times the normal's length
+};
+
+// Least squared distance of one triangle's vertices to the other's face, 0 if an edge pierces it.
+double to_face(const TriangleCorners& from, const Faced& face, double least) {
+  const double length = face.normal.squaredNorm();
+  if (length == 0) return least;  // its edges are all of it
+  double height[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    height[k] = face.height(from[k]);
+    if (height[k] * height[k] < least * length && above_face(from[k], face.corners, face.normal))
+      least = height[k] * height[k] / length;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if ((height[k] < 0) == (height[next] < 0)) continue;
+    const double share = height[k] / (height[k] - height[next]);
+    if (above_face(from[k] + share * (from[next] - from[k]), face.corners, face.normal)) return 0;
+  }
+  return least;
+}
+
+}  // namespace
+
+double triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {
+  double least = (a[0] - b[0]).squaredNorm();
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      least = std::min(least, squared_distance(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+  least = to_face(a, Faced(b), least);
+  least = to_face(b, Faced(a), least);
+  return std::sqrt(least);
+}
+
+}  // namespace cscd
