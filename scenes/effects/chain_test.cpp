@@ -4,18 +4,11 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "core/base/error.h"
-#include "scenes/effects/sequence.h"
+#include "scenes/effects/test_effects.h"
 #include "scenes/shape/tube.h"
 
 namespace cscd::scenes {
 namespace {
-
-using Values = std::map<std::string, Parameters::Value, std::less<>>;
-
-EffectCall call(const std::string& name, Values values = {}) {
-  return {name, Parameters("test, effect " + name, std::move(values))};
-}
 
 Shape chain(int bones, double length, const Vec3& start, const Vec3& direction) {
   TubeParameters p;
@@ -180,41 +173,18 @@ TEST(PoseChain, TurnsAStraightChainRoundWithoutLosingItsFrame) {
   }
 }
 
-TEST(SkinningLinear, CarriesTheSurfaceRigidlyWithARigidPose) {
-  const Shape shape = chain(6, 6, Vec3(1, 2, 3), Vec3::UnitX());
-  SceneState state(shape);
-  Eigen::Matrix3d turn;
-  turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  const Vec3 shift(5, -1, 2);
-  for (Bone& bone : state.bones) bone = {turn * bone.head + shift, turn * bone.tail + shift};
-  for (Eigen::Matrix3d& rotation : state.rotations) rotation = turn;
-  const EffectCall calls[] = {call("skinning_linear")};
-  EffectSequence sequence(calls, shape, 1);
-  sequence.advance(state, 1);
-  for (std::size_t i = 0; i < state.positions.size(); ++i)
-    EXPECT_LT((state.positions[i] - (turn * shape.positions[i] + shift)).norm(), 1e-12);
-}
-
 TEST(ChainEffects, RefuseAShapeWithoutAChain) {
   Shape shape = chain(4, 4, Vec3::Zero(), Vec3::UnitX());
   shape.rig.parent[2] = BoneId{0};
-  const auto refusal = [&](const EffectCall& effect) -> std::string {
-    try {
-      EffectSequence({&effect, 1}, shape, 1);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_NE(refusal(dynamics({})).find("test, effect chain_dynamics: bone 2"), std::string::npos);
-  EXPECT_NE(refusal(call("chain_contact", {{"radius", 1.0}, {"clearance", 0.1}})).find("bone 2"),
+  EXPECT_NE(refusal(shape, dynamics({})).find("test, effect chain_dynamics: bone 2"), std::string::npos);
+  EXPECT_NE(refusal(shape, call("chain_contact", {{"radius", 1.0}, {"clearance", 0.1}})).find("bone 2"),
             std::string::npos);
   shape.rig.parent[2] = BoneId{1};
-  EXPECT_EQ(refusal(dynamics({})), "");
-  EXPECT_NE(refusal(dynamics({{"steady_bone", 4.0}})).find("steady_bone is 4"), std::string::npos);
-  EXPECT_NE(
-      refusal(dynamics({{"first_end", Parameters::Table{{3, 0, 0, 0}, {3, 0, 0, 0}}}})).find("must increase"),
-      std::string::npos);
+  EXPECT_EQ(refusal(shape, dynamics({})), "");
+  EXPECT_NE(refusal(shape, dynamics({{"steady_bone", 4.0}})).find("steady_bone is 4"), std::string::npos);
+  EXPECT_NE(refusal(shape, dynamics({{"first_end", Parameters::Table{{3, 0, 0, 0}, {3, 0, 0, 0}}}}))
+                .find("must increase"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -6,11 +6,19 @@ namespace cscd::scenes {
 EffectRow chain_contact_row();
 EffectRow chain_dynamics_row();
 EffectRow keyframes_row();
+EffectRow skinning_dual_quaternion_row();
 EffectRow skinning_linear_row();
+EffectRow spring_follow_row();
+EffectRow travelling_wave_row();
+EffectRow twist_row();
+EffectRow volume_bulge_row();
 
 std::span<const EffectRow> effects() {
-  static const EffectRow rows[] = {keyframes_row(), chain_dynamics_row(), chain_contact_row(),
-                                   skinning_linear_row()};
+  static const EffectRow rows[] = {
+      keyframes_row(),     travelling_wave_row(), twist_row(),           chain_dynamics_row(),
+      chain_contact_row(), spring_follow_row(),   skinning_linear_row(), skinning_dual_quaternion_row(),
+      volume_bulge_row(),
+  };
   return rows;
 }
 

@@ -2,21 +2,13 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "scenes/effects/keys.h"
 #include "scenes/effects/rotation.h"
-#include "scenes/effects/sequence.h"
+#include "scenes/effects/test_effects.h"
 #include "scenes/effects/tree_pose.h"
 
 namespace cscd::scenes {
 namespace {
-
-using Values = std::map<std::string, Parameters::Value, std::less<>>;
-using Table = Parameters::Table;
-
-EffectCall call(const std::string& name, Values values = {}) {
-  return {name, Parameters("test, effect " + name, std::move(values))};
-}
 
 // A trunk along z with two arms at its top, each of three bones of length 1: along x, and against it.
 Shape tree() {
@@ -32,28 +24,6 @@ Shape tree() {
       add((side > 0 ? "right_" : "left_") + std::to_string(i), i == 0 ? 0 : (side > 0 ? i : 3 + i),
           Vec3(side * i, 0, 2), Vec3(side * (i + 1), 0, 2));
   return shape;
-}
-
-// The state after frames 1 to `frame`.
-SceneState run(const Shape& shape, const std::vector<EffectCall>& calls, int frame, int substeps = 1) {
-  EffectSequence sequence(calls, shape, substeps);
-  SceneState state(shape);
-  for (int i = 1; i <= frame; ++i) sequence.advance(state, i);
-  return state;
-}
-
-std::string refusal(const Shape& shape, const EffectCall& effect) {
-  try {
-    EffectSequence({&effect, 1}, shape, 1);
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
-    return error.what();
-  }
-  return "";
-}
-
-void expect_near(const Vec3& found, const Vec3& expected) {
-  EXPECT_LT((found - expected).norm(), 1e-10) << found.transpose() << " for " << expected.transpose();
 }
 
 TEST(KeyCurve, PassesThroughItsKeysWithoutOvershootAndRestsOutside) {
@@ -213,6 +183,137 @@ TEST(Keyframes, RefuseWhatTheyCannotUse) {
   shape.rig.parent[2] = BoneId{3};
   EXPECT_NE(refusal(shape, call("keyframes")).find("bone right_1 comes before its parent"),
             std::string::npos);
+}
+
+TEST(TravellingWave, RunsAlongItsChains) {
+  const Shape shape = tree();
+  const Values values = {{"bones", "*t_*"},    {"towards", std::vector<double>{0, 0, 3}},
+                         {"amplitude", 0.2},   {"first_amplitude", 0.1},
+                         {"wave_length", 4.0}, {"period", 16.0},
+                         {"phase", 0.125},     {"chain_phase", 0.5}};
+  const SceneState state = run(shape, {call("travelling_wave", values)}, 6);
+  // At frame 6 of 16: phases 3/8 + 1/8 - place/4; the second chain half a turn later.
+  const double turns[] = {0.1 * 0, 0.15 * 1, 0.2 * 0};  // sines of 1/2, 1/4, 0 turns
+  double angle = 0;
+  Vec3 right(0, 0, 2), left(0, 0, 2);
+  for (std::size_t i = 0; i < 3; ++i) {
+    angle += 2 * std::numbers::pi * turns[i];
+    right += Vec3(std::cos(angle), 0, std::sin(angle));
+    left += Vec3(-std::cos(angle), 0, -std::sin(angle));
+    expect_near(state.bones[1 + i].tail, right);
+    expect_near(state.bones[4 + i].tail, left);
+  }
+  expect_near(state.bones[0].tail, {0, 0, 2});
+}
+
+TEST(TravellingWave, FadesAndAddsUp) {
+  const Shape shape = tree();
+  Values values = {{"bones", "right_0"}, {"axis", std::vector<double>{0, 0, 2}},
+                   {"amplitude", 0.25},  {"wave_length", 1.0},
+                   {"period", 40.0},     {"start", 5.0},
+                   {"fade", 10.0}};
+  const EffectCall wave = call("travelling_wave", values);
+  expect_near(run(shape, {wave}, 5).bones[1].tail, {1, 0, 2});
+  // At frame 10 the wave is at its crest and half faded in.
+  expect_near(run(shape, {wave}, 10).bones[1].tail, {std::sqrt(0.5), std::sqrt(0.5), 2});
+  expect_near(run(shape, {wave, wave}, 10).bones[1].tail, {0, 1, 2});
+  const EffectCall keys = call("keyframes", {{"right_0", Table{{0, 0, 0, -0.125}}}});
+  expect_near(run(shape, {keys, wave}, 10).bones[1].tail, {1, 0, 2});
+}
+
+TEST(Twist, SharesItsTurnsAmongTheBones) {
+  const Shape shape = tree();
+  const EffectCall twist = call("twist", {{"bones", "right_*"}, {"turns", Table{{0, 0}, {8, 0.5}}}});
+  const SceneState state = run(shape, {twist}, 8);
+  EXPECT_EQ(state.rotations[1], Eigen::Matrix3d::Identity());
+  expect_near(rotated(state.rotations[2], Vec3::UnitY()), Vec3::UnitZ());
+  expect_near(rotated(state.rotations[3], Vec3::UnitY()), -Vec3::UnitY());
+  expect_near(state.bones[3].tail, {3, 0, 2});
+  EXPECT_EQ(state.rotations[4], Eigen::Matrix3d::Identity());
+  // About the bone where it is, not where it was at rest.
+  const SceneState bent = run(shape, {call("keyframes", {{"right_2", Table{{0, 0, 0, 0.25}}}}), twist}, 8);
+  expect_near(bent.bones[3].tail, {2, 0, 3});
+  expect_near(rotated(bent.rotations[3], Vec3::UnitZ()), {1, 0, 0});
+}
+
+TEST(SpringFollow, SwingsLikeADampedSpringAndSettles) {
+  const Shape shape = tree();
+  // The trunk jumps aside; small angles make the mass a damped oscillator in one dimension.
+  const double jump = 1e-4;
+  const EffectCall keys = call("keyframes", {{"trunk", Table{{0, 0, jump, 0}}}});
+  const EffectCall spring =
+      call("spring_follow", {{"bones", "trunk"}, {"stiffness", 0.04}, {"damping", 0.1}});
+  EffectSequence sequence(std::vector{keys, spring}, shape, 256);
+  SceneState state(shape);
+  const double aside = 2 * 2 * std::numbers::pi * jump, decay = 0.05;
+  const double frequency = std::sqrt(0.04 - decay * decay);
+  for (int frame = 1; frame <= 60; ++frame) {
+    sequence.advance(state, frame);
+    const double expected =
+        aside * (1 - std::exp(-decay * frame) *
+                         (std::cos(frequency * frame) + decay / frequency * std::sin(frequency * frame)));
+    ASSERT_NEAR(state.bones[0].tail.x(), expected, 0.005 * aside) << "frame " << frame;
+  }
+  EXPECT_LT((state.bones[1].head - state.bones[0].tail).norm(), 1e-12) << "arms hang on the trunk";
+  EXPECT_NEAR((state.bones[0].tail - state.bones[0].head).norm(), 2, 1e-12);
+}
+
+TEST(SpringFollow, StaysBoundedWhateverItsParameters) {
+  const Shape shape = tree();
+  const EffectCall keys =
+      call("keyframes", {{"trunk", Table{{0, 0, 0, 0}, {1, 0.4, 0, 0}, {2, 0, 0.5, 0}}}, {"period", 3.0}});
+  for (const double stiffness : {0.0, 1e-6, 0.3, 1e9})
+    for (const double damping : {0.0, 1e-3, 1e9}) {
+      const EffectCall spring =
+          call("spring_follow", {{"bones", "*"}, {"stiffness", stiffness}, {"damping", damping}});
+      const SceneState state = run(shape, {keys, spring}, 300);
+      for (std::size_t bone = 0; bone < 7; ++bone) {
+        EXPECT_NEAR((state.bones[bone].tail - state.bones[bone].head).norm(), bone == 0 ? 2 : 1, 1e-9);
+        EXPECT_LT(
+            (state.rotations[bone] * state.rotations[bone].transpose() - Eigen::Matrix3d::Identity()).norm(),
+            1e-9);
+      }
+    }
+}
+
+TEST(SpringFollow, IsThePoseWhereTheSpringIsStiff) {
+  const Shape shape = tree();
+  const EffectCall keys = call("keyframes", {{"*", Table{{0, 0, 0, 0}, {10, 0.03, 0.05, -0.02}}}});
+  const EffectCall stiff = call("spring_follow", {{"bones", "*"}, {"stiffness", 1e9}, {"damping", 0.0}});
+  const SceneState plain = run(shape, {keys}, 7), sprung = run(shape, {keys, stiff}, 7);
+  for (std::size_t bone = 0; bone < 7; ++bone)
+    EXPECT_LT((plain.bones[bone].tail - sprung.bones[bone].tail).norm(), 1e-6);
+}
+
+TEST(TreeEffects, RefuseWhatTheyCannotUse) {
+  Shape shape = tree();
+  const Values wave = {{"bones", "right_*"}, {"amplitude", 0.1}, {"wave_length", 3.0}, {"period", 9.0}};
+  const auto with = [](Values values, const Values& more) {
+    for (const auto& [name, value] : more) values.insert_or_assign(name, value);
+    return values;
+  };
+  const std::vector<double> x = {1, 0, 0}, z = {0, 0, 1};
+  EXPECT_EQ(refusal(shape, call("travelling_wave", with(wave, {{"axis", z}}))), "");
+  EXPECT_EQ(refusal(shape, call("travelling_wave", wave)),
+            "test, effect travelling_wave: give one of the parameters axis and towards");
+  EXPECT_EQ(
+      refusal(shape, call("travelling_wave", with(wave, {{"towards", x}}))),
+      "test, effect travelling_wave: bone right_0 lies along the direction to turn towards, or that is zero; "
+      "choose another");
+  EXPECT_NE(refusal(shape, call("travelling_wave", with(wave, {{"axis", z}, {"bones", "leg*"}})))
+                .find("no bone is called leg*; known are: trunk"),
+            std::string::npos);
+  EXPECT_EQ(refusal(shape, call("travelling_wave", with(wave, {{"axis", z}, {"wave_length", 0.0}}))),
+            "test, effect travelling_wave: parameter wave_length must not be 0");
+  EXPECT_EQ(refusal(shape, call("twist", {{"bones", "trunk"}, {"turns", Table{{0, 0}}}})),
+            "test, effect twist: bone trunk is a chain of its own; choose chains of at least two bones");
+  EXPECT_EQ(refusal(shape, call("twist", {{"bones", "*"}, {"turns", Table{{2, 0}, {1, 0}}}})),
+            "test, effect twist: parameter turns: the frames of its keys must increase");
+  EXPECT_EQ(refusal(shape, call("spring_follow", {{"bones", "*"}, {"stiffness", -1.0}, {"damping", 0.0}})),
+            "test, effect spring_follow: parameter stiffness is -1; it must be in [0, 1e+09]");
+  shape.rig.reference[4].tail = shape.rig.reference[4].head;
+  EXPECT_EQ(refusal(shape, call("spring_follow", {{"bones", "*"}, {"stiffness", 1.0}, {"damping", 0.0}})),
+            "test, effect spring_follow: bone left_0 has no length; leave it out");
 }
 
 }  // namespace

@@ -64,5 +64,24 @@ TEST(Parameters, NameWhatIsWrong) {
             "scene s, effect e: parameter path has a row of 3 numbers; give 2 (time, height)");
 }
 
+TEST(Parameters, MayHaveAnyNameWhereARowSaysSo) {
+  const ParameterRow rows[] = {{"*", ParameterKind::vector, "of a thing of that name", false},
+                               {"count", ParameterKind::integer, "how many"}};
+  const auto refused = [&](std::map<std::string, Parameters::Value, std::less<>> values) -> std::string {
+    try {
+      check(Parameters("scene s, effect e", std::move(values)), rows);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused({{"count", 3.0}, {"anything", std::vector<double>{1, 2, 3}}}), "");
+  EXPECT_EQ(refused({{"count", 3.0}, {"anything", 1.0}}),
+            "scene s, effect e: parameter anything must be a list of three numbers");
+  EXPECT_EQ(refused({{"count", 0.5}}), "scene s, effect e: parameter count must be a whole number");
+  EXPECT_EQ(refused({{"other", std::vector<double>{1, 2, 3}}}),
+            "scene s, effect e: parameter count is missing (how many); add it to the scene file");
+}
+
 }  // namespace
 }  // namespace cscd::scenes

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "scenes/effects/sequence.h"
+
+namespace cscd::scenes {
+
+using Values = std::map<std::string, Parameters::Value, std::less<>>;
+using Table = Parameters::Table;
+
+inline EffectCall call(const std::string& name, Values values = {}) {
+  return {name, Parameters("test, effect " + name, std::move(values))};
+}
+
+// The state after frames 1 to `frame`.
+inline SceneState run(const Shape& shape, const std::vector<EffectCall>& calls, int frame, int substeps = 1) {
+  EffectSequence sequence(calls, shape, substeps);
+  SceneState state(shape);
+  for (int i = 1; i <= frame; ++i) sequence.advance(state, i);
+  return state;
+}
+
+// What the effect's refusal says; nothing if it is accepted.
+inline std::string refusal(const Shape& shape, const EffectCall& effect) {
+  try {
+    EffectSequence({&effect, 1}, shape, 1);
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
+    return error.what();
+  }
+  return "";
+}
+
+inline void expect_near(const Vec3& found, const Vec3& expected) {
+  EXPECT_LT((found - expected).norm(), 1e-11) << found.transpose() << " for " << expected.transpose();
+}
+
+}  // namespace cscd::scenes

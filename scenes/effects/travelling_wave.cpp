@@ -1,0 +1,87 @@
+#include "core/base/error.h"
+#include "scenes/effects/keys.h"
+#include "scenes/effects/rotation.h"
+#include "scenes/effects/tree_pose.h"
+
+namespace cscd::scenes {
+namespace {
+
+// A wave that runs along chains of bones, as through tentacles and tails. In turns, and with time in frames,
+// the bone at place s of n + 1 in chain c turns by
+//   envelope(time) (a + (b - a) s / n) sin(time / period - s / wave_length + phase + c chain_phase),
+// the amplitude going from a at the first bone to b at the last.
+class TravellingWave final : public Effect {
+ public:
+  TravellingWave(const Parameters& p, const Shape& shape)
+      : envelope_(Envelope::from(p)),
+        period_(p.number("period")),
+        turn_(shape.rig.parent.size(), Turn{Vec3::Zero(), 0, 0}) {
+    require_tree(shape, p.where());
+    if (p.has("axis") == p.has("towards"))
+      throw InputError(p.where() + ": give one of the parameters axis and towards");
+    if (p.number("wave_length") == 0) throw InputError(p.where() + ": parameter wave_length must not be 0");
+    const Vec3 given = p.vector(p.has("axis") ? "axis" : "towards");
+    const double first = p.number("first_amplitude", 0), last = p.number("amplitude");
+    for (const ChainBone& at : select_chains(shape, p.text("bones"), p.where())) {
+      const Bone& bone = shape.rig.reference[at.bone];
+      const Vec3 axis = p.has("axis") ? given : (bone.tail - bone.head).cross(given);
+      if (!(axis.norm() > 0))
+        throw InputError(p.where() + ": bone " + shape.bone_names[at.bone] +
+                         " lies along the direction to turn towards, or that is zero; choose another");
+      const auto place = static_cast<double>(at.place), chain = static_cast<double>(at.chain);
+      const double share = at.length > 0 ? place / static_cast<double>(at.length) : 1;
+      turn_[at.bone] = {
+          axis.normalized(), first + (last - first) * share,
+          p.number("phase", 0) + chain * p.number("chain_phase", 0) - place / p.number("wave_length")};
+    }
+  }
+
+  void step(SceneState& state) override {
+    pose_from_rest(state);
+    const double weight = envelope_.at(state.time);
+    if (weight == 0) return;
+    turn_bones(state, [&](std::size_t bone) -> Eigen::Matrix3d {
+      const Turn& turn = turn_[bone];
+      if (turn.amplitude == 0) return Eigen::Matrix3d::Identity();
+      const double sine = circle_point(state.time / period_ + turn.phase).sine;
+      return rotation_about(turn.axis, weight * turn.amplitude * sine);
+    });
+  }
+
+ private:
+  struct Turn {
+    Vec3 axis;
+    double amplitude, phase;
+  };
+  Envelope envelope_;
+  double period_;
+  std::vector<Turn> turn_;  // [bones]
+};
+
+}  // namespace
+
+EffectRow travelling_wave_row() {
+  static const ParameterRow rows[] = {
+      {"bones", ParameterKind::text, "names of the chains' bones, * for any text"},
+      {"axis", ParameterKind::vector, "to turn about, in the axes of the rest pose", false},
+      {"towards", ParameterKind::vector, "or: where each bone leans first, in the axes of the rest pose",
+       false},
+      {"amplitude", ParameterKind::number, "of a chain's last bone, in turns", true, -1, 1},
+      {"first_amplitude", ParameterKind::number, "of a chain's first bone, in turns; 0 if not given", false,
+       -1, 1},
+      {"wave_length", ParameterKind::number, "in bones; below 0 the wave runs to the first bone", true, -1e9,
+       1e9},
+      {"period", ParameterKind::number, "of a bone's swing, in frames", true, 1e-3, 1e9},
+      {"phase", ParameterKind::number, "of the first bone at frame 0, in turns", false},
+      {"chain_phase", ParameterKind::number, "from each chain to the next, in turns", false},
+      {"start", ParameterKind::number, "frame before which the effect does nothing", false},
+      {"end", ParameterKind::number, "frame after which it does nothing", false},
+      {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
+  };
+  return {"travelling_wave", "runs waves along chains of bones", Pace::substep, rows,
+          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+            return std::make_unique<TravellingWave>(parameters, shape);
+          }};
+}
+
+}  // namespace cscd::scenes

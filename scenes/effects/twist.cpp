@@ -1,0 +1,60 @@
+#include "core/base/error.h"
+#include "scenes/effects/keys.h"
+#include "scenes/effects/rotation.h"
+#include "scenes/effects/tree_pose.h"
+
+namespace cscd::scenes {
+namespace {
+
+// Wrings chains of bones: each bone but the first turns about its own axis, against the bone before it, by
+// the same share of the turns that the keys ask for between first and last.
+class Twist final : public Effect {
+ public:
+  Twist(const Parameters& p, const Shape& shape)
+      : turns_(p.table("turns"), p.where() + ": parameter turns"),
+        share_(shape.rig.parent.size(), 0),
+        axis_(shape.rig.parent.size()) {
+    require_tree(shape, p.where());
+    for (const ChainBone& at : select_chains(shape, p.text("bones"), p.where())) {
+      if (at.length == 0)
+        throw InputError(p.where() + ": bone " + shape.bone_names[at.bone] +
+                         " is a chain of its own; choose chains of at least two bones");
+      const Bone& bone = shape.rig.reference[at.bone];
+      if (bone.head == bone.tail)
+        throw InputError(p.where() + ": bone " + shape.bone_names[at.bone] + " has no length, hence no axis");
+      axis_[at.bone] = (bone.tail - bone.head).normalized();
+      if (at.place > 0) share_[at.bone] = 1 / static_cast<double>(at.length);
+    }
+  }
+
+  void step(SceneState& state) override {
+    pose_from_rest(state);
+    const double turns = turns_.at(state.time, 1);
+    if (turns == 0) return;
+    turn_bones(state, [&](std::size_t bone) -> Eigen::Matrix3d {
+      if (share_[bone] == 0) return Eigen::Matrix3d::Identity();
+      return rotation_about(axis_[bone], share_[bone] * turns);
+    });
+  }
+
+ private:
+  KeyCurve turns_;
+  std::vector<double> share_;  // [bones]
+  std::vector<Vec3> axis_;     // [bones], where there is a share
+};
+
+}  // namespace
+
+EffectRow twist_row() {
+  static const ParameterRow rows[] = {
+      {"bones", ParameterKind::text, "names of the chains' bones, * for any text"},
+      {"turns", ParameterKind::table, "frame, turns of the last bone against the first", true, -1e300, 1e300,
+       2},
+  };
+  return {"twist", "turns the bones of a chain about the chain's own axis", Pace::substep, rows,
+          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+            return std::make_unique<Twist>(parameters, shape);
+          }};
+}
+
+}  // namespace cscd::scenes
