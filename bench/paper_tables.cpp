@@ -1,10 +1,7 @@
 #include "bench/paper_tables.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <stdexcept>
 
-#include "bench/catalogue.h"
 #include "bench/data.h"
 
 namespace cscd::bench {
@@ -12,139 +9,72 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
 }
 
 // "table1.{scene}.rvbc.DfHd" in the published figures; null when nothing stands there.
-const ordered_json* find_published(const ordered_json& published, std::string path,
+const ordered_json* find_published(const ordered_json& published, const std::string& path,
                                    const std::string& scene) {
-  const std::string wildcard = "{scene}";
-  if (const std::size_t at = path.find(wildcard); at != std::string::npos)
-    path.replace(at, wildcard.size(), scene);
   const ordered_json* place = &published;
-  for (const std::string& key : split(path, '.')) {
+  for (const std::string& key : split(replaced(path, "{scene}", scene), '.')) {
     if (!place->is_object() || !place->contains(key)) return nullptr;
     place = &(*place)[key];
   }
   return place;
 }
 
-// Why a cell stays empty.
-struct Missing {
-  std::string reason;
-};
-
-double summary(const std::vector<double>& samples, const std::string& statistic) {
-  if (statistic == "mean") return mean(samples);
-  if (statistic == "median") return median(samples);
-  if (statistic == "min") return *std::min_element(samples.begin(), samples.end());
-  if (statistic == "max") return *std::max_element(samples.begin(), samples.end());
-  throw std::logic_error("unknown statistic " + statistic);
+template <class Name>
+void add_new(std::vector<std::string>& names, const Name& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-// One number a repetition: the statistic over the intervals of the sum of the named stages. A stage that the
-// strategy does not have takes no time, but all of them cannot be missing.
-std::vector<double> by_repetition(const StrategyRecord& strategy, const std::string& stages,
-                                  const std::string& statistic) {
-  std::vector<std::vector<double>> sums;
-  for (const std::string& stage : split(stages, '+')) {
-    const auto column = strategy.ms.find(stage);
-    if (column == strategy.ms.end()) continue;
-    if (sums.empty()) sums.assign(column->second.size(), std::vector<double>(column->second.front().size()));
-    for (std::size_t r = 0; r < sums.size(); ++r)
-      for (std::size_t i = 0; i < sums[r].size(); ++i) sums[r][i] += column->second[r][i];
+std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::span<const Record> records) {
+  std::vector<std::string> strategies;
+  for (const Record& record : records)
+    for (const StrategyRecord& strategy : record.strategies) add_new(strategies, strategy.name);
+  std::vector<ordered_json> columns;
+  for (const ordered_json& column : definition.at("columns")) {
+    if (!column.value("each_strategy", false)) {
+      columns.push_back(column);
+      continue;
+    }
+    for (const std::string& strategy : strategies) {
+      ordered_json own = column;
+      for (auto& [key, value] : own.items())
+        if (value.is_string()) value = replaced(value, "{strategy}", strategy);
+      const bool beside_itself = own.value("over", "") == own.at("strategy");
+      if (!beside_itself) columns.push_back(std::move(own));
+    }
   }
-  if (sums.empty()) throw Missing{strategy.name + ": has no stage " + stages};
-  std::vector<double> summaries;
-  for (const std::vector<double>& repetition : sums) summaries.push_back(summary(repetition, statistic));
-  return summaries;
+  return columns;
 }
 
-std::vector<double> count_column(const StrategyRecord& strategy, const std::string& counter) {
-  const auto column = strategy.counts.find(counter);
-  if (column == strategy.counts.end()) throw Missing{strategy.name + ": does not count " + counter};
-  return {column->second.begin(), column->second.end()};
-}
-
-const StrategyRecord& strategy_of(const Record& record, const std::string& name) {
-  if (const StrategyRecord* strategy = record.strategy(name)) return *strategy;
-  const auto rows = strategies();
-  const bool built =
-      std::any_of(rows.begin(), rows.end(), [&](const Strategy& row) { return row.name == name; });
-  throw Missing{name + (built ? ": not run in this record" : ": not built yet")};
-}
-
-Cell exactly(double value) {
-  return {{}, value, {}, {}};
-}
-
-Cell estimated(const Estimate& estimate, double scale) {
-  return {{},
-          estimate.value * scale,
-          Estimate{estimate.value * scale, estimate.low * scale, estimate.high * scale},
-          {}};
-}
-
-Cell scene_cell(const SceneRecord& scene, const std::string& what) {
-  if (what == "triangles") return exactly(static_cast<double>(scene.triangles));
-  if (what == "vertices") return exactly(static_cast<double>(scene.vertices));
-  throw std::logic_error("unknown scene quantity " + what);
-}
-
-Cell preparation_cell(const StrategyRecord& strategy, const std::string& what, double scale) {
-  const PreparationRecord& preparation = strategy.preparation;
-  if (what == "atomic_clusters") {
-    if (!preparation.atomic_clusters) throw Missing{strategy.name + ": has no clusters"};
-    return exactly(*preparation.atomic_clusters);
+std::vector<std::string> rows_of(const ordered_json& definition, const ordered_json& published,
+                                 std::span<const Record> records, const std::string& only_scene) {
+  std::vector<std::string> scenes;
+  if (definition.contains("scenes")) {
+    if (const ordered_json* rows = find_published(published, definition["scenes"], ""))
+      for (const auto& [scene, figures] : rows->items()) scenes.push_back(scene);
+  } else {
+    for (const Record& record : records) add_new(scenes, record.scene.name);
   }
-  const std::vector<double>& samples =
-      what == "distance_and_heat_ms" ? preparation.distance_and_heat_ms : preparation.decomposition_ms;
-  if (samples.empty()) throw Missing{strategy.name + ": has no such preparation"};
-  return estimated(bootstrap_median(samples), scale);
-}
-
-// A column: `quantity` of `strategy`, divided by that of `over` if there is one.
-Cell measure(const ordered_json& column, const Record& record) {
-  const std::string quantity = column.at("quantity"), statistic = column.value("statistic", "mean");
-  const std::size_t dot = quantity.find('.');
-  const std::string kind = quantity.substr(0, dot), what = quantity.substr(dot + 1);
-  if (kind == "scene") return scene_cell(record.scene, what);
-
-  const StrategyRecord& strategy = strategy_of(record, column.at("strategy"));
-  const StrategyRecord* over = column.contains("over") ? &strategy_of(record, column["over"]) : nullptr;
-  const double scale = column.value("scale", 1.0);
-  if (kind == "preparation") return preparation_cell(strategy, what, scale);
-  if (kind == "counts") {
-    const double value = summary(count_column(strategy, what), statistic) * scale;
-    if (over == nullptr) return exactly(value);
-    const double divisor = summary(count_column(*over, what), statistic) * scale;
-    if (divisor == 0) throw Missing{over->name + ": counts no " + what};
-    return exactly(value / divisor);
-  }
-  if (kind == "ms") {
-    const std::vector<double> times = by_repetition(strategy, what, statistic);
-    if (over == nullptr) return estimated(bootstrap_median(times), scale);
-    return estimated(bootstrap_ratio_of_medians(times, by_repetition(*over, what, statistic)), scale);
-  }
-  throw std::logic_error("unknown quantity " + quantity);
+  if (!only_scene.empty())
+    std::erase_if(scenes, [&](const std::string& scene) { return scene != only_scene; });
+  return scenes;
 }
 
 Cell fill(const ordered_json& column, const ordered_json& published, const std::string& scene,
-          const Record* record) {
+          std::span<const Record> records) {
   Cell cell;
-  try {
-    if (record == nullptr) throw Missing{"no record of " + scene + " was given"};
-    cell = measure(column, *record);
-  } catch (const Missing& missing) {
-    cell.reason = missing.reason;
-  }
+  const auto record = std::find_if(records.begin(), records.end(),
+                                   [&](const Record& candidate) { return candidate.scene.name == scene; });
+  if (record == records.end())
+    cell.measured.reason = "no record of " + scene + " was given";
+  else
+    cell.measured = measure(column, *record);
   if (column.contains("published"))
     if (const ordered_json* figure = find_published(published, column["published"], scene))
       cell.published = figure->get<double>();
@@ -160,26 +90,13 @@ std::vector<PaperTable> paper_tables(const ordered_json& definitions, const orde
     PaperTable& table = tables.emplace_back();
     table.id = definition.at("id");
     table.title = definition.at("title");
-    for (const ordered_json& column : definition.at("columns"))
+    const std::vector<ordered_json> columns = expanded_columns(definition, records);
+    for (const ordered_json& column : columns)
       table.columns.push_back({column.at("key"), column.at("title"), column.value("unit", "")});
-
-    std::vector<std::string> scenes;
-    if (const ordered_json* rows = find_published(published, definition.at("scenes"), ""))
-      for (const auto& [scene, figures] : rows->items()) scenes.push_back(scene);
-    for (const Record& record : records)
-      if (std::find(scenes.begin(), scenes.end(), record.scene.name) == scenes.end())
-        scenes.push_back(record.scene.name);
-    if (!only_scene.empty())
-      std::erase_if(scenes, [&](const std::string& scene) { return scene != only_scene; });
-
-    for (const std::string& scene : scenes) {
-      const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
-        return candidate.scene.name == scene;
-      });
+    for (const std::string& scene : rows_of(definition, published, records, only_scene)) {
       Row& row = table.rows.emplace_back();
       row.scene = scene;
-      for (const ordered_json& column : definition["columns"])
-        row.cells.push_back(fill(column, published, scene, record == records.end() ? nullptr : &*record));
+      for (const ordered_json& column : columns) row.cells.push_back(fill(column, published, scene, records));
     }
   }
   return tables;

@@ -6,19 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "bench/quantity.h"
 #include "bench/record.h"
-#include "bench/statistics.h"
 
 // The tables of the paper with published figures beside measured ones. What a column is,
 // bench/paper_tables.json says; what was published, bench/published.json. No strategy is known by name here.
 namespace cscd::bench {
 
-// A cell that cannot be measured says why.
 struct Cell {
   std::optional<double> published;
-  std::optional<double> measured;
-  std::optional<Estimate> interval;  // absent for what has no noise: counters and sizes
-  std::string reason;                // empty when measured
+  Measured measured;
 };
 
 struct Column {
@@ -36,8 +33,9 @@ struct PaperTable {
   std::vector<Row> rows;
 };
 
-// At most one record a scene. Rows are the published scenes and those of the records; `only_scene`, unless
-// empty, leaves the others out.
+// At most one record a scene. Rows are the scenes that the table was published for; a table without published
+// rows has those of the records. `only_scene`, unless empty, leaves the others out. A column with
+// `each_strategy` stands for one a strategy of the records, whose name replaces {strategy}.
 std::vector<PaperTable> paper_tables(std::span<const Record> records, const std::string& only_scene = {});
 // The same from other definitions and figures.
 std::vector<PaperTable> paper_tables(const nlohmann::ordered_json& definitions,

@@ -5,6 +5,7 @@
 
 #include "bench/data.h"
 #include "bench/json_text.h"
+#include "bench/schema.h"
 #include "bench/tables_text.h"
 #include "core/base/error.h"
 
@@ -56,25 +57,32 @@ Cell cell(nlohmann::ordered_json column, const std::string& scene = "rope") {
 
 TEST(PaperTables, CountsAreExact) {
   const Cell mean = cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"scale", 0.001}});
-  EXPECT_DOUBLE_EQ(mean.measured.value(), 0.2);
-  EXPECT_FALSE(mean.interval);
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"statistic", "max"}}).measured, 300);
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "swift"}, {"over", "slow"}}).measured, 0.1);
+  EXPECT_DOUBLE_EQ(mean.measured.value.value(), 0.2);
+  EXPECT_FALSE(mean.measured.interval);
+  const auto value = [](const nlohmann::ordered_json& column) { return cell(column).measured.value; };
+  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"statistic", "max"}}), 300);
+  EXPECT_EQ(value({{"quantity", "counts.bvot+bvot"}, {"strategy", "slow"}}), 400);
+  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "swift"}, {"over", "slow"}}), 0.1);
+  EXPECT_EQ(value({{"quantity", "counts.bvot"},
+                   {"strategy", "swift"},
+                   {"over_quantity", "preparation.atomic_clusters"}}),
+            20 / 7.0);
+  EXPECT_EQ(value({{"quantity", "verification.recall"}, {"strategy", "swift"}}), 0.5);
 }
 
 TEST(PaperTables, TimesAreMediansOfRepetitions) {
   const Cell time = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}});
-  EXPECT_EQ(time.measured, 9);  // of 9, 45 and 6; `slow` has no rv_update
-  EXPECT_EQ(time.interval.value().low, 6);
-  EXPECT_EQ(time.interval.value().high, 45);
-  EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured, 10);
+  EXPECT_EQ(time.measured.value, 9);  // of 9, 45 and 6; `slow` has no rv_update
+  EXPECT_EQ(time.measured.interval.value().low, 6);
+  EXPECT_EQ(time.measured.interval.value().high, 45);
+  EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured.value, 10);
 }
 
 TEST(PaperTables, RatiosArePairedWithinARepetition) {
   const Cell ratio = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}, {"over", "swift"}});
-  EXPECT_DOUBLE_EQ(ratio.measured.value(), 3);
-  EXPECT_DOUBLE_EQ(ratio.interval.value().low, 3);
-  EXPECT_DOUBLE_EQ(ratio.interval.value().high, 3);
+  EXPECT_DOUBLE_EQ(ratio.measured.value.value(), 3);
+  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().low, 3);
+  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().high, 3);
 }
 
 TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
@@ -84,52 +92,86 @@ TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
 }
 
 TEST(PaperTables, EmptyCellsSayWhy) {
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).reason, "nowhere: not built yet");
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).reason, "base: not run in this record");
-  EXPECT_EQ(cell({{"quantity", "ms.rv_update"}, {"strategy", "slow"}}).reason,
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).measured.reason,
+            "nowhere: not in this build");
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).measured.reason,
+            "base: not run in this record");
+  EXPECT_EQ(cell({{"quantity", "ms.rv_update"}, {"strategy", "slow"}}).measured.reason,
             "slow: has no stage rv_update");
-  EXPECT_EQ(cell({{"quantity", "counts.clusters"}, {"strategy", "slow"}}).reason,
+  EXPECT_EQ(cell({{"quantity", "counts.clusters"}, {"strategy", "slow"}}).measured.reason,
             "slow: does not count clusters");
-  EXPECT_EQ(cell({{"quantity", "preparation.decomposition_ms"}, {"strategy", "slow"}}).reason,
+  EXPECT_EQ(cell({{"quantity", "preparation.decomposition_ms"}, {"strategy", "slow"}}).measured.reason,
             "slow: has no such preparation");
   const Cell other =
       cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"published", "t.{scene}.k"}}, "hand");
-  EXPECT_EQ(other.reason, "no record of hand was given");
+  EXPECT_EQ(other.measured.reason, "no record of hand was given");
   EXPECT_EQ(other.published, 3.5);
 }
 
-// The definitions that ship: every published figure of Tables 1 to 3 has its column, and every column that
-// names a published figure finds it for the rope.
-TEST(PaperTables, ShippedDefinitionsCoverThePublishedTables) {
+TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
+  const std::vector<Record> records = {sample_record()};
+  nlohmann::ordered_json definitions = one_column({{"key", "{strategy}.k"},
+                                                   {"title", "{strategy} / swift"},
+                                                   {"each_strategy", true},
+                                                   {"quantity", "counts.bvot"},
+                                                   {"strategy", "{strategy}"},
+                                                   {"over", "swift"}});
+  definitions["tables"][0].erase("scenes");
+  const PaperTable table = paper_tables(definitions, {}, records).at(0);
+  ASSERT_EQ(table.columns.size(), 1u);  // none for a strategy beside itself
+  EXPECT_EQ(table.columns[0].key, "slow.k");
+  EXPECT_EQ(table.columns[0].title, "slow / swift");
+  EXPECT_EQ(table.rows.at(0).cells.at(0).measured.value, 10);
+}
+
+// The definitions that ship: every published figure has its column, and every column that names a published
+// figure finds it.
+TEST(PaperTables, ShippedDefinitionsCoverThePublishedFigures) {
   const nlohmann::ordered_json definitions = data_json("paper_tables.json"),
                                published = data_json("published.json");
   std::vector<std::string> named;
   for (const auto& table : definitions["tables"])
     for (const auto& column : table["columns"])
       if (column.contains("published")) named.push_back(column["published"]);
-  for (const char* table : {"table1", "table2", "table3"}) {
-    const nlohmann::ordered_json row = published[table]["rope"].flatten();
-    for (const auto& [pointer, figure] : row.items()) {
-      std::string path = std::string(table) + ".{scene}" + pointer;
-      std::replace(path.begin(), path.end(), '/', '.');
+
+  std::size_t figures = 0;
+  for (const char* part : {"table1", "table2", "table3", "text"}) {
+    const nlohmann::ordered_json flat = published[part].flatten();
+    for (const auto& [pointer, figure] : flat.items()) {
+      if (pointer.starts_with("/parameters") || !figure.is_number()) continue;
+      std::string path = part;
+      const std::vector<std::string> keys = split(pointer, '/');
+      for (const std::string& key : std::span(keys).subspan(1))
+        path += published["scenes"].contains(key) ? ".{scene}" : "." + key;
       EXPECT_NE(std::find(named.begin(), named.end(), path), named.end()) << path;
+      ++figures;
     }
   }
-  const std::vector<Record> none;
-  std::size_t found = 0;
-  for (const PaperTable& table : paper_tables(definitions, published, none, "rope"))
-    for (const Cell& cell : table.rows.at(0).cells) found += cell.published.has_value();
-  EXPECT_EQ(found, named.size());
-
-  // Without a choice of scene, every row is a scene.
-  for (const PaperTable& table : paper_tables(definitions, published, none))
-    for (const Row& row : table.rows) EXPECT_TRUE(published["scenes"].contains(row.scene)) << row.scene;
+  std::size_t shown = 0;
+  for (const PaperTable& table : paper_tables(definitions, published, {}))
+    for (const Row& row : table.rows) {
+      EXPECT_TRUE(published["scenes"].contains(row.scene)) << row.scene;
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        shown += row.cells[i].published && !table.columns[i].key.starts_with("triangles") &&
+                 !table.columns[i].key.starts_with("vertices");
+    }
+  EXPECT_EQ(shown, figures);
 }
 
 TEST(Record, SurvivesBeingWrittenAndRead) {
   const Record record = sample_record();
   const std::string text = json_text(to_json(record));
   EXPECT_EQ(json_text(to_json(parse_record(text, "test"))), text);
+}
+
+TEST(Schema, HoldsForWhatIsWritten) {
+  const std::vector<Record> records = {sample_record()};
+  EXPECT_EQ(schema_violation(to_json(records[0]), "run.schema.json"), "");
+  nlohmann::ordered_json document = tables_json(paper_tables(records), judge_claims(records), records);
+  EXPECT_EQ(schema_violation(document, "tables.schema.json"), "");
+  document["tables"][0]["rows"][0]["cells"][1]["measured"] = "many";
+  const std::string violation = schema_violation(document, "tables.schema.json");
+  EXPECT_NE(violation.find("[measured]"), std::string::npos) << violation;
 }
 
 TEST(Record, RefusesWhatIsNotWhole) {
@@ -158,7 +200,9 @@ TEST(TablesText, CsvHasOneLineACellAndQuotesCommas) {
   const std::vector<Record> records = {sample_record()};
   const nlohmann::ordered_json column = {
       {"key", "k"}, {"title", "swift, slow"}, {"quantity", "ms.traversal"}, {"strategy", "slow"}};
-  const auto tables = paper_tables(one_column(column), {{"t", nlohmann::ordered_json::object()}}, records);
+  nlohmann::ordered_json definitions = one_column(column);
+  definitions["tables"][0].erase("scenes");  // rows are those of the records
+  const auto tables = paper_tables(definitions, {}, records);
   EXPECT_EQ(tables_csv(tables),
             "table,scene,key,title,unit,published,measured,low,high,reason\n"
             "t,rope,k,\"swift, slow\",,,9,6,45,\n");

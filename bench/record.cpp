@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bench/report_json.h"
+#include "bench/schema.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -170,6 +171,8 @@ Record parse_record(const std::string& text, const std::string& where) {
     const ordered_json document = ordered_json::parse(text);
     if (const std::string schema = document.at("schema"); schema != kRunSchema)
       throw InputError("its schema is " + schema + ", not " + std::string(kRunSchema));
+    if (const std::string violation = schema_violation(document, "run.schema.json"); !violation.empty())
+      throw InputError("does not follow its schema at " + violation);
     Record out;
     out.environment = document.at("environment");
     out.command = document.at("command").get<std::vector<std::string>>();

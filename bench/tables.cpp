@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
+#include "bench/claims.h"
 #include "bench/command.h"
 #include "bench/json_text.h"
 #include "bench/output.h"
@@ -39,9 +41,8 @@ std::vector<Record> read_records(const std::vector<std::string>& paths) {
 void tables(const TableOptions& options) {
   const std::vector<Record> records = read_records(options.records);
   const std::vector<PaperTable> made = paper_tables(records, options.scene);
-  for (const PaperTable& table : made)
-    if (table.rows.empty())
-      throw InputError("--scene " + options.scene + ": neither published nor in a record; choose another");
+  if (std::all_of(made.begin(), made.end(), [](const PaperTable& table) { return table.rows.empty(); }))
+    throw InputError("--scene " + options.scene + ": neither published nor in a record; choose another");
   const std::string markdown = tables_markdown(made, records);
   if (options.folder.empty()) {
     std::fputs(markdown.c_str(), stdout);
@@ -49,10 +50,14 @@ void tables(const TableOptions& options) {
   }
   const std::filesystem::path folder(options.folder);
   OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force),
-      csv(folder / "tables.csv", options.force);
-  json.commit(json_text(tables_json(made, records)));
+      csv(folder / "tables.csv", options.force), latex(folder / "tables.tex", options.force),
+      page(folder / "claims.md", options.force);
+  const std::vector<ClaimResult> claims = judge_claims(records);
+  json.commit(json_text(tables_json(made, claims, records)));
   text.commit(markdown);
   csv.commit(tables_csv(made));
+  latex.commit(tables_latex(made));
+  page.commit(claims_markdown(claims));
 }
 
 }  // namespace
@@ -63,8 +68,8 @@ void add_tables(CLI::App& app) {
       "tables",
       "Make the paper's tables from records, published figures beside measured ones.\n\n"
       "  cscd tables rope.json                     on standard output, as Markdown\n"
-      "  cscd tables rope.json --out results/new   tables.json, tables.md, tables.csv in an existing "
-      "folder\n\n"
+      "  cscd tables rope.json --out results/new   tables.json, .md, .csv, .tex and claims.md in an "
+      "existing folder\n\n"
       "Times are means over the timed intervals, the median over the repetitions; ratios are paired within "
       "a\n"
       "repetition; intervals are 95 % bootstrap intervals. A cell that cannot be filled says why.");

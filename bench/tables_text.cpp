@@ -1,7 +1,6 @@
 #include "bench/tables_text.h"
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <optional>
 
 #include "bench/data.h"
@@ -11,22 +10,36 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Four significant digits, or all digits of a whole number.
-std::string number(double value) {
-  char text[40];
-  const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
-  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.4g", value);
-  return text;
+std::string interval(const Measured& measured, const char* between) {
+  if (!measured.interval) return "";
+  return number_text(measured.interval->low) + between + number_text(measured.interval->high);
 }
 
 std::string number(const std::optional<double>& value) {
-  return value ? number(*value) : "";
+  return value ? number_text(*value) : "";
 }
 
-std::string interval(const Cell& cell, const char* between) {
-  if (!cell.interval) return "";
-  std::string text = number(cell.interval->low);
-  return text.append(between).append(number(cell.interval->high));
+constexpr std::size_t kScenesAcross = 6;  // more make a page too wide to read
+
+std::string title(const Column& column) {
+  return column.unit.empty() ? column.title : column.title + " (" + column.unit + ")";
+}
+
+// "4.4 [3.8, 4.5] (28.4)", or the reason why nothing was measured.
+std::string plain(const Cell& cell) {
+  std::string out = cell.measured.value ? number_text(*cell.measured.value) : cell.measured.reason;
+  if (cell.measured.interval) out += " [" + interval(cell.measured, ", ") + "]";
+  if (cell.published) out += " (" + number_text(*cell.published) + ")";
+  return out;
+}
+
+std::string latex(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '_' || c == '%' || c == '&' || c == '#') out += '\\';
+    out += c;
+  }
+  return out;
 }
 
 ordered_json number_or_null(const std::optional<double>& value) {
@@ -38,9 +51,9 @@ ordered_json cell_json(const Column& column, const Cell& cell) {
                       {"title", column.title},
                       {"unit", column.unit},
                       {"published", number_or_null(cell.published)},
-                      {"measured", number_or_null(cell.measured)}};
-  if (cell.interval) out["interval"] = {cell.interval->low, cell.interval->high};
-  if (!cell.reason.empty()) out["reason"] = cell.reason;
+                      {"measured", number_or_null(cell.measured.value)}};
+  if (cell.measured.interval) out["interval"] = {cell.measured.interval->low, cell.measured.interval->high};
+  if (!cell.measured.reason.empty()) out["reason"] = cell.measured.reason;
   return out;
 }
 
@@ -112,7 +125,8 @@ std::string quoted(const std::string& field) {
 
 }  // namespace
 
-ordered_json tables_json(std::span<const PaperTable> tables, std::span<const Record> records) {
+ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+                         std::span<const Record> records) {
   ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
   for (const Record& record : records) sources.push_back(source_json(record));
   for (const PaperTable& table : tables) {
@@ -129,26 +143,52 @@ ordered_json tables_json(std::span<const PaperTable> tables, std::span<const Rec
   return {{"schema", kTablesSchema},
           {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
           {"records", std::move(sources)},
-          {"tables", std::move(out_tables)}};
+          {"tables", std::move(out_tables)},
+          {"claims", claims_json(claims)}};
 }
 
 std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records) {
   const ordered_json published = data_json("published.json");
   std::string out;
   for (const Record& record : records) out += provenance(record) + "\n";
-  out += "Published: " + text(published.at("machine")) + ".\n";
+  out += "Published: " + text(published.at("machine")) +
+         ".\n\nA cell is the measured figure, its 95 % interval in ";
+  out += "brackets where it has noise, and the published figure in parentheses where there is one.\n";
   for (const PaperTable& table : tables) {
+    if (table.rows.empty()) continue;
     out += "\n### " + table.title + "\n";
-    for (const Row& row : table.rows) {
-      out += "\n| " + row.scene + " | published | measured | 95 % interval |\n|---|---:|---:|---:|\n";
-      for (std::size_t i = 0; i < row.cells.size(); ++i) {
-        const Cell& cell = row.cells[i];
-        const Column& column = table.columns[i];
-        out += "| " + column.title + (column.unit.empty() ? "" : " (" + column.unit + ")") + " | " +
-               number(cell.published) + " | " + (cell.reason.empty() ? number(cell.measured) : cell.reason) +
-               " | " + interval(cell, " to ") + " |\n";
+    for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
+      const auto rows =
+          std::span(table.rows).subspan(first, std::min(kScenesAcross, table.rows.size() - first));
+      out += "\n|  |";
+      for (const Row& row : rows) out += " " + row.scene + " |";
+      out += "\n|---|";
+      for (std::size_t i = 0; i < rows.size(); ++i) out += "---:|";
+      out += "\n";
+      for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        out += "| " + title(table.columns[i]) + " |";
+        for (const Row& row : rows) out += " " + plain(row.cells[i]) + " |";
+        out += "\n";
       }
     }
+  }
+  return out;
+}
+
+std::string tables_latex(std::span<const PaperTable> tables) {
+  std::string out = "% Needs \\usepackage{booktabs}. Measured [95 % interval] (published).\n";
+  for (const PaperTable& table : tables) {
+    if (table.rows.empty()) continue;
+    out += "\\begin{table*}\n\\caption{" + latex(table.title) + "}\n\\label{tab:" + table.id +
+           "}\n\\begin{tabular}{l" + std::string(table.rows.size(), 'r') + "}\n\\toprule\n";
+    for (const Row& row : table.rows) out += " & " + latex(row.scene);
+    out += " \\\\\n\\midrule\n";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      out += latex(title(table.columns[i]));
+      for (const Row& row : table.rows) out += " & " + latex(plain(row.cells[i]));
+      out += " \\\\\n";
+    }
+    out += "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
   }
   return out;
 }
@@ -161,8 +201,9 @@ std::string tables_csv(std::span<const PaperTable> tables) {
         const Cell& cell = row.cells[i];
         const Column& column = table.columns[i];
         out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
-               column.unit + "," + number(cell.published) + "," + number(cell.measured) + "," +
-               (cell.interval ? interval(cell, ",") : std::string(",")) + "," + quoted(cell.reason) + "\n";
+               column.unit + "," + number(cell.published) + "," + number(cell.measured.value) + "," +
+               (cell.measured.interval ? interval(cell.measured, ",") : std::string(",")) + "," +
+               quoted(cell.measured.reason) + "\n";
       }
   return out;
 }
