@@ -1,25 +1,16 @@
-// The rope: its counts, its frames, and what makes it a workload. The first test generates it anew; the
-// others, each a process of its own under ctest, read its cache.
+// What the rope has beside what every scene has (scene_files_test.cpp).
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "core/detect/embedding.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::scenes {
 namespace {
 
 constexpr std::size_t kRings = 865, kSides = 28;
-// The exact test takes 0.04 s a frame in Release and ten times that with sanitizers, which see every 16th
-// frame.
-#ifdef NDEBUG
-constexpr std::size_t kEmbeddingStride = 1;
-#else
-constexpr std::size_t kEmbeddingStride = 16;
-#endif
 // Rings this far apart are more than three diameters apart along the rope.
 constexpr std::size_t kFar = 28;
 
@@ -53,35 +44,6 @@ class Rope : public testing::Test {
  private:
   static inline std::unique_ptr<Clip> clip_;
 };
-
-double mean_edge(std::span<const Vec3> positions, const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const Edge& edge : mesh.edges()) sum += (positions[+edge[0]] - positions[+edge[1]]).norm();
-  return sum / static_cast<double>(mesh.edge_count());
-}
-
-TEST_F(Rope, IsGeneratedBitForBitAsPromised) {
-  // The scene file's digest stands for every compiler and build type.
-  EXPECT_NO_THROW(generate(load_scene("rope")));
-}
-
-TEST_F(Rope, HasTheCountsOfThePaperAndFrameZeroAtRest) {
-  EXPECT_EQ(clip().header().vertex_count, 24222u);
-  EXPECT_EQ(clip().header().triangles.size(), 48440u);
-  EXPECT_EQ(clip().header().bone_parent.size(), 100u);
-  EXPECT_GE(clip().interval_count(), 200u);
-  const Scene scene = load_scene("rope");
-  const Shape shape = make_shape(scene.shape, scene.shape_parameters);
-  EXPECT_TRUE(std::ranges::equal(clip().frame(0).positions, shape.positions));
-}
-
-TEST_F(Rope, IsEmbeddedInEveryFrame) {
-  const TriangleMesh mesh(clip().header().triangles, clip().header().vertex_count, "rope");
-  ASSERT_TRUE(mesh.closed_and_oriented());
-  EmbeddingTest test(mesh, clip().frame(0).positions);
-  for (std::size_t frame = 0; frame < clip().frame_count(); frame += kEmbeddingStride)
-    ASSERT_TRUE(test.embedded(clip().frame(frame).positions)) << "frame " << frame;
-}
 
 // Closest distance of two segments, to within rounding.
 double distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
@@ -157,29 +119,6 @@ TEST_F(Rope, NeverTouchesItselfWithinAnInterval) {
     start = end;
   }
   EXPECT_LT(closest, 0.2) << "the rope lies against itself";
-}
-
-TEST_F(Rope, HasNearContactsInMostIntervals) {
-  const TriangleMesh mesh(clip().header().triangles, clip().header().vertex_count, "rope");
-  const double limit = 2 * mean_edge(clip().frame(0).positions, mesh);
-  std::size_t near = 0;
-  for (std::size_t frame = 0; frame + 1 < clip().frame_count(); ++frame) {
-    const std::span<const Vec3> positions = clip().frame(frame).positions;
-    const std::vector<Ball> balls = rings(positions);
-    // The distance of two vertices bounds that of the surfaces from above.
-    double closest = 1e300;
-    for (std::size_t i = 0; i < kRings && closest >= limit; ++i)
-      for (std::size_t j = i + kFar; j < kRings && closest >= limit; ++j) {
-        if ((balls[i].centre - balls[j].centre).norm() - balls[i].radius - balls[j].radius >= limit) continue;
-        for (std::size_t v = i * kSides; v < (i + 1) * kSides; ++v)
-          for (std::size_t w = j * kSides; w < (j + 1) * kSides; ++w)
-            closest = std::min(closest, (positions[v] - positions[w]).norm());
-      }
-    near += closest < limit;
-  }
-  const double share = static_cast<double>(near) / static_cast<double>(clip().interval_count());
-  RecordProperty("near_contact_share", std::to_string(share));
-  EXPECT_GT(share, 0.6);
 }
 
 TEST_F(Rope, MovesEnoughToBeAWorkloadAndNotTooFast) {

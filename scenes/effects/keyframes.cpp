@@ -66,7 +66,8 @@ const ParameterRow kRows[] = {
     {"end", ParameterKind::number, "frame after which it does nothing", false},
     {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
     {"*", ParameterKind::table,
-     "a bone's name (* for any text): frame, x, y, z: its rotation vector relative to its parent, in turns, "
+     "bones' names (* for any text, blanks between): frame, x, y, z: its rotation vector relative to its "
+     "parent, in turns, "
      "in "
      "the axes of the rest pose",
      false, -1e300, 1e300, 4},

@@ -57,7 +57,7 @@ class SpringFollow final : public Effect {
 
 EffectRow spring_follow_row() {
   static const ParameterRow rows[] = {
-      {"bones", ParameterKind::text, "names of the bones that lag, * for any text"},
+      {"bones", ParameterKind::text, "names of the bones that lag, * for any text, blanks between"},
       {"stiffness", ParameterKind::number, "pull per distance, per frame squared", true, 0, 1e9},
       {"damping", ParameterKind::number, "share of the velocity lost, per frame", true, 0, 1e9},
   };

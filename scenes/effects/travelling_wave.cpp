@@ -62,7 +62,7 @@ class TravellingWave final : public Effect {
 
 EffectRow travelling_wave_row() {
   static const ParameterRow rows[] = {
-      {"bones", ParameterKind::text, "names of the chains' bones, * for any text"},
+      {"bones", ParameterKind::text, "names of the chains' bones, * for any text, blanks between"},
       {"axis", ParameterKind::vector, "to turn about, in the axes of the rest pose", false},
       {"towards", ParameterKind::vector, "or: where each bone leans first, in the axes of the rest pose",
        false},

@@ -60,23 +60,31 @@ void turn_bones(SceneState& state, const BoneTurn& turn) {
   }
 }
 
-std::vector<std::size_t> select_bones(const Shape& shape, std::string_view pattern, const std::string& who) {
-  std::vector<std::size_t> bones;
-  std::string known;
-  for (std::size_t bone = 0; bone < shape.bone_names.size(); ++bone) {
-    if (matches(pattern, shape.bone_names[bone])) bones.push_back(bone);
-    known += (known.empty() ? "" : ", ") + shape.bone_names[bone];
+std::vector<std::size_t> select_bones(const Shape& shape, std::string_view names, const std::string& who) {
+  std::vector<bool> chosen(shape.bone_names.size());
+  while (!names.empty()) {
+    const std::string_view pattern = names.substr(0, names.find(' '));
+    names.remove_prefix(std::min(names.size(), pattern.size() + 1));
+    bool found = false;
+    std::string known;
+    for (std::size_t bone = 0; bone < chosen.size(); ++bone) {
+      if (matches(pattern, shape.bone_names[bone])) chosen[bone] = found = true;
+      known += (known.empty() ? "" : ", ") + shape.bone_names[bone];
+    }
+    if (!found)
+      throw InputError(who + ": no bone is called " + std::string(pattern) + "; known are: " + known);
   }
-  if (bones.empty())
-    throw InputError(who + ": no bone is called " + std::string(pattern) + "; known are: " + known);
+  std::vector<std::size_t> bones;
+  for (std::size_t bone = 0; bone < chosen.size(); ++bone)
+    if (chosen[bone]) bones.push_back(bone);
   return bones;
 }
 
-std::vector<ChainBone> select_chains(const Shape& shape, std::string_view pattern, const std::string& who) {
+std::vector<ChainBone> select_chains(const Shape& shape, std::string_view names, const std::string& who) {
   std::vector<ChainBone> chosen;
   std::vector<std::size_t> length;                                 // of each chain
   std::vector<std::size_t> at(shape.rig.parent.size(), SIZE_MAX);  // of each bone, in `chosen`
-  for (const std::size_t bone : select_bones(shape, pattern, who)) {
+  for (const std::size_t bone : select_bones(shape, names, who)) {
     const BoneId parent = shape.rig.parent[bone];
     at[bone] = chosen.size();
     if (parent == BoneId{-1} || at[+parent] == SIZE_MAX) {

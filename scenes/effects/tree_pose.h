@@ -26,9 +26,9 @@ using BoneTurn = std::function<Eigen::Matrix3d(std::size_t bone)>;
 // Turns every bone.
 void turn_bones(SceneState& state, const BoneTurn& turn);
 
-// The bones whose names match: a name, in which any number of * stand for any text each. Throws InputError,
-// beginning with `who` and listing the names, when there is none.
-std::vector<std::size_t> select_bones(const Shape& shape, std::string_view pattern, const std::string& who);
+// The bones of these names, with a blank between names and any number of * for any text each. Throws
+// InputError, beginning with `who` and listing the bones, for a name that none has.
+std::vector<std::size_t> select_bones(const Shape& shape, std::string_view names, const std::string& who);
 
 // A bone among those selected: a chain is a bone whose parent is not selected, with its selected descendants.
 struct ChainBone {
@@ -37,6 +37,6 @@ struct ChainBone {
   std::size_t place;   // how many bones of the chain lead to it
   std::size_t length;  // largest place of the chain
 };
-std::vector<ChainBone> select_chains(const Shape& shape, std::string_view pattern, const std::string& who);
+std::vector<ChainBone> select_chains(const Shape& shape, std::string_view names, const std::string& who);
 
 }  // namespace cscd::scenes

@@ -114,6 +114,8 @@ TEST(SelectChains, FollowsTheTreeAmongTheNamed) {
   EXPECT_EQ(chains[3].place, 0u);
   EXPECT_EQ(chains[3].length, 2u);
   EXPECT_EQ(select_bones(shape, "right_1", "test"), std::vector<std::size_t>{2});
+  EXPECT_EQ(select_bones(shape, "left_2 *_1 right_1", "test"), (std::vector<std::size_t>{2, 5, 6}));
+  EXPECT_THROW(select_bones(shape, "left_2 left_3", "test"), InputError);
   EXPECT_EQ(select_bones(shape, "*", "test").size(), 7u);
 }
 

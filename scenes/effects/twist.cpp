@@ -47,7 +47,7 @@ class Twist final : public Effect {
 
 EffectRow twist_row() {
   static const ParameterRow rows[] = {
-      {"bones", ParameterKind::text, "names of the chains' bones, * for any text"},
+      {"bones", ParameterKind::text, "names of the chains' bones, * for any text, blanks between"},
       {"turns", ParameterKind::table, "frame, turns of the last bone against the first", true, -1e300, 1e300,
        2},
   };

@@ -1,0 +1,120 @@
+// Every scene file: its counts, its frames, and what makes it a workload. The first test generates a scene
+// anew; the others, each a process of its own under ctest, read its cache.
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "core/detect/embedding.h"
+#include "core/detect/nearness.h"
+#include "scenes/catalog/scene_cache.h"
+
+namespace cscd::scenes {
+namespace {
+
+// A scene as it was asked for; expected counts in the file are only what its author thought.
+struct Asked {
+  const char* name;
+  std::size_t triangles, vertices;
+};
+constexpr Asked kScenes[] = {
+    {"box", 25088, 12546},
+    {"rope", 48440, 24222},
+};
+void PrintTo(const Asked& asked, std::ostream* out) {
+  *out << asked.name;
+}
+
+// The exact test takes 0.04 s a frame in Release and ten times that with sanitizers, which see every 16th
+// frame.
+#ifdef NDEBUG
+constexpr std::size_t kStride = 1;
+#else
+constexpr std::size_t kStride = 16;
+#endif
+
+class SceneFiles : public testing::TestWithParam<Asked> {
+ protected:
+  static Clip frames() {
+    const std::unique_ptr<ClipSource> source = open_scene(load_scene(GetParam().name));
+    Clip clip(source->header());
+    copy_frames(*source, clip);
+    return clip;
+  }
+  static TriangleMesh mesh(const Clip& clip) {
+    return {clip.header().triangles, clip.header().vertex_count, GetParam().name};
+  }
+};
+
+TEST_P(SceneFiles, IsGeneratedBitForBitAsPromised) {
+  // The scene file's digest stands for every compiler and build type.
+  EXPECT_NO_THROW(generate(load_scene(GetParam().name)));
+}
+
+TEST_P(SceneFiles, HasTheCountsAskedForAndFrameZeroAtRest) {
+  const Clip clip = frames();
+  EXPECT_EQ(clip.header().vertex_count, GetParam().vertices);
+  EXPECT_EQ(clip.header().triangles.size(), GetParam().triangles);
+  EXPECT_EQ(GetParam().triangles, 2 * GetParam().vertices - 4) << "genus 0";
+  EXPECT_GE(clip.interval_count(), 200u);
+  const Scene scene = load_scene(GetParam().name);
+  const Shape shape = make_shape(scene.shape, scene.shape_parameters);
+  EXPECT_TRUE(std::ranges::equal(clip.frame(0).positions, shape.positions));
+}
+
+TEST_P(SceneFiles, IsEmbeddedInEveryFrame) {
+  const Clip clip = frames();
+  const TriangleMesh mesh = this->mesh(clip);
+  ASSERT_TRUE(mesh.closed_and_oriented());
+  ASSERT_EQ(mesh.component_count(), 1u);
+  EmbeddingTest test(mesh, clip.frame(0).positions);
+  for (std::size_t frame = 0; frame < clip.frame_count(); frame += kStride)
+    ASSERT_TRUE(test.embedded(clip.frame(frame).positions)) << "frame " << frame;
+}
+
+TEST_P(SceneFiles, HasNearContactsInHalfOfItsIntervals) {
+  const Clip clip = frames();
+  const TriangleMesh mesh = this->mesh(clip);
+  Nearness nearness(mesh, clip.frame(0).positions);
+  std::size_t near = 0, looked_at = 0;
+  for (std::size_t i = 0; i < clip.interval_count(); i += kStride, ++looked_at) {
+    const auto pair = nearness.closest(clip.frame(i).positions);
+    near += pair && pair->distance < kNear;
+  }
+  const double share = static_cast<double>(near) / static_cast<double>(looked_at);
+  RecordProperty("near_contact_share", std::to_string(share));
+  EXPECT_GE(share, 0.5);
+}
+
+TEST_P(SceneFiles, MovesAllTheTimeAndNotTooFast) {
+  // In mean edge lengths an interval.
+  const Clip clip = frames();
+  const double edge = Nearness(mesh(clip), clip.frame(0).positions).mean_edge();
+  double sum = 0, fastest = 0;
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < clip.interval_count(); ++i) {
+    const Motion motion = clip.interval(i).motion;
+    double mean = 0;
+    for (std::size_t v = 0; v < motion.vertex_count(); ++v) {
+      const double moved = (motion.end()[v] - motion.start()[v]).norm() / edge;
+      mean += moved / static_cast<double>(motion.vertex_count());
+      fastest = std::max(fastest, moved);
+    }
+    sum += mean;
+    moving += mean > 0.25;
+  }
+  EXPECT_GT(sum / static_cast<double>(clip.interval_count()), 0.5);
+  EXPECT_LT(fastest, 40);
+  EXPECT_GT(moving, clip.interval_count() * 3 / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SceneFiles, testing::ValuesIn(kScenes),
+                         [](const auto& asked) { return std::string(asked.param.name); });
+
+TEST(SceneFolder, IsAllTested) {
+  for (const SceneSummary& scene : list_scenes())
+    EXPECT_TRUE(std::ranges::any_of(kScenes, [&](const Asked& asked) { return asked.name == scene.name; }))
+        << scene.name << ": add it here";
+}
+
+}  // namespace
+}  // namespace cscd::scenes
