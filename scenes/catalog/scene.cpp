@@ -51,6 +51,16 @@ class Reader {
   std::string where_;
 };
 
+Parameters::Value to_value(const Json& json, const std::string& where);
+
+// All entries of an object but the one named.
+Parameters to_parameters(const Json& json, const std::string& where, std::string_view but = {}) {
+  std::map<std::string, Parameters::Value, std::less<>> values;
+  for (const auto& [key, value] : json.items())
+    if (key != but) values.emplace(key, to_value(value, where + ": parameter " + key));
+  return {where, std::move(values)};
+}
+
 Parameters::Value to_value(const Json& json, const std::string& where) {
   const auto numbers = [&](const Json& list) {
     std::vector<double> values;
@@ -63,7 +73,16 @@ Parameters::Value to_value(const Json& json, const std::string& where) {
   if (json.is_number()) return json.get<double>();
   if (json.is_string()) return json.get<std::string>();
   if (!json.is_array())
-    throw InputError(where + " must be a number, a text, or a list of numbers or of such lists");
+    throw InputError(where + " must be a number, a text, or a list of numbers, of such lists or of objects");
+  if (!json.empty() && json.front().is_object()) {
+    std::vector<Parameters> objects;
+    for (const Json& item : json) {
+      const std::string number = where + " number " + std::to_string(objects.size() + 1);
+      if (!item.is_object()) throw InputError(number + " must be an object");
+      objects.push_back(to_parameters(item, number));
+    }
+    return objects;
+  }
   if (json.empty() || !json.front().is_array()) return numbers(json);
   Parameters::Table table;
   for (const Json& row : json) {
@@ -71,14 +90,6 @@ Parameters::Value to_value(const Json& json, const std::string& where) {
     table.push_back(numbers(row));
   }
   return table;
-}
-
-// All entries of an object but its name.
-Parameters to_parameters(const Reader& reader, const std::string& where) {
-  std::map<std::string, Parameters::Value, std::less<>> values;
-  for (const auto& [key, value] : reader.json().items())
-    if (key != "name") values.emplace(key, to_value(value, where + ": parameter " + key));
-  return {where, std::move(values)};
 }
 
 std::string read_text(const fs::path& file) {
@@ -142,7 +153,7 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
   scene.story = reader.text("story");
   const Reader shape(reader.at("shape"), where + ", shape");
   scene.shape = shape.text("name");
-  scene.shape_parameters = to_parameters(shape, where + ", shape " + scene.shape);
+  scene.shape_parameters = to_parameters(shape.json(), where + ", shape " + scene.shape, "name");
   scene.frames = reader.count("frames", 2, 100'000'000);
   scene.substeps = static_cast<int>(reader.count("substeps", 1, 100'000));
 
@@ -150,7 +161,8 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
   for (const Json& item : reader.at("effects")) {
     const Reader effect(item, where + ", effect number " + std::to_string(scene.effects.size() + 1));
     const std::string effect_name = effect.text("name");
-    scene.effects.push_back({effect_name, to_parameters(effect, where + ", effect " + effect_name)});
+    scene.effects.push_back(
+        {effect_name, to_parameters(effect.json(), where + ", effect " + effect_name, "name")});
   }
 
   const Reader expected(reader.at("expected"), where + ", expected");

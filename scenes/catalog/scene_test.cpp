@@ -54,12 +54,12 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
             "small.json: frames must be a whole number from 2 to 100000000");
   EXPECT_EQ(refusal("\"frames\": 6,", ""), "small.json: frames is missing; add it");
   EXPECT_EQ(refusal("\"name\": \"tube\"", "\"name\": \"pot\""),
-            "small.json, shape pot: unknown shape pot; known are: tube, box");
+            "small.json, shape pot: unknown shape pot; known are: tube, box, limbed_sphere");
   EXPECT_EQ(refusal("\"rings\"", "\"rigns\"").substr(0, 61),
             "small.json, shape tube: parameter rigns is unknown; known are");
   EXPECT_EQ(refusal("\"rings\": 10", "\"rings\": true"),
-            "small.json, shape tube: parameter rings must be a number, a text, or a list of numbers or of "
-            "such lists");
+            "small.json, shape tube: parameter rings must be a number, a text, or a list of numbers, of "
+            "such lists or of objects");
   EXPECT_EQ(refusal("skinning_linear", "skinning").substr(0, 49),
             "small.json, effect skinning: unknown effect; know");
   EXPECT_EQ(refusal("\"drag\": 0.5, ", ""),

@@ -42,6 +42,9 @@ void check_value(const Parameters& parameters, std::string_view name, const Para
     case ParameterKind::text:
       (void)parameters.text(name);
       break;
+    case ParameterKind::objects:
+      (void)parameters.objects(name);
+      break;
     case ParameterKind::table:
       for (const std::vector<double>& line : parameters.table(name))
         if (line.size() != row.columns)
@@ -101,6 +104,12 @@ const std::string& Parameters::text(std::string_view name) const {
 const Parameters::Table& Parameters::table(std::string_view name) const {
   const auto* value = std::get_if<Table>(&at(name));
   if (!value) refuse(*this, name, "must be a list of lists of numbers");
+  return *value;
+}
+
+const std::vector<Parameters>& Parameters::objects(std::string_view name) const {
+  const auto* value = std::get_if<std::vector<Parameters>>(&at(name));
+  if (!value) refuse(*this, name, "must be a list of objects");
   return *value;
 }
 

@@ -13,7 +13,7 @@
 namespace cscd::scenes {
 
 // What a parameter of a shape or an effect may be.
-enum class ParameterKind { number, integer, vector, table, text };
+enum class ParameterKind { number, integer, vector, table, text, objects };
 
 // One parameter that a shape or an effect takes.
 struct ParameterRow {
@@ -31,7 +31,7 @@ struct ParameterRow {
 class Parameters {
  public:
   using Table = std::vector<std::vector<double>>;
-  using Value = std::variant<double, std::vector<double>, Table, std::string>;
+  using Value = std::variant<double, std::vector<double>, Table, std::string, std::vector<Parameters>>;
 
   Parameters() = default;
   Parameters(std::string where, std::map<std::string, Value, std::less<>> values)
@@ -49,6 +49,7 @@ class Parameters {
   Vec3 vector(std::string_view name, const Vec3& otherwise) const;
   const std::string& text(std::string_view name) const;
   const Table& table(std::string_view name) const;  // rows of numbers
+  const std::vector<Parameters>& objects(std::string_view name) const;
 
   const std::map<std::string, Value, std::less<>>& values() const { return values_; }
 

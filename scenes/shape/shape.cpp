@@ -4,12 +4,13 @@
 
 #include "core/base/error.h"
 #include "scenes/shape/box.h"
+#include "scenes/shape/limbed_sphere.h"
 #include "scenes/shape/tube.h"
 
 namespace cscd::scenes {
 
 std::span<const ShapeRow> shapes() {
-  static const ShapeRow rows[] = {tube_row(), box_row()};
+  static const ShapeRow rows[] = {tube_row(), box_row(), limbed_sphere_row()};
   return rows;
 }
 

@@ -105,7 +105,7 @@ TEST(Shapes, AreFoundByName) {
     make_shape("teapot", Parameters("here", values));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "here: unknown shape teapot; known are: tube, box");
+    EXPECT_STREQ(error.what(), "here: unknown shape teapot; known are: tube, box, limbed_sphere");
   }
 }
 
