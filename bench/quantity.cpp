@@ -62,6 +62,17 @@ Amount preparation_amount(const StrategyRecord& strategy, const std::string& wha
   return {samples, true};
 }
 
+Amount footprint_amount(const StrategyRecord& strategy, const std::string& what) {
+  const auto figure = [&](const auto& value, const char* whose) {
+    if (!value) throw Missing{std::string("this ") + whose + " does not count them"};
+    return exactly(static_cast<double>(*value));
+  };
+  if (what == "peak_bytes") return figure(strategy.footprint.peak_bytes, "kernel");
+  if (what == "held_bytes") return figure(strategy.footprint.held_bytes, "kernel");
+  if (what == "instructions") return figure(strategy.footprint.instructions, "machine");
+  throw std::logic_error("unknown footprint " + what);
+}
+
 Amount count_amount(const StrategyRecord& strategy, const std::string& counters,
                     const std::string& statistic) {
   std::vector<double> sums;
@@ -112,6 +123,7 @@ Amount amount_of(const Record& record, const std::string& quantity, const std::s
   if (kind == "verification") return verification_amount(record.verification, strategy, what);
   const StrategyRecord& row = strategy_of(record, strategy);
   if (kind == "preparation") return preparation_amount(row, what);
+  if (kind == "footprint") return footprint_amount(row, what);
   if (kind == "counts") return count_amount(row, what, statistic);
   if (kind == "ms") return time_amount(row, what, statistic);
   throw std::logic_error("unknown quantity " + quantity);

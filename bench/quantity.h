@@ -23,8 +23,7 @@ struct Measured {
 //              counts.A+B...      a statistic over all intervals of the sum of counters
 //              ms.A+B...          a statistic over the timed intervals of the sum of stages, one a repetition
 //              verification.recall, .first_contacts
-//              memory.peak_bytes, .held_bytes
-//              instructions.mean
+//              footprint.peak_bytes, .held_bytes, .instructions
 //   strategy   whose; absent for scene.*
 //   statistic  mean (default), median, min, max
 //   scale      a factor, 1 by default

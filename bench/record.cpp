@@ -81,9 +81,17 @@ ordered_json to_json(const StrategyRecord& s) {
   if (!s.preparation.decomposition_ms.empty())
     preparation["decomposition_ms"] = s.preparation.decomposition_ms;
   if (s.preparation.atomic_clusters) preparation["atomic_clusters"] = *s.preparation.atomic_clusters;
-  ordered_json out = {{"name", s.name},           {"source", s.source},
-                      {"guarantee", s.guarantee}, {"preparation", std::move(preparation)},
-                      {"counts", s.counts},       {"digests", s.digests}};
+  ordered_json footprint = ordered_json::object();
+  if (s.footprint.peak_bytes) footprint["peak_bytes"] = *s.footprint.peak_bytes;
+  if (s.footprint.held_bytes) footprint["held_bytes"] = *s.footprint.held_bytes;
+  if (s.footprint.instructions) footprint["instructions"] = *s.footprint.instructions;
+  ordered_json out = {{"name", s.name},
+                      {"source", s.source},
+                      {"guarantee", s.guarantee},
+                      {"preparation", std::move(preparation)},
+                      {"footprint", std::move(footprint)},
+                      {"counts", s.counts},
+                      {"digests", s.digests}};
   if (!s.ms.empty()) out["ms"] = s.ms;
   return out;
 }
@@ -119,6 +127,10 @@ StrategyRecord strategy_from(const ordered_json& s) {
     out.preparation.decomposition_ms = preparation["decomposition_ms"].get<std::vector<double>>();
   if (preparation.contains("atomic_clusters"))
     out.preparation.atomic_clusters = preparation["atomic_clusters"];
+  const ordered_json& footprint = s.at("footprint");
+  if (footprint.contains("peak_bytes")) out.footprint.peak_bytes = footprint["peak_bytes"];
+  if (footprint.contains("held_bytes")) out.footprint.held_bytes = footprint["held_bytes"];
+  if (footprint.contains("instructions")) out.footprint.instructions = footprint["instructions"];
   out.counts = s.at("counts").get<CountColumns>();
   out.digests = s.at("digests").get<std::vector<std::string>>();
   if (s.contains("ms")) out.ms = s["ms"].get<TimeColumns>();

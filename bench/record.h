@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/footprint.h"
 #include "core/detect/detector.h"
 #include "core/detect/verify.h"
 
@@ -33,6 +34,7 @@ struct PreparationRecord {  // one sample for every time that the strategy was m
 struct StrategyRecord {
   std::string name, source, guarantee;
   PreparationRecord preparation;
+  Footprint footprint;
   CountColumns counts;
   std::vector<std::string> digests;  // of the contacts, one an interval
   TimeColumns ms;

@@ -125,6 +125,9 @@ void run(RunOptions options) {
     const TimingPlan plan{range, record.timed_intervals, options.repetitions, options.seed};
     if (const auto void_times = time_contestants(input, contestants, plan, verified, record.strategies))
       verified.record.strategies[void_times->contestant].failures.push_back(void_times->failure);
+    for (StrategyRecord& strategy : record.strategies)
+      strategy.footprint =
+          measure_footprint(input, strategy_named(strategy.name), timed, record.timed_intervals);
   }
   const bool ok = verified.record.ok();
   if (!ok)
