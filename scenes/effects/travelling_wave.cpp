@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "core/base/error.h"
 #include "scenes/effects/keys.h"
 #include "scenes/effects/rotation.h"
@@ -9,17 +11,19 @@ namespace {
 // A wave that runs along chains of bones, as through tentacles and tails. In turns, and with time in frames,
 // the bone at place s of n + 1 in chain c turns by
 //   envelope(time) (a + (b - a) s / n) sin(time / period - s / wave_length + phase + c chain_phase),
-// the amplitude going from a at the first bone to b at the last.
+// the amplitude going from a at the first bone to b at the last. Without period and wave length, at phase
+// 1/4, it is a bend.
 class TravellingWave final : public Effect {
  public:
   TravellingWave(const Parameters& p, const Shape& shape)
       : envelope_(Envelope::from(p)),
-        period_(p.number("period")),
+        frequency_(p.has("period") ? 1 / p.number("period") : 0),
         turn_(shape.rig.parent.size(), Turn{Vec3::Zero(), 0, 0}) {
     require_tree(shape, p.where());
     if (p.has("axis") == p.has("towards"))
       throw InputError(p.where() + ": give one of the parameters axis and towards");
-    if (p.number("wave_length") == 0) throw InputError(p.where() + ": parameter wave_length must not be 0");
+    const double wave_length = p.number("wave_length", std::numeric_limits<double>::infinity());
+    if (wave_length == 0) throw InputError(p.where() + ": parameter wave_length must not be 0");
     const Vec3 given = p.vector(p.has("axis") ? "axis" : "towards");
     const double first = p.number("first_amplitude", 0), last = p.number("amplitude");
     for (const ChainBone& at : select_chains(shape, p.text("bones"), p.where())) {
@@ -30,9 +34,8 @@ class TravellingWave final : public Effect {
                          " lies along the direction to turn towards, or that is zero; choose another");
       const auto place = static_cast<double>(at.place), chain = static_cast<double>(at.chain);
       const double share = at.length > 0 ? place / static_cast<double>(at.length) : 1;
-      turn_[at.bone] = {
-          axis.normalized(), first + (last - first) * share,
-          p.number("phase", 0) + chain * p.number("chain_phase", 0) - place / p.number("wave_length")};
+      turn_[at.bone] = {axis.normalized(), first + (last - first) * share,
+                        p.number("phase", 0) + chain * p.number("chain_phase", 0) - place / wave_length};
     }
   }
 
@@ -43,7 +46,7 @@ class TravellingWave final : public Effect {
     turn_bones(state, [&](std::size_t bone) -> Eigen::Matrix3d {
       const Turn& turn = turn_[bone];
       if (turn.amplitude == 0) return Eigen::Matrix3d::Identity();
-      const double sine = circle_point(state.time / period_ + turn.phase).sine;
+      const double sine = circle_point(state.time * frequency_ + turn.phase).sine;
       return rotation_about(turn.axis, weight * turn.amplitude * sine);
     });
   }
@@ -54,7 +57,7 @@ class TravellingWave final : public Effect {
     double amplitude, phase;
   };
   Envelope envelope_;
-  double period_;
+  double frequency_;
   std::vector<Turn> turn_;  // [bones]
 };
 
@@ -69,9 +72,10 @@ EffectRow travelling_wave_row() {
       {"amplitude", ParameterKind::number, "of a chain's last bone, in turns", true, -1, 1},
       {"first_amplitude", ParameterKind::number, "of a chain's first bone, in turns; 0 if not given", false,
        -1, 1},
-      {"wave_length", ParameterKind::number, "in bones; below 0 the wave runs to the first bone", true, -1e9,
-       1e9},
-      {"period", ParameterKind::number, "of a bone's swing, in frames", true, 1e-3, 1e9},
+      {"wave_length", ParameterKind::number,
+       "in bones, below 0 towards the first; without it all bones swing as one", false, -1e9, 1e9},
+      {"period", ParameterKind::number, "of a bone's swing, in frames; without it the wave stands still",
+       false, 1e-3, 1e9},
       {"phase", ParameterKind::number, "of the first bone at frame 0, in turns", false},
       {"chain_phase", ParameterKind::number, "from each chain to the next, in turns", false},
       {"start", ParameterKind::number, "frame before which the effect does nothing", false},

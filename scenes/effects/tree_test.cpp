@@ -208,6 +208,17 @@ TEST(TravellingWave, RunsAlongItsChains) {
   expect_near(state.bones[0].tail, {0, 0, 2});
 }
 
+TEST(TravellingWave, IsABendWhereItStandsStill) {
+  const Shape shape = tree();
+  const Values values = {{"bones", "right_*"},
+                         {"towards", std::vector<double>{0, 0, 1}},
+                         {"first_amplitude", 0.25},
+                         {"amplitude", 0.25},
+                         {"phase", 0.25}};
+  for (const int frame : {1, 9})
+    expect_near(run(shape, {call("travelling_wave", values)}, frame).bones[3].tail, {-1, 0, 2});
+}
+
 TEST(TravellingWave, FadesAndAddsUp) {
   const Shape shape = tree();
   Values values = {{"bones", "right_0"}, {"axis", std::vector<double>{0, 0, 2}},
