@@ -18,6 +18,7 @@ struct Asked {
 };
 constexpr Asked kScenes[] = {
     {"box", 25088, 12546},
+    {"hand", 11208, 5606},
     {"rope", 48440, 24222},
 };
 void PrintTo(const Asked& asked, std::ostream* out) {
