@@ -19,6 +19,7 @@ struct Asked {
 constexpr Asked kScenes[] = {
     {"box", 25088, 12546},
     {"hand", 11208, 5606},
+    {"man", 20000, 10002},
     {"rope", 48440, 24222},
 };
 void PrintTo(const Asked& asked, std::ostream* out) {
