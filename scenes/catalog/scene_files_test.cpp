@@ -18,6 +18,7 @@ struct Asked {
 };
 constexpr Asked kScenes[] = {
     {"box", 25088, 12546},
+    {"octopus", 47976, 23990},
     {"hand", 11208, 5606},
     {"man", 20000, 10002},
     {"rope", 48440, 24222},
