@@ -1,37 +1,12 @@
 #include "baselines/base.h"
 
+#include "baselines/plain_culler.h"
 #include "core/detect/compose.h"
-#include "core/hierarchy/descent.h"
 
 namespace cscd {
-namespace {
-
-class BaseCuller : public Culler {
- public:
-  explicit BaseCuller(const Setup& setup)
-      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
-
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
-
-  CullCounts cull(TrianglePairSink& sink) override {
-    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-    const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
-    const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
-    CullCounts counts;
-    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_none, emit);
-    return counts;
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
-};
-
-}  // namespace
 
 Prepared make_base(const Setup& setup) {
-  return {compose(std::make_unique<BaseCuller>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup.mesh, setup.elementary), {}};
 }
 
 }  // namespace cscd

@@ -53,6 +53,27 @@ TEST(Kdop, EveryBoundIsTheTightestFloatOutwardOfTheExactProjection) {
   }
 }
 
+TEST(Kdop, ABoxIsItsFirstThreeDirections) {
+  for (const Vec3& p : assorted_points()) {
+    const Kdop16 volume = kdop_of(p);
+    const Aabb box = aabb_of(p);
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(box.at_least[k], volume.at_least[k]);
+      ASSERT_EQ(box.at_least[4 + k], volume.at_least[8 + k]);
+    }
+    ASSERT_TRUE(overlap(box, box));
+  }
+  const Aabb box = aabb_of(MovingPoint{{0, 0, 0}, {1, 1, 1}});
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 beside(0.5, 0.5, 0.5);
+    EXPECT_TRUE(overlap(box, aabb_of(beside)));
+    for (const double x : {-0.5, 1.5}) {
+      beside[axis] = x;
+      EXPECT_FALSE(overlap(box, aabb_of(beside)));
+    }
+  }
+}
+
 // Saboteur: any single bound drawn in by one unit in the last place is noticed.
 TEST(Kdop, AnyBoundDrawnInByOneUlpLosesThePath) {
   const std::vector<Vec3> points = assorted_points();

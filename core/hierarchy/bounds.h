@@ -10,22 +10,32 @@
 
 namespace cscd {
 
-// Swept 16-DOPs of every node of a tree over one interval.
-class SweptBounds {
+// Swept bounding volumes of every node of a tree over one interval.
+template <class Volume>
+class SweptVolumes {
  public:
-  SweptBounds(const TriangleMesh& mesh, const Tree& tree);
+  SweptVolumes(const TriangleMesh& mesh, const Tree& tree);
 
   // Bounds of all vertices' paths, then bottom-up over the tree; O(vertices + triangles), no allocation.
   void refit(const TriangleMesh& mesh, const Tree& tree, const Motion& motion);
 
-  const Kdop16& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
+  const Volume& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
 
  private:
-  std::vector<Kdop16> vertex_, node_;
+  std::vector<Volume> vertex_, node_;
 };
+using SweptBounds = SweptVolumes<Kdop16>;
+using SweptBoxes = SweptVolumes<Aabb>;
 
-// The bounds of every vertex's path: vectorised over vertices, equal to what kdop_of gives (its scalar twin).
-// Only a zero may have the other sign, which no comparison sees.
+// The bounds of every vertex's path: vectorised over vertices, equal to what kdop_of and aabb_of give (their
+// scalar twins). Only a zero may have the other sign, which no comparison sees.
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out);
+void swept_vertex_bounds(const Motion& motion, std::span<Aabb> out);
+
+// The bounds of every triangle's path, of the bounds of its corners' paths.
+template <class Volume>
+Volume swept_triangle(const Triangle& corner, std::span<const Volume> of_vertex) {
+  return united(united(of_vertex[+corner[0]], of_vertex[+corner[1]]), of_vertex[+corner[2]]);
+}
 
 }  // namespace cscd

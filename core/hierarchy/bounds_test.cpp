@@ -13,12 +13,14 @@
 namespace cscd {
 namespace {
 
-std::array<std::uint32_t, 16> bits_of(const Kdop16& volume) {
-  return std::bit_cast<std::array<std::uint32_t, 16>>(volume);
+template <std::size_t N>
+std::array<std::uint32_t, 2 * N> bits_of(const Slabs<N>& volume) {
+  return std::bit_cast<std::array<std::uint32_t, 2 * N>>(volume);
 }
 
 // Bits, but for the sign of zeros: adding +0 makes them all positive and leaves everything else.
-std::array<std::uint32_t, 16> bits_without_sign_of_zero(Kdop16 volume) {
+template <std::size_t N>
+std::array<std::uint32_t, 2 * N> bits_without_sign_of_zero(Slabs<N> volume) {
   for (float& bound : volume.at_least) bound += 0.0f;
   return bits_of(volume);
 }
@@ -62,16 +64,30 @@ Ends assorted_motion(std::size_t count, unsigned seed) {
   return ends;
 }
 
-TEST(SweptVertexBounds, EqualTheirScalarTwin) {
+Kdop16 scalar_bound(const MovingPoint& p, Kdop16) {
+  return kdop_of(p);
+}
+Aabb scalar_bound(const MovingPoint& p, Aabb) {
+  return aabb_of(p);
+}
+
+template <class Volume>
+class SweptVertexBounds : public testing::Test {};
+using Volumes = testing::Types<Kdop16, Aabb>;
+TYPED_TEST_SUITE(SweptVertexBounds, Volumes);
+
+TYPED_TEST(SweptVertexBounds, EqualTheirScalarTwin) {
   for (const std::size_t count : {1u, 2u, 7u, 8u, 15u, 16u, 31u, 32u, 33u, 63u, 64u, 65u, 10'000u}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       const Ends ends = assorted_motion(count, seed);
-      const Kdop16 untouched{{42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42, 42}};
-      std::vector<Kdop16> bounds(count + 1, untouched);
+      TypeParam untouched;
+      for (float& bound : untouched.at_least) bound = 42;
+      std::vector<TypeParam> bounds(count + 1, untouched);
       swept_vertex_bounds(ends.motion(), std::span(bounds).first(count));
       for (std::size_t v = 0; v < count; ++v)
         ASSERT_EQ(bits_without_sign_of_zero(bounds[v]),
-                  bits_without_sign_of_zero(kdop_of(ends.motion()[VertexId{static_cast<std::int32_t>(v)}])))
+                  bits_without_sign_of_zero(
+                      scalar_bound(ends.motion()[VertexId{static_cast<std::int32_t>(v)}], TypeParam{})))
             << "vertex " << v << " of " << count << ": " << ends.start[v].transpose() << " -> "
             << ends.end[v].transpose();
       ASSERT_EQ(bits_of(bounds[count]), bits_of(untouched));
@@ -80,16 +96,16 @@ TEST(SweptVertexBounds, EqualTheirScalarTwin) {
 }
 
 // Zeros of either sign in every combination.
-TEST(SweptVertexBounds, OfZerosAreZero) {
+TYPED_TEST(SweptVertexBounds, OfZerosAreZero) {
   Ends ends;
   for (int signs = 0; signs < 64; ++signs) {
     const auto zero = [&](int bit) { return signs >> bit & 1 ? -0.0 : 0.0; };
     ends.start.emplace_back(zero(0), zero(1), zero(2));
     ends.end.emplace_back(zero(3), zero(4), zero(5));
   }
-  std::vector<Kdop16> bounds(64);
+  std::vector<TypeParam> bounds(64);
   swept_vertex_bounds(ends.motion(), bounds);
-  for (const Kdop16& bound : bounds)
+  for (const TypeParam& bound : bounds)
     for (const float b : bound.at_least) ASSERT_EQ(b, 0);
 }
 

@@ -5,17 +5,18 @@
 #include "core/hierarchy/bounds.h"
 #include "core/hierarchy/tree.h"
 
-// The one pair-descent and the one self-descent. Strategies differ in the callables:
+// The one pair-descent and the one self-descent, over bounds of any volume. Strategies differ in the
+// callables:
 //   is_leaf(node)     where the descent stops: tree leaves, or the roots of cluster trees
 //   skip(a, b)        true if no pair below these two nodes has to be looked at; a == b: none below this one
 //   emit(a, b)        takes two leaves whose bounds overlap
 // Both return the number of bounding volume overlap tests.
 namespace cscd {
 
-template <class IsLeaf, class Skip, class Emit>
+template <class Volume, class IsLeaf, class Skip, class Emit>
 struct Descent {
   const Tree& tree;
-  const SweptBounds& bounds;
+  const SweptVolumes<Volume>& bounds;
   IsLeaf is_leaf;
   Skip skip;
   Emit emit;
@@ -57,18 +58,18 @@ struct Descent {
 };
 
 // Starts below two nodes that are known to overlap.
-template <class IsLeaf, class Skip, class Emit>
-std::uint64_t pair_descent(const Tree& tree, const SweptBounds& bounds, NodeIndex a, NodeIndex b,
+template <class Volume, class IsLeaf, class Skip, class Emit>
+std::uint64_t pair_descent(const Tree& tree, const SweptVolumes<Volume>& bounds, NodeIndex a, NodeIndex b,
                            IsLeaf is_leaf, Skip skip, Emit emit) {
-  Descent<IsLeaf, Skip, Emit> descent{tree, bounds, is_leaf, skip, emit};
+  Descent<Volume, IsLeaf, Skip, Emit> descent{tree, bounds, is_leaf, skip, emit};
   if (!skip(a, b)) descent.below(a, b);
   return descent.tests;
 }
 
-template <class IsLeaf, class Skip, class Emit>
-std::uint64_t self_descent(const Tree& tree, const SweptBounds& bounds, NodeIndex node, IsLeaf is_leaf,
-                           Skip skip, Emit emit) {
-  Descent<IsLeaf, Skip, Emit> descent{tree, bounds, is_leaf, skip, emit};
+template <class Volume, class IsLeaf, class Skip, class Emit>
+std::uint64_t self_descent(const Tree& tree, const SweptVolumes<Volume>& bounds, NodeIndex node,
+                           IsLeaf is_leaf, Skip skip, Emit emit) {
+  Descent<Volume, IsLeaf, Skip, Emit> descent{tree, bounds, is_leaf, skip, emit};
   descent.self(node);
   return descent.tests;
 }

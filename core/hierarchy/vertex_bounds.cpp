@@ -64,6 +64,19 @@ Position8 load(std::span<const Vec3> points, std::size_t first) {
   return p;
 }
 
+// Along eight or fewer directions; one that is missing is left at zero.
+template <std::size_t N, std::size_t M>
+void store(const Exact8 (&at_start)[M], const Exact8 (&at_end)[M], std::span<Slabs<N>> out) {
+  Float8 rows[2 * N] = {};
+  for (std::size_t k = 0; k < M; ++k) {
+    rows[k] = rounded_down(lesser(at_start[k], at_end[k]));
+    rows[N + k] = rounded_down(lesser(-at_start[k], -at_end[k]));
+  }
+  const std::size_t count = std::min(kLanes, out.size());
+  for (std::size_t l = 0; l < count; ++l)
+    for (std::size_t k = 0; k < 2 * N; ++k) out[l].at_least[k] = rows[k][l];
+}
+
 }  // namespace
 
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out) {
@@ -74,14 +87,17 @@ void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out) {
                                 sum(p.x, p.z), sum(p.y, p.z), sum(p.x, -p.y), sum(p.x, -p.z)};
     const Exact8 at_end[8] = {{q.x, none},   {q.y, none},   {q.z, none},    sum(q.x, q.y),
                               sum(q.x, q.z), sum(q.y, q.z), sum(q.x, -q.y), sum(q.x, -q.z)};
-    Float8 rows[16];
-    for (int k = 0; k < 8; ++k) {
-      rows[k] = rounded_down(lesser(at_start[k], at_end[k]));
-      rows[8 + k] = rounded_down(lesser(-at_start[k], -at_end[k]));
-    }
-    const std::size_t count = std::min(kLanes, out.size() - first);
-    for (std::size_t l = 0; l < count; ++l)
-      for (std::size_t k = 0; k < 16; ++k) out[first + l].at_least[k] = rows[k][l];
+    store(at_start, at_end, out.subspan(first));
+  }
+}
+
+void swept_vertex_bounds(const Motion& motion, std::span<Aabb> out) {
+  for (std::size_t first = 0; first < out.size(); first += kLanes) {
+    const Position8 p = load(motion.start(), first), q = load(motion.end(), first);
+    const Lane8 none = {};
+    const Exact8 at_start[3] = {{p.x, none}, {p.y, none}, {p.z, none}};
+    const Exact8 at_end[3] = {{q.x, none}, {q.y, none}, {q.z, none}};
+    store(at_start, at_end, out.subspan(first));
   }
 }
 

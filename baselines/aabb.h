@@ -1,0 +1,11 @@
+#pragma once
+
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+// "AABB" of the paper's section 7.1: a hierarchy of swept axis-aligned boxes (van den Bergen, Journal of
+// Graphics Tools 2(4), as cited there: 1999).
+Prepared make_aabb(const Setup& setup);
+
+}  // namespace cscd
