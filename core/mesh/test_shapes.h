@@ -134,6 +134,25 @@ inline Shape torus(int around = 12, int across = 8, double major = 2, double min
   return shape;
 }
 
+// An open strip, two quads wide, that winds about the z axis like a spiral staircase and faces up all along.
+inline Shape ramp(int steps, double turns, double inner, double outer, double pitch) {
+  Shape shape;
+  for (int i = 0; i <= steps; ++i) {
+    const double turn = turns * i / steps, angle = 2 * std::numbers::pi * turn;
+    for (int j = 0; j < 3; ++j) {
+      const double r = inner + (outer - inner) * j / 2;
+      shape.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), pitch * turn);
+    }
+  }
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < 2; ++j) {
+      const int a = 3 * i + j;
+      shape.triangles.push_back(corners(a, a + 1, a + 4));
+      shape.triangles.push_back(corners(a, a + 4, a + 3));
+    }
+  return shape;
+}
+
 // Twelve triangles.
 inline Shape box(const Vec3& low = {0, 0, 0}, const Vec3& high = {1, 1, 1}) {
   Shape shape;
