@@ -8,23 +8,11 @@
 namespace cscd {
 namespace {
 
-bool contains(const Triangle& triangle, VertexId vertex) {
-  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
-bool share_vertex(const Triangle& a, const Triangle& b) {
-  return contains(a, b[0]) || contains(a, b[1]) || contains(a, b[2]);
-}
-
-bool share_vertex(const Edge& a, const Edge& b) {
-  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
-}
-
 // Where pairs become contacts: triangle pairs in, contacts out.
 class PairTester : public TrianglePairSink {
  public:
   PairTester(const TriangleMesh& mesh, const ElementaryTest& test, PairOptions options, StageClock& clock)
-      : mesh_(mesh), test_(test), options_(options), clock_(clock) {}
+      : mesh_(mesh), test_(test), options_(std::move(options)), clock_(clock) {}
 
   void start_interval(const Motion& motion, ContactSet& out) {
     restart();
@@ -33,18 +21,24 @@ class PairTester : public TrianglePairSink {
     counts_ = {};
     met_.start_interval();
   }
+  // Tests what is left of the interval.
+  void finish_interval() {
+    flush();
+    if (!options_.assignment) return;
+    clock_.enter(Stage::elementary);
+    test(options_.assignment->always());
+  }
   const PairCounts& counts() const { return counts_; }
 
  private:
   void take(const std::vector<TrianglePair>& block) override {
     clock_.enter(Stage::elementary);
     carried_.clear();
-    for (const TrianglePair& pair : block) expand(pair);
-    counts_.feature_pairs += carried_.size();
-    left_.clear();
-    filter(mesh_, *motion_, carried_, left_);
-    for (const FeaturePair& pair : left_)
-      if (met_.insert(pair)) test(pair);
+    if (options_.assignment)
+      options_.assignment->append(block, carried_);
+    else
+      for (const TrianglePair& pair : block) expand(pair);
+    test(carried_);
     clock_.enter(Stage::traversal);
   }
 
@@ -56,14 +50,8 @@ class PairTester : public TrianglePairSink {
       ++counts_.relative_dropped;
       return;
     }
-    for (const VertexId vertex : a)
-      if (!contains(b, vertex)) carried_.push_back(FeaturePair::of(vertex, pair.b));
-    for (const VertexId vertex : b)
-      if (!contains(a, vertex)) carried_.push_back(FeaturePair::of(vertex, pair.a));
-    for (const EdgeId e : mesh_.edges_of(pair.a))
-      for (const EdgeId f : mesh_.edges_of(pair.b))
-        if (!adjacent || !share_vertex(mesh_.ends(e), mesh_.ends(f)))
-          carried_.push_back(FeaturePair::of(e, f));
+    for_each_carried(mesh_, pair, adjacent,
+                     [&](const FeaturePair& features) { carried_.push_back(features); });
   }
 
   bool relative_boxes_apart(const TrianglePair& pair) const {
@@ -72,6 +60,13 @@ class PairTester : public TrianglePairSink {
     return cscd::relative_boxes_apart({m[a[0]], m[a[1]], m[a[2]]}, {m[b[0]], m[b[1]], m[b[2]]});
   }
 
+  void test(std::span<const FeaturePair> pairs) {
+    counts_.feature_pairs += pairs.size();
+    left_.clear();
+    filter(mesh_, *motion_, pairs, left_);
+    for (const FeaturePair& pair : left_)
+      if (met_.insert(pair)) test(pair);
+  }
   void test(const FeaturePair& pair) {
     ++counts_.elementary_tests;
     const Answer answer = ask(test_, mesh_, *motion_, pair);
@@ -94,7 +89,7 @@ class ComposedDetector : public Detector {
  public:
   ComposedDetector(std::unique_ptr<Culler> culler, const TriangleMesh& mesh, const ElementaryTest& test,
                    PairOptions options)
-      : culler_(std::move(culler)), tester_(mesh, test, options, clock_) {}
+      : culler_(std::move(culler)), tester_(mesh, test, std::move(options), clock_) {}
 
   Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
     out.clear();
@@ -108,7 +103,7 @@ class ComposedDetector : public Detector {
     clock_.enter(Stage::traversal);
     Report report;
     report.cull = culler_->cull(tester_);
-    tester_.flush();
+    tester_.finish_interval();
     clock_.stop();
 
     report.cull.pctp = tester_.count();
@@ -131,7 +126,7 @@ class ComposedDetector : public Detector {
 
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
                                   const ElementaryTest& test, PairOptions options) {
-  return std::make_unique<ComposedDetector>(std::move(culler), mesh, test, options);
+  return std::make_unique<ComposedDetector>(std::move(culler), mesh, test, std::move(options));
 }
 
 }  // namespace cscd

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/detect/carried_pairs.h"
 #include "core/detect/culler.h"
 #include "core/detect/detector.h"
 #include "core/elementary/elementary_test.h"
@@ -10,6 +11,8 @@ namespace cscd {
 
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
+  // What triangle pairs are tested for; null: all that they carry. Comes without relative boxes.
+  std::unique_ptr<const FeatureAssignment> assignment = nullptr;
 };
 
 // A detector out of a culling strategy and an elementary test: the way of one interval. Every strategy shares

@@ -1,0 +1,117 @@
+#include "baselines/selfccd.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/detect/compose.h"
+#include "core/hierarchy/descent.h"
+
+// Idea: a feature pair is carried by many triangle pairs (a vertex and a face by about six, two edges by
+// four) and need be tested for one of them only, its representative; and of triangle pairs that share a
+// vertex, of which a hierarchy yields hundreds of thousands, none need be looked at if the few feature pairs
+// that no other triangle pair carries, the orphans, are listed once and tested at every interval.
+//
+// Trap 1 is about this method. It is sound here because the bounds alone cull: the representative of a pair
+// in contact are two triangles that touch, so their bounds overlap whatever other pairs are dropped. Under
+// culling by orientation it would lose contacts. A "no" proves that the swept bounds are disjoint.
+//
+// Fidelity: own code after descriptions of the published one. The representative is found by a rule instead
+// of a table, as in the published code: the first triangle at the vertex that shares no vertex with the face;
+// the first such pair around the edge with the smaller index and the other one. Its hierarchy has 18-DOPs in
+// float, its filter no bound of the rounding and its cubics a tolerance; here bounds, tree, filter and
+// elementary test are those of all strategies. Its normal cones are the strategy `mcd`.
+//
+// Tuning: adjacent pairs are dropped where the descent meets them, before they are stored; the rule looks at
+// one triangle in most cases.
+namespace cscd {
+namespace {
+
+class Representatives : public FeatureAssignment {
+ public:
+  explicit Representatives(const TriangleMesh& mesh) : mesh_(mesh) {
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const TriangleId id{static_cast<std::int32_t>(t)};
+      for (const VertexId corner : mesh.corners(id))
+        for (const TriangleId other : mesh.triangles_at(corner)) {
+          if (other <= id) continue;
+          for_each_carried(mesh, {id, other}, true, [&](const FeaturePair& pair) {
+            if (!representative(pair)) orphans_.push_back(pair);
+          });
+        }
+    }
+    std::sort(orphans_.begin(), orphans_.end());
+    orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
+  }
+
+  void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const override {
+    for (const TrianglePair& pair : block)
+      for_each_carried(mesh_, pair, false, [&](const FeaturePair& features) {
+        const std::optional<TrianglePair> chosen = representative(features);
+        if (chosen &&
+            ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
+          out.push_back(features);
+      });
+  }
+  std::span<const FeaturePair> always() const override { return orphans_; }
+
+ private:
+  bool adjacent(TriangleId a, TriangleId b) const { return share_vertex(mesh_.corners(a), mesh_.corners(b)); }
+
+  // The triangle pair that the feature pair is tested for; none for an orphan.
+  std::optional<TrianglePair> representative(const FeaturePair& pair) const {
+    if (pair.kind == FeaturePair::Kind::vertex_face) {
+      const TriangleId face{pair.b};
+      for (const TriangleId t : mesh_.triangles_at(VertexId{pair.a}))
+        if (!adjacent(t, face)) return TrianglePair{t, face};
+      return std::nullopt;
+    }
+    for (const TriangleId t : mesh_.triangles_at(EdgeId{pair.a}))
+      for (const TriangleId u : mesh_.triangles_at(EdgeId{pair.b}))
+        if (!adjacent(t, u)) return TrianglePair{t, u};
+    return std::nullopt;
+  }
+
+  const TriangleMesh& mesh_;
+  std::vector<FeaturePair> orphans_;
+};
+
+// All triangle pairs without a common vertex whose bounds overlap.
+class SelfCcdCuller : public Culler {
+ public:
+  explicit SelfCcdCuller(const Setup& setup)
+      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+
+  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+
+  CullCounts cull(TrianglePairSink& sink) override {
+    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+    const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
+    const auto emit = [&](NodeIndex a, NodeIndex b) {
+      const TriangleId t = tree_.triangle(a), u = tree_.triangle(b);
+      if (!share_vertex(mesh_.corners(t), mesh_.corners(u))) sink.add(t, u);
+    };
+    CullCounts counts;
+    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_none, emit);
+    return counts;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+};
+
+}  // namespace
+
+std::unique_ptr<const FeatureAssignment> representative_triangles(const TriangleMesh& mesh) {
+  return std::make_unique<Representatives>(mesh);
+}
+
+Prepared make_selfccd(const Setup& setup) {
+  PairOptions options;
+  options.assignment = representative_triangles(setup.mesh);
+  return {compose(std::make_unique<SelfCcdCuller>(setup), setup.mesh, setup.elementary, std::move(options)),
+          {}};
+}
+
+}  // namespace cscd
