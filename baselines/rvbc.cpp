@@ -16,17 +16,18 @@
 // other strategy.
 //
 // Fidelity: the 2013 text could not be had; this follows what the 2014 paper says of it (sections 3.1, 4.1
-// and 7). Its relative boxes are the 2014 paper's addition, so there are none here.
+// and 7). Relative boxes are the 2014 paper's addition, so there are none here but in the ablation's row.
 namespace cscd {
 namespace {
 
 class RvbcCuller : public Culler {
  public:
-  RvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds)
+  RvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
+             const RvbcOptions& options)
       : clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
         hierarchy_(setup.mesh, setup.reference, clusters_),
-        table_(setup.mesh, hierarchy_.groups()),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test),
         unmerged_(clusters_.clusters.size()) {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }
@@ -64,8 +65,8 @@ class RvbcCuller : public Culler {
 
 }  // namespace
 
-Prepared make_rvbc(const Setup& setup) {
-  radial::require_radial_setup(setup, "rvbc");
+Prepared make_rvbc(const Setup& setup, const RvbcOptions& options) {
+  radial::require_radial_setup(setup, std::string(options.name));
   StageClock clock;
   clock.enter(Stage::distance_and_heat);
   const int resolution = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
@@ -81,8 +82,8 @@ Prepared make_rvbc(const Setup& setup) {
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
-  auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds));
-  return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
+  auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
+  return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};
 }
 
 }  // namespace cscd

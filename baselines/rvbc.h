@@ -1,11 +1,20 @@
 #pragma once
 
+#include <string_view>
+
 #include "core/detect/strategy.h"
+#include "core/radial/orientation.h"
 
 namespace cscd {
 
+struct RvbcOptions {
+  std::string_view name = "rvbc";  // begins error texts
+  bool relative_boxes = false;     // the 2014 paper's addition
+  radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
+};
+
 // Radial view based culling with fixed clusters (Wong, Lin, Hung, Huang and Lii, ACM TOG 32(4), 2013). Needs
 // a closed, consistently oriented mesh and a rig.
-Prepared make_rvbc(const Setup& setup);
+Prepared make_rvbc(const Setup& setup, const RvbcOptions& options = {});
 
 }  // namespace cscd

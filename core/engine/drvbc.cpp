@@ -26,11 +26,11 @@ namespace {
 class DrvbcCuller : public Culler {
  public:
   DrvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
-              double gamma)
+              const DrvbcOptions& options)
       : clusters_(std::move(clusters)),
         hierarchy_(setup.mesh, setup.reference, clusters_),
-        table_(setup.mesh, hierarchy_.groups()),
-        mega_(clusters_, *setup.rig, std::move(kinds), gamma) {}
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test),
+        mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }
 
@@ -65,7 +65,7 @@ class DrvbcCuller : public Culler {
 }  // namespace
 
 Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
-  radial::require_radial_setup(setup, "drvbc");
+  radial::require_radial_setup(setup, std::string(options.name));
   const double theta = options.theta_degrees * std::numbers::pi / 180;
   StageClock clock;
   clock.enter(Stage::distance_and_heat);
@@ -78,15 +78,17 @@ Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
   radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
   std::vector<radial::ObserverKind> kinds =
       radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
-  bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
-  clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-  kinds = radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
+  if (options.refinement) {
+    bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
+    clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
+    kinds = radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
+  }
   clock.stop();
 
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
-  auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options.gamma);
+  auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
   return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};
 }
 

@@ -16,11 +16,12 @@ constexpr std::int32_t kUnassigned = -1;
 }
 
 MegaClusters::MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig,
-                           std::vector<radial::ObserverKind> kinds, double gamma)
+                           std::vector<radial::ObserverKind> kinds, double gamma, bool cache)
     : atomic_(atomic),
       rig_(rig),
       kinds_(std::move(kinds)),
       gamma_(gamma),
+      cache_(cache),
       seeds_(atomic.clusters.size()),
       label_(seeds_.size()),
       suspects_(seeds_.size()),
@@ -61,7 +62,7 @@ void MegaClusters::regrow(const OrientationTable& table, const Rig::Interval& bo
       }
   }
 
-  for (std::size_t c = 0; c < suspects_.size(); ++c) {
+  for (std::size_t c = 0; cache_ && c < suspects_.size(); ++c) {
     const std::span<const Orientation> classes = hierarchy.classes(c);
     suspects_[c].clear();
     for (std::uint32_t member = 0; member < classes.size(); ++member)
@@ -71,6 +72,7 @@ void MegaClusters::regrow(const OrientationTable& table, const Rig::Interval& bo
 
 bool MegaClusters::merge_first_neighbour(std::size_t seed, Observer& observer, const OrientationTable& table,
                                          const Rig::Interval& bones, ClusterHierarchy& hierarchy) {
+  if (gamma_ <= 0) return false;
   for (const std::int32_t candidate : atomic_.neighbours[seed]) {
     const auto c = static_cast<std::size_t>(candidate);
     if (label_[c] != kUnassigned) continue;

@@ -23,8 +23,9 @@ namespace cscd {
 // non-positive unnoticed.
 class MegaClusters {
  public:
+  // Without `cache` no suspects are kept. With gamma = 0 nothing merges and nothing is tried.
   MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig, std::vector<radial::ObserverKind> kinds,
-               double gamma);
+               double gamma, bool cache = true);
 
   // Merges, and writes the class of every triangle towards its mega cluster's observer into the hierarchy.
   void regrow(const radial::OrientationTable& table, const Rig::Interval& bones,
@@ -46,6 +47,7 @@ class MegaClusters {
   const Rig& rig_;
   std::vector<radial::ObserverKind> kinds_;
   double gamma_;
+  bool cache_;
   std::vector<std::size_t> seeds_;
   std::vector<std::int32_t> label_;
   std::size_t count_ = 0;

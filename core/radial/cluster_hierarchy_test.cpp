@@ -125,7 +125,7 @@ TEST(ClusterHierarchy, CullsExactlyTheSameSignPairsOfOneLabelAndNoOther) {
           Collector sink;
           const CullCounts done = scene.hierarchy.cull(merged, sink);
           EXPECT_EQ(sink.sorted(), scene.by_hand(merged)) << "seed " << seed << ", labels " << labels;
-          EXPECT_GE(done.bvot, sink.sorted().size());
+          EXPECT_GE(*done.bvot, sink.sorted().size());
         }
       }
     }
@@ -183,7 +183,7 @@ TEST(ClusterHierarchy, Trap12AnIntervalLeavesNothingBehind) {
     scene->set_classes(20, 20);  // the same dice in both
     scene->hierarchy.refit(Motion(scene->start, scene->end));
     scene->hierarchy.finish_classes();
-    tests[which++] = scene->hierarchy.cull(labels, *sink).bvot;
+    tests[which++] = scene->hierarchy.cull(labels, *sink).bvot.value();
   }
   EXPECT_EQ(a.sorted(), b.sorted());
   EXPECT_EQ(tests[0], tests[1]);

@@ -36,8 +36,8 @@ struct Range {
   double low, high;
 };
 
-// Encloses the clamped projection parameters of a triangle's corners on the moving segment.
-Range viewing_range(const MovingPoint (&corner)[3], const MovingPoint& head, const MovingPoint& tail) {
+// Encloses the clamped projection parameters of corners on the moving segment.
+Range viewing_range(std::span<const MovingPoint> corners, const MovingPoint& head, const MovingPoint& tail) {
   const MovingVector d = between(head, tail);
   const double length[3] = {d.start.squaredNorm(), d.start.dot(d.end), d.end.squaredNorm()};
   const double shortest = std::min({length[0], length[1], length[2]});
@@ -45,7 +45,7 @@ Range viewing_range(const MovingPoint (&corner)[3], const MovingPoint& head, con
   // Outside the range of doubles nothing is known; the triple products are as strict.
   if (!(shortest > 0 && longest <= kHugeProduct)) return {0, 1};
   double low = std::numeric_limits<double>::infinity(), high = -low, reach = 0;
-  for (const MovingPoint& p : corner) {
+  for (const MovingPoint& p : corners) {
     const MovingVector w = between(head, p);
     const double along[3] = {w.start.dot(d.start), (w.start.dot(d.end) + w.end.dot(d.start)) / 2,
                              w.end.dot(d.end)};
@@ -61,9 +61,11 @@ Range viewing_range(const MovingPoint (&corner)[3], const MovingPoint& head, con
   return known ? Range{std::clamp(range.low, 0.0, 1.0), std::clamp(range.high, 0.0, 1.0)} : Range{0, 1};
 }
 
-Orientation towards_segment(const MovingPoint (&corner)[3], const MovingPoint& head,
-                            const MovingPoint& tail) {
-  const Range range = viewing_range(corner, head, tail);
+Orientation towards_segment(const MovingPoint (&corner)[3], const MovingPoint& head, const MovingPoint& tail,
+                            SegmentTest test) {
+  const std::span<const MovingPoint> corners(corner);
+  const Range range =
+      viewing_range(test == SegmentTest::all_corners ? corners : corners.first(1), head, tail);
   // q(u) is rounded in two operations on each coordinate.
   const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
   const double slack =
@@ -79,13 +81,14 @@ Orientation towards_segment(const MovingPoint (&corner)[3], const MovingPoint& h
 
 }  // namespace
 
-Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer) {
-  if (observer.is_segment) return towards_segment(corner, observer.head, observer.tail);
+Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test) {
+  if (observer.is_segment) return towards_segment(corner, observer.head, observer.tail, test);
   return towards_point(corner, observer.head, 0);
 }
 
-OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups)
-    : mesh_(mesh) {
+OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
+                                   SegmentTest test)
+    : mesh_(mesh), test_(test) {
   for (const std::vector<TriangleId>& group : groups) {
     first_block_.push_back(lanes_.size());
     for (std::size_t first = 0; first < group.size(); first += kLanes) {
@@ -134,7 +137,7 @@ Orientation OrientationTable::classify(std::size_t group, std::size_t member,
   const std::size_t block = first_block_[group] + member / kLanes;
   const Triangle& c = mesh_.corners(lanes_[block].triangle[member % kLanes]);
   const Motion& m = *motion_;
-  return orientation({m[c[0]], m[c[1]], m[c[2]]}, observer);
+  return orientation({m[c[0]], m[c[1]], m[c[2]]}, observer, test_);
 }
 
 }  // namespace cscd::radial

@@ -29,8 +29,13 @@ struct Observer {
   static Observer segment(const MovingPoint& head, const MovingPoint& tail) { return {head, tail, true}; }
 };
 
+// From which corners a triangle is seen from a segment. The paper looks at one arbitrary corner, which proves
+// nothing (trap 2); here to count what that costs and loses.
+enum class SegmentTest { all_corners, first_corner };
+
 // One triangle in double precision, straight from the vertices: the scalar twin of OrientationTable.
-Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer);
+Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer,
+                        SegmentTest test = SegmentTest::all_corners);
 
 // What the orientation of every triangle needs, gathered once an interval: control vectors of the normal, one
 // corner, and a bound of the normal's rounding. Triangles stand grouped by cluster in blocks of eight lanes,
@@ -38,7 +43,8 @@ Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer
 class OrientationTable {
  public:
   // `groups`: the triangles of each cluster.
-  OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups);
+  OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
+                   SegmentTest test = SegmentTest::all_corners);
 
   // The vertices of `motion` must stay in place until the last classification of the interval.
   void update(const Motion& motion);
@@ -58,6 +64,7 @@ class OrientationTable {
     VectorLanes corner;  // the first one
   };
   const TriangleMesh& mesh_;
+  SegmentTest test_;
   std::vector<std::size_t> first_block_;  // of each group, one more at the end
   std::vector<TriangleLanes> lanes_;      // of each block; a short one repeats its last triangle
   std::vector<Block> blocks_;
