@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+// The Flexible Collision Library's continuous mesh traversal of a model with itself, over refitted 16-DOPs
+// (Pan, Chitta and Manocha, "FCL: A General Purpose Library for Collision and Proximity Queries", ICRA 2012).
+// Asks its own elementary tests, whatever the setup names.
+Prepared make_fcl(const Setup& setup);
+
+}  // namespace cscd

@@ -1,0 +1,67 @@
+#include "baselines/fcl/fcl.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "baselines/base.h"
+#include "core/mesh/test_shapes.h"
+#include "scenes/random/random_interval.h"
+
+namespace cscd {
+namespace {
+
+// Two boxes that pass into each other, moved a little out of line so that nothing is parallel.
+TEST(Fcl, FindsWhatIsPlainToSee) {
+  test::Shape upper = test::moved(test::box(), {0.3, 0.2, 1.5}, 0.9);
+  for (Vec3& p : upper.positions) p.z() += 0.11 * p.x() - 0.07 * p.y();
+  const test::Shape shape = test::together(test::box(), upper);
+  std::vector<Vec3> end = shape.positions;
+  for (std::size_t i = 8; i < 16; ++i) end[i].z() -= 1;
+  const TriangleMesh mesh = shape.mesh();
+  const ElementaryTest& exact = *find_elementary_test("exact");
+  const cscd::Setup setup{mesh, shape.positions, nullptr, exact};
+  ContactSet found, truth;
+  const auto fcl = make_fcl(setup).detector, base = make_base(setup).detector;
+  for (int visit = 0; visit < 2; ++visit) {
+    const Report report = fcl->detect(Motion(shape.positions, end), nullptr, found);
+    base->detect(Motion(shape.positions, end), nullptr, truth);
+    found.sort(), truth.sort();
+    ASSERT_FALSE(found.contacts.empty());
+    EXPECT_NEAR(found.contacts[0].time, truth.contacts[0].time, 1e-3);
+    EXPECT_GT(*report.cull.bvot, report.cull.pctp);
+    // And back: nothing is left of the interval before.
+    fcl->detect(Motion(shape.positions, shape.positions), nullptr, found);
+    EXPECT_TRUE(found.contacts.empty());
+  }
+}
+
+// What it promises is nothing; what it does on random intervals is recorded here and must not pass unnoticed
+// should it change: most contacts are found, and some are not.
+TEST(Fcl, FindsMostContactsOfRandomIntervals) {
+  const ElementaryTest& exact = *find_elementary_test("exact");
+  std::size_t expected = 0, shared = 0, invented = 0;
+  for (std::uint64_t seed = 1; seed <= 66; ++seed) {
+    const scenes::RandomInterval random = scenes::make_random_interval(seed);
+    const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
+    const Motion motion = random.clip.interval(0).motion;
+    const cscd::Setup setup{mesh, motion.start(), nullptr, exact};
+    ContactSet found, truth;
+    make_fcl(setup).detector->detect(motion, nullptr, found);
+    make_base(setup).detector->detect(motion, nullptr, truth);
+    expected += truth.contacts.size();
+    for (const Contact& contact : found.contacts) {
+      const bool real = std::any_of(truth.contacts.begin(), truth.contacts.end(),
+                                    [&](const Contact& c) { return c.pair == contact.pair; });
+      (real ? shared : invented) += 1;
+    }
+  }
+  RecordProperty("expected", static_cast<int>(expected));
+  RecordProperty("found", static_cast<int>(shared));
+  RecordProperty("invented", static_cast<int>(invented));
+  EXPECT_GT(shared, expected / 2);
+  EXPECT_LT(shared, expected);
+  EXPECT_LT(invented, expected / 2);
+}
+
+}  // namespace
+}  // namespace cscd
