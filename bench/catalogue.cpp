@@ -3,23 +3,77 @@
 #include <array>
 #include <string>
 
+#include "baselines/aabb.h"
 #include "baselines/base.h"
 #include "baselines/brute.h"
+#include "baselines/cgal_boxes/cgal_boxes.h"
+#include "baselines/embree/embree.h"
+#include "baselines/fcl/fcl.h"
+#include "baselines/mcd/mcd.h"
 #include "baselines/rvbc.h"
+#include "baselines/selfccd.h"
 #include "core/base/error.h"
 #include "core/engine/drvbc.h"
 
 namespace cscd::bench {
 namespace {
 
+constexpr std::string_view kAblation = "ablation";
+
 // The first row is the reference, the second the oracle.
 constexpr std::array kStrategies = {
     Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, false, make_base},
-    Strategy{"brute", "all pairs of triangles", Guarantee::complete, false, make_brute},
+    Strategy{"brute", "all pairs of triangles", Guarantee::complete, false, make_brute, "oracle"},
+    Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, false, make_aabb},
+    Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
+             false, make_mcd},
+    Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
+             Guarantee::complete, false, make_selfccd},
+#ifdef CSCD_BASELINES_EMBREE
+    Strategy{"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, false, make_embree},
+#endif
+#ifdef CSCD_BASELINES_CGAL_BOXES
+    Strategy{"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, false, make_cgal_boxes},
+#endif
     Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, true,
-             make_rvbc},
+             [](const Setup& setup) { return make_rvbc(setup); }},
     Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup); }},
+#ifdef CSCD_BASELINES_FCL
+    Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
+             Guarantee::heuristic, false, make_fcl, "checker", true},
+#endif
+    // One thing at a time left out, or added.
+    Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, true,
+             [](const Setup& setup) {
+               return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
+             },
+             kAblation},
+    Strategy{"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
+             true,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.name = "drvbc_unrefined", .refinement = false});
+             },
+             kAblation},
+    Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
+             kAblation},
+    Strategy{"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, true,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
+             },
+             kAblation},
+    Strategy{"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
+             Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
+             kAblation},
+    Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
+             Guarantee::heuristic, true,
+             [](const Setup& setup) {
+               return make_drvbc(
+                   setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
+             },
+             kAblation},
 };
 
 template <class Rows>
@@ -39,6 +93,13 @@ const Strategy& strategy_named(std::string_view name) {
   for (const Strategy& strategy : kStrategies)
     if (strategy.name == name) return strategy;
   refuse("strategy", name, kStrategies);
+}
+
+std::vector<const Strategy*> strategies_in(std::string_view group) {
+  std::vector<const Strategy*> rows;
+  for (const Strategy& strategy : kStrategies)
+    if (strategy.group == group) rows.push_back(&strategy);
+  return rows;
 }
 
 const ElementaryTest& elementary_test_named(std::string_view name) {

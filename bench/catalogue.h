@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/detect/strategy.h"
 
@@ -12,6 +13,8 @@ std::span<const Strategy> strategies();
 
 // Throws InputError that lists the known names.
 const Strategy& strategy_named(std::string_view name);
+// The rows of a group; those without one for "".
+std::vector<const Strategy*> strategies_in(std::string_view group);
 const ElementaryTest& elementary_test_named(std::string_view name);
 
 // The complete strategy with the fewest demands that is not quadratic: what stands in where the start of an

@@ -1,5 +1,7 @@
 #include "bench/contestant.h"
 
+#include <algorithm>
+
 #include "bench/catalogue.h"
 #include "bench/progress.h"
 
@@ -33,13 +35,21 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
   return contestants;
 }
 
-std::vector<const Strategy*> default_strategies(const Input& input) {
+std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names) {
   std::vector<const Strategy*> chosen;
-  for (const Strategy& strategy : strategies()) {
-    const bool rigged = input.rig || !strategy.needs_rig;
-    const bool allowed = input.mesh.closed_and_oriented() || strategy.guarantee == Guarantee::complete;
-    if (&strategy != &all_pairs() && rigged && allowed) chosen.push_back(&strategy);
-  }
+  const auto add = [&](const Strategy* strategy) {
+    if (std::find(chosen.begin(), chosen.end(), strategy) == chosen.end()) chosen.push_back(strategy);
+  };
+  const auto add_group = [&](std::string_view group) {
+    for (const Strategy* strategy : strategies_in(group))
+      if (allows(input, *strategy)) add(strategy);
+  };
+  if (names.empty()) add_group("");
+  for (const std::string& name : names)
+    if (strategies_in(name).empty())
+      add(&strategy_named(name));
+    else
+      add_group(name);
   return chosen;
 }
 

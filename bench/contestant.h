@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bench/input.h"
@@ -21,7 +22,8 @@ struct Contestant {
 std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
                                          const ElementaryTest& exact, const ElementaryTest& timed);
 
-// Those of the catalogue that the input allows, without all_pairs(), which is quadratic.
-std::vector<const Strategy*> default_strategies(const Input& input);
+// Strategies by name, or all of a group that the input allows; without names, those without a group that it
+// allows. Throws InputError for a name that is not known.
+std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names);
 
 }  // namespace cscd::bench

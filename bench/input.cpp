@@ -71,13 +71,16 @@ IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
   return {first, last};
 }
 
+bool allows(const Input& input, const Strategy& strategy) {
+  return (input.rig || !strategy.needs_rig) &&
+         (input.mesh.closed_and_oriented() || strategy.guarantee == Guarantee::complete ||
+          !strategy.needs_rig);
+}
+
 const Strategy& default_strategy(const Input& input) {
   const Strategy* chosen = &complete_reference();
-  for (const Strategy& strategy : strategies()) {
-    if (strategy.needs_rig && !input.rig) continue;
-    if (strategy.guarantee != Guarantee::complete && !input.mesh.closed_and_oriented()) continue;
-    chosen = &strategy;
-  }
+  for (const Strategy* strategy : strategies_in(""))
+    if (strategy->guarantee == Guarantee::first_contact && allows(input, *strategy)) chosen = strategy;
   return *chosen;
 }
 

@@ -36,7 +36,11 @@ struct IntervalRange {
 // "A:B" stands for the intervals between frames A and B; either may be left out. Throws InputError.
 IntervalRange parse_frames(const std::string& text, std::size_t frame_count);
 
-// The last row of the catalogue whose needs the input meets.
+// Whether the input has what a strategy needs: strategies that need bones need a closed surface as well,
+// unless they are complete.
+bool allows(const Input& input, const Strategy& strategy);
+
+// The last first_contact row without a group that the input allows, or else the complete reference.
 const Strategy& default_strategy(const Input& input);
 
 }  // namespace cscd::bench

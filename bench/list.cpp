@@ -28,11 +28,13 @@ json scenes_json() {
 
 json strategies_json() {
   json rows = json::array();
-  for (const Strategy& strategy : strategies())
+  for (const Strategy& strategy : strategies()) {
     rows.push_back({{"name", strategy.name},
                     {"source", strategy.source},
                     {"guarantee", to_string(strategy.guarantee)},
                     {"needs_rig", strategy.needs_rig}});
+    if (!strategy.group.empty()) rows.back()["group"] = strategy.group;
+  }
   return rows;
 }
 

@@ -84,7 +84,8 @@ void query(const QueryOptions& options) {
     entry["starts_embedded"] = embedded;
     entry["strategy"] = fall_back ? complete_reference().name : strategy->name;
     entry["proven"] =
-        elementary.apart_is_proof && (embedded || fall_back || strategy->guarantee == Guarantee::complete);
+        elementary.apart_is_proof && (fall_back || strategy->guarantee == Guarantee::complete ||
+                                      (embedded && strategy->guarantee == Guarantee::first_contact));
     entry["counts"] = counts_json(report);
     entry["ms"] = milliseconds_json(report.ms);
     colliding += !entry["contacts"].empty();

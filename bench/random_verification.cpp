@@ -116,10 +116,12 @@ RandomSummary verify_random(const RandomVerification& plan, std::span<const Stra
       row.contacts_found += verdict.found_contacts;
       row.triangle_pairs += result.report.cull.pctp;
       row.feature_pairs += result.report.pairs.feature_pairs;
+      if (strategy.own_test) row.invented += result.passed_on.contacts.size() - result.found.contacts.size();
       if (at_stake) {
         const std::size_t missing = first_pairs_missing(reference, result.found);
         row.first_pairs_missing += missing;
         row.firsts_thinned += missing > 0;
+        row.firsts_lost += missing == first_pairs_missing(reference, ContactSet{});
       }
       if (!verdict.ok)
         summary.failures.push_back(
@@ -146,7 +148,8 @@ std::string describe(const RandomSummary& summary) {
             count(row.triangle_pairs) + " triangle pairs, " + count(row.feature_pairs) +
             " feature pairs; reports " + count(row.contacts_found) + " of " + count(row.contacts_expected) +
             " contacts; lacks " + count(row.first_pairs_missing) + " pairs of the earliest time in " +
-            count(row.firsts_thinned) + " intervals\n";
+            count(row.firsts_thinned) + " intervals, all of them in " + count(row.firsts_lost) +
+            (row.invented > 0 ? "; invents " + count(row.invented) + " contacts" : "") + "\n";
   text += "  " + std::string(elementary_tests().front().name) +
           " on the same pairs: " + count(summary.newton.misses) + " misses, " +
           count(summary.newton.false_alarms) + " false alarms, " + count(summary.newton.undecided) +

@@ -33,6 +33,8 @@ struct RandomRow {
   // Over embedded starts with contacts: contacts of the earliest time that are not reported, and the
   // intervals that lack some. The guarantee first_contact allows all but one.
   std::size_t first_pairs_missing = 0, firsts_thinned = 0;
+  std::size_t firsts_lost = 0;  // intervals among these that lack them all
+  std::size_t invented = 0;     // reported by a strategy's own elementary test, and no contacts
 };
 
 struct RandomSummary {

@@ -58,20 +58,22 @@ ordered_json to_json(const VerificationRecord& v) {
                           {"contacts_found", s.contacts_found},
                           {"intervals_promised", s.intervals_promised},
                           {"failures", s.failures}});
-  return {{"ok", v.ok()},
-          {"reference", v.reference},
-          {"elementary", v.elementary},
-          {"intervals", v.intervals},
-          {"unembedded", v.unembedded},
-          {"colliding", v.colliding},
-          {"strategies", strategies},
-          {"accuracy",
-           {{"misses", v.accuracy.misses},
-            {"false_alarms", v.accuracy.false_alarms},
-            {"undecided", v.accuracy.undecided},
-            {"largest_time_error", v.accuracy.largest_time_error},
-            {"tests", v.accuracy_tests}}},
-          {"seconds", v.seconds}};
+  ordered_json out = {{"ok", v.ok()},
+                      {"reference", v.reference},
+                      {"elementary", v.elementary},
+                      {"intervals", v.intervals},
+                      {"unembedded", v.unembedded},
+                      {"colliding", v.colliding},
+                      {"strategies", strategies},
+                      {"accuracy",
+                       {{"misses", v.accuracy.misses},
+                        {"false_alarms", v.accuracy.false_alarms},
+                        {"undecided", v.accuracy.undecided},
+                        {"largest_time_error", v.accuracy.largest_time_error},
+                        {"tests", v.accuracy_tests}}},
+                      {"seconds", v.seconds}};
+  if (!v.own_tests.empty()) out["own_tests"] = v.own_tests;
+  return out;
 }
 
 ordered_json to_json(const StrategyRecord& s) {
@@ -111,6 +113,7 @@ VerificationRecord verification_from(const ordered_json& v) {
   out.accuracy = {accuracy.at("misses"), accuracy.at("false_alarms"), accuracy.at("undecided"),
                   accuracy.at("largest_time_error")};
   out.accuracy_tests = accuracy.at("tests");
+  out.own_tests = v.value("own_tests", ordered_json::array());
   out.seconds = v.at("seconds");
   return out;
 }

@@ -56,6 +56,9 @@ struct VerificationRecord {
   std::vector<VerifiedStrategy> strategies;
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;
+  // Of each strategy that brings its own elementary test: how its contacts differ from the referee's, and the
+  // first differences with the pair, what it said and what is true. Empty where there is none.
+  nlohmann::ordered_json own_tests = nlohmann::ordered_json::array();
   double seconds = 0;
 
   bool ok() const;

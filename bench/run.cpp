@@ -12,6 +12,7 @@
 #include "bench/record.h"
 #include "bench/timing.h"
 #include "bench/verification.h"
+#include "core/base/error.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/clip/digest.h"
 
@@ -82,6 +83,10 @@ void print(const VerificationRecord& v, const std::string& timed) {
                 static_cast<unsigned long long>(s.intervals_promised));
     for (const std::string& failure : s.failures) std::printf("    %s\n", failure.c_str());
   }
+  for (const auto& own : v.own_tests)
+    std::printf("  %s asks its own test: %s contacts missed, %s invented, times off by at most %s\n",
+                own["strategy"].get<std::string>().c_str(), own["misses"].dump().c_str(),
+                own["false_alarms"].dump().c_str(), own["largest_time_error"].dump().c_str());
   std::printf(
       "  %s on %llu feature pairs: %llu misses, %llu false alarms, %llu undecided, times off by at most "
       "%.2g\n",
@@ -94,8 +99,8 @@ void print(const VerificationRecord& v, const std::string& timed) {
 void run(RunOptions options) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
-  std::vector<const Strategy*> strategies;
-  for (const std::string& name : options.strategies) strategies.push_back(&strategy_named(name));
+  for (const std::string& name : options.strategies)  // before anything is opened
+    if (strategies_in(name).empty()) strategy_named(name);
   OutputFile output(options.output, options.force);
 
   Input input = open_input(options.scene);
@@ -105,7 +110,10 @@ void run(RunOptions options) {
     options.repetitions = kSmokeRepetitions;
     options.verify_every = kSmokeVerifyEvery;
   }
-  if (strategies.empty()) strategies = default_strategies(input);
+  const std::vector<const Strategy*> strategies = chosen_strategies(input, options.strategies);
+  if (strategies.empty())
+    throw InputError("--strategy: " + options.scene +
+                     " allows none of these; name others (cscd list strategies)");
 
   Record record;
   record.environment = environment();
@@ -154,14 +162,14 @@ void add_run(CLI::App& app) {
       "the failures and no times. Then the strategies are timed interleaved, interval by interval in a "
       "seeded\n"
       "random order. The record keeps every sample; `cscd tables` makes tables of it.\n\n"
-      "All pairs of triangles (" +
-          std::string(all_pairs().name) +
-          ") run only when named: a thousand million pairs on the rope, at every interval.");
+      "Rows that belong to a group (cscd list strategies) run only when they or their group is named: all "
+      "pairs of\n"
+      "triangles, a thousand million of them on the rope at every interval, and the ablation.");
   command->add_option("--scene", options->scene, "a scene (cscd list) or a .h5 point cache")
       ->capture_default_str();
   command
       ->add_option("--strategy", options->strategies,
-                   "strategies, with commas between; default all but all pairs")
+                   "strategies or groups of them, with commas between; default all without a group")
       ->delimiter(',');
   command->add_option("--elementary", options->elementary, "the elementary test that is timed")
       ->capture_default_str();

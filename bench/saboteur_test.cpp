@@ -3,6 +3,7 @@
 #include "bench/catalogue.h"
 #include "bench/random_verification.h"
 #include "bench/saboteurs.h"
+#include "core/mesh/test_shapes.h"
 #include "scenes/random/random_interval.h"
 
 // Tests of the verification itself: strategies with one flaw each, which `cscd verify` has to catch on the
@@ -73,6 +74,29 @@ TEST(Saboteurs, ACullerThatLosesOneTrianglePairIn10000IsCaught) {
   EXPECT_EQ(forgetful, expected - expected / 10000);
   EXPECT_GE(expected, 20000u);
   EXPECT_EQ(contacts_differ, 0u);
+}
+
+// An open ramp that faces up all along winds over itself and is squeezed: only its contour shows that its two
+// storeys meet.
+TEST(Saboteurs, NormalConesWithoutTheContourTestLoseAnOpenSpiral) {
+  for (const double turns : {0.75, 1.25, 1.75}) {
+    const test::Shape shape = test::ramp(24, turns, 1, 2, 1);
+    std::vector<Vec3> end = shape.positions;
+    for (std::size_t i = 0; i < end.size(); ++i) end[i].z() *= -0.1 - 0.01 * static_cast<double>(i % 5);
+    const TriangleMesh mesh = shape.mesh();
+    const cscd::Setup setup{mesh, shape.positions, nullptr, elementary_test_named("exact")};
+    const auto contacts = [&](Prepared (*make)(const cscd::Setup&)) {
+      ContactSet found;
+      make(setup).detector->detect(Motion(shape.positions, end), nullptr, found);
+      found.sort();
+      return found;
+    };
+    const ContactSet truth = contacts(all_pairs().make);
+    EXPECT_EQ(digest(contacts(test::make_cones<Flaw::none>)), digest(truth)) << turns;
+    EXPECT_EQ(digest(contacts(strategy_named("mcd").make)), digest(truth)) << turns;
+    EXPECT_EQ(truth.contacts.empty(), turns < 1);
+    EXPECT_TRUE(contacts(test::make_cones<Flaw::contours_not_tested>).contacts.empty()) << turns;
+  }
 }
 
 template <radial::ObserverKind kind>

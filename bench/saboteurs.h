@@ -10,7 +10,11 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 
+#include "baselines/mcd/contour.h"
+#include "baselines/mcd/discs.h"
+#include "baselines/mcd/normal_cones.h"
 #include "core/detect/compose.h"
 #include "core/hierarchy/descent.h"
 #include "core/radial/cluster_hierarchy.h"
@@ -34,6 +38,7 @@ enum class Flaw {
   segment_by_one_vertex,
   clusters_span_components,
   observers_mixed,
+  contours_not_tested,
 };
 
 // All pairs of triangles whose swept bounds overlap, through a descent.
@@ -86,6 +91,46 @@ class PlainCuller : public Culler {
   std::vector<Leaf> leaf_;
   NodeIndex last_ = 0;
   static inline std::uint64_t emitted_ = 0;
+};
+
+// Drops the pairs inside every patch whose normals lie in a half space and whose contour, seen from there, is
+// simple.
+template <Flaw flaw>
+class ConeCuller : public Culler {
+ public:
+  explicit ConeCuller(const Setup& setup)
+      : mesh_(setup.mesh),
+        tree_(build_tree(mesh_, setup.reference)),
+        bounds_(mesh_, tree_),
+        discs_(mesh_, tree_),
+        cones_(mesh_, tree_) {}
+
+  void refit(const Motion& motion) override {
+    bounds_.refit(mesh_, tree_, motion);
+    cones_.update(tree_, motion);
+    motion_ = motion;
+  }
+  CullCounts cull(TrianglePairSink& sink) override {
+    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+    const auto skip = [&](NodeIndex a, NodeIndex b) {
+      return a == b && !discs_.contour(a).empty() && cones_[a].in_half_space() &&
+             (flaw == Flaw::contours_not_tested ||
+              contour_.simple(discs_.contour(a), cones_[a].axis, *motion_));
+    };
+    const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
+    CullCounts counts;
+    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
+    return counts;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+  mcd::Discs discs_;
+  mcd::NormalCones cones_;
+  mcd::ContourTest contour_;
+  std::optional<Motion> motion_;
 };
 
 // Clusters by bone, viewed from their bones; `merge_all` lets them all act as one (sound only as long as they
@@ -228,6 +273,11 @@ Prepared make_plain(const Setup& setup) {
   if (flaw == Flaw::one_feature_pair_in_10000_lost)
     return {std::make_unique<ForgetfulDetector>(std::move(detector)), {}};
   return {std::move(detector), {}};
+}
+
+template <Flaw flaw>
+Prepared make_cones(const Setup& setup) {
+  return {compose(std::make_unique<ConeCuller<flaw>>(setup), setup.mesh, setup.elementary), {}};
 }
 
 // One cluster a bone, whatever the components of the mesh.

@@ -13,6 +13,7 @@ namespace {
 // one.
 bool same_culling(const Report& a, const Report& b) {
   return a.cull.bvot == b.cull.bvot && a.cull.pctp == b.cull.pctp &&
+         a.cull.contour_box_tests == b.cull.contour_box_tests &&
          a.pairs.adjacent_pctp == b.pairs.adjacent_pctp &&
          a.pairs.relative_dropped == b.pairs.relative_dropped &&
          a.pairs.feature_pairs == b.pairs.feature_pairs &&

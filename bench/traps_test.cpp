@@ -39,6 +39,14 @@ const ElementaryTest& exact() {
   return elementary_test_named("exact");
 }
 
+// Those that promise something.
+std::vector<const Strategy*> with_guarantee() {
+  std::vector<const Strategy*> rows;
+  for (const Strategy& strategy : strategies())
+    if (strategy.guarantee != Guarantee::heuristic) rows.push_back(&strategy);
+  return rows;
+}
+
 // One interval of a mesh with bones.
 struct Case {
   TriangleMesh mesh;
@@ -171,7 +179,8 @@ TEST(Traps, Trap02AFingerOverASegmentObserverIsFound) {
 
   EXPECT_EQ(digest(scene.in_one_cluster<Flaw::none>(ObserverKind::bone_segment)), digest(truth));
   EXPECT_TRUE(scene.in_one_cluster<Flaw::segment_by_one_vertex>(ObserverKind::bone_segment).contacts.empty());
-  for (const Strategy& strategy : strategies()) EXPECT_EQ(digest(scene.ask(strategy)), digest(truth));
+  for (const Strategy* strategy : with_guarantee())
+    EXPECT_EQ(digest(scene.ask(*strategy)), digest(truth)) << strategy->name;
 }
 
 // Mutation: make_atomic_clusters keys its clusters by bone alone.
@@ -183,7 +192,8 @@ TEST(Traps, Trap03AShellThatClosesOnAnotherIsFound) {
   ASSERT_TRUE(scene.embedded());
   const ContactSet truth = scene.ask(all_pairs());
   ASSERT_GE(truth.contacts.size(), 64u);
-  for (const Strategy& strategy : strategies()) EXPECT_EQ(digest(scene.ask(strategy)), digest(truth));
+  for (const Strategy* strategy : with_guarantee())
+    EXPECT_EQ(digest(scene.ask(*strategy)), digest(truth)) << strategy->name;
   EXPECT_TRUE(
       scene.in_one_cluster<Flaw::clusters_span_components>(ObserverKind::bone_centre).contacts.empty());
 }
@@ -391,7 +401,8 @@ TEST(Traps, Trap10AnOverlappingStartIsAnsweredByACompleteStrategy) {
   writer.append({scene.start, scene.rig.reference});
   writer.append({scene.end, scene.bones_end});
   writer.finish();
-  for (const Strategy& strategy : strategies()) {
+  for (const Strategy* row : with_guarantee()) {
+    const Strategy& strategy = *row;
     const std::string named = "--strategy " + std::string(strategy.name);
     const nlohmann::json answer = query(folder / "overlap.h5", folder / "out.json", named);
     EXPECT_FALSE(answer.at("starts_embedded").get<bool>());
@@ -422,9 +433,10 @@ TEST(Traps, Trap11SurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
     const ContactSet truth = scene.ask(all_pairs());
     for (const Strategy& strategy : strategies()) {
       if (strategy.guarantee == Guarantee::complete) {
-        EXPECT_EQ(digest(scene.ask(strategy)), digest(truth));
+        EXPECT_EQ(digest(scene.ask(strategy)), digest(truth)) << strategy.name;
         continue;
       }
+      if (!strategy.needs_rig) continue;  // takes any surface and promises nothing
       try {
         strategy.make(scene.setup());
         ADD_FAILURE() << strategy.name << " took it";
@@ -459,8 +471,9 @@ TEST(Traps, Trap11MissingBonesAreRefusedByThoseThatNeedThem) {
 
 std::vector<std::uint64_t> counters(const Report& report) {
   const RadialCounts radial = report.cull.radial.value_or(RadialCounts{});
-  return {report.cull.bvot,
+  return {report.cull.bvot.value_or(0),
           report.cull.pctp,
+          report.cull.contour_box_tests.value_or(0),
           radial.positive,
           radial.negative,
           radial.uncertain,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 
 #include "bench/catalogue.h"
 #include "bench/progress.h"
@@ -26,6 +27,66 @@ struct Reference {
     if (used == &own) own = std::move(make_contestants(input, {&strategy, 1}, exact, timed).front());
   }
 };
+
+// A strategy with an elementary test of its own is compared, not judged: nothing is promised.
+class OwnTest {
+ public:
+  explicit OwnTest(const Strategy& strategy) : strategy_(strategy) {}
+
+  void compare(const TriangleMesh& mesh, std::size_t interval, const ContactSet& truth,
+               const ContactSet& answer) {
+    accuracy_.add(compare_elementary(truth, answer));
+    for (const Difference& difference : differences(truth, answer)) {
+      if (listed_.size() == kListed) return;
+      listed_.push_back({{"interval", interval},
+                         {"kind", is_vertex_face(difference.pair) ? "vf" : "ee"},
+                         {"vertices", vertices(mesh, difference.pair)},
+                         {"said", time(difference.said)},
+                         {"true", time(difference.truth)}});
+    }
+  }
+  nlohmann::ordered_json json() const {
+    return {{"strategy", strategy_.name},
+            {"misses", accuracy_.misses},
+            {"false_alarms", accuracy_.false_alarms},
+            {"largest_time_error", accuracy_.largest_time_error},
+            {"differences", listed_}};
+  }
+
+ private:
+  static constexpr std::size_t kListed = 200;
+  static bool is_vertex_face(const FeaturePair& pair) { return pair.kind == FeaturePair::Kind::vertex_face; }
+  static std::vector<int> vertices(const TriangleMesh& mesh, const FeaturePair& pair) {
+    std::vector<VertexId> ids;
+    if (is_vertex_face(pair)) {
+      const Triangle& corner = mesh.corners(TriangleId{pair.b});
+      ids = {VertexId{pair.a}, corner[0], corner[1], corner[2]};
+    } else {
+      const Edge &a = mesh.ends(EdgeId{pair.a}), &b = mesh.ends(EdgeId{pair.b});
+      ids = {a[0], a[1], b[0], b[1]};
+    }
+    std::vector<int> out;
+    for (const VertexId id : ids) out.push_back(static_cast<int>(id));
+    return out;
+  }
+  static nlohmann::ordered_json time(const std::optional<double>& t) {  // null: apart
+    return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
+  }
+
+  const Strategy& strategy_;
+  Accuracy accuracy_;
+  nlohmann::ordered_json listed_ = nlohmann::ordered_json::array();
+};
+
+// Leaves the referee's answers to the pairs that both call contacts.
+void keep_shared(const ContactSet& truth, ContactSet& answer) {
+  ContactSet shared;
+  for (const Contact& contact : truth.contacts)
+    if (std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                    [&](const Contact& said) { return said.pair == contact.pair; }))
+      shared.contacts.push_back(contact);
+  answer = std::move(shared);
+}
 
 bool promises(Guarantee guarantee, bool starts_embedded, const ContactSet& reference) {
   if (reference.contacts.empty()) return false;
@@ -57,6 +118,9 @@ VerificationOutcome verify_contestants(Input& input, std::span<Contestant> conte
     row.name = contestant.strategy->name;
     row.guarantee = to_string(contestant.strategy->guarantee);
   }
+  std::map<std::size_t, OwnTest> own_tests;  // by contestant
+  for (std::size_t c = 0; c < contestants.size(); ++c)
+    if (contestants[c].strategy->own_test) own_tests.emplace(c, *contestants[c].strategy);
 
   EmbeddingTest embedding(input.mesh, input.reference);
   Progress progress("verifying " + input.name, intervals.size());
@@ -76,6 +140,10 @@ VerificationOutcome verify_contestants(Input& input, std::span<Contestant> conte
       const Report report = itself ? expected : contestants[c].judged->detect(interval.motion, bones, answer);
       outcome.reports[c].push_back(report);
       answer.sort();
+      if (const auto own = own_tests.find(c); own != own_tests.end()) {
+        own->second.compare(input.mesh, i, truth, answer);
+        keep_shared(truth, answer);
+      }
       add(verify(truth, itself ? truth : answer, strategy.guarantee, starts_embedded),
           promises(strategy.guarantee, starts_embedded, truth), i, record.strategies[c]);
     }
@@ -85,6 +153,7 @@ VerificationOutcome verify_contestants(Input& input, std::span<Contestant> conte
     record.accuracy.add(compare_elementary(truth, answer));
     progress.advance();
   }
+  for (const auto& [c, own] : own_tests) record.own_tests.push_back(own.json());
   record.intervals = std::move(intervals);
   record.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   return outcome;

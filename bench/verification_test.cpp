@@ -85,7 +85,7 @@ void forget_once(const Setup& setup, int call, Report&, ContactSet& found) {
   if (setup.elementary.name != exact().name && call == 3) found.contacts.pop_back();
 }
 void count_otherwise_once(const Setup& setup, int call, Report& report, ContactSet&) {
-  report.cull.bvot += setup.elementary.name != exact().name && call == 3;
+  *report.cull.bvot += setup.elementary.name != exact().name && call == 3;
 }
 
 struct Outcome {

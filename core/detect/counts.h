@@ -13,8 +13,9 @@ struct RadialCounts {
 
 // What culling did.
 struct CullCounts {
-  std::uint64_t bvot = 0;  // bounding volume overlap tests
-  std::uint64_t pctp = 0;  // potentially colliding triangle pairs passed on
+  std::optional<std::uint64_t> bvot = 0;  // bounding volume overlap tests; absent where a library keeps them
+  std::uint64_t pctp = 0;                 // potentially colliding triangle pairs passed on
+  std::optional<std::uint64_t> contour_box_tests;  // of projected contours, in the plane; not among the bvot
   std::optional<RadialCounts> radial;
 };
 

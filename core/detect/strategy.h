@@ -48,6 +48,9 @@ struct Strategy {
   Guarantee guarantee;
   bool needs_rig;
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
+  // Rows with a group run only where they or their group is named, the others wherever the input allows it.
+  std::string_view group = "";
+  bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
 };
 
 }  // namespace cscd

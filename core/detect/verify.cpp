@@ -107,4 +107,17 @@ Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test) {
   return result;
 }
 
+std::vector<Difference> differences(const ContactSet& referee, const ContactSet& test) {
+  const std::vector<Contact> truth = sorted_by_pair(referee), claims = sorted_by_pair(test);
+  std::vector<Contact> missed, invented;
+  std::set_difference(truth.begin(), truth.end(), claims.begin(), claims.end(), std::back_inserter(missed),
+                      by_pair);
+  std::set_difference(claims.begin(), claims.end(), truth.begin(), truth.end(), std::back_inserter(invented),
+                      by_pair);
+  std::vector<Difference> result;
+  for (const Contact& contact : missed) result.push_back({contact.pair, contact.time, std::nullopt});
+  for (const Contact& contact : invented) result.push_back({contact.pair, std::nullopt, contact.time});
+  return result;
+}
+
 }  // namespace cscd

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,5 +37,12 @@ struct Accuracy {
   void add(const Accuracy& other);
 };
 Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test);
+
+// A pair that one of them calls a contact and the other apart; a missing time means apart.
+struct Difference {
+  FeaturePair pair;
+  std::optional<double> truth, said;
+};
+std::vector<Difference> differences(const ContactSet& referee, const ContactSet& test);
 
 }  // namespace cscd

@@ -153,5 +153,18 @@ TEST(Accuracy, AddsUp) {
   EXPECT_EQ(sum.largest_time_error, 0.75);
 }
 
+TEST(Differences, NameThePairWhatWasSaidAndWhatIsTrue) {
+  EXPECT_TRUE(differences(kReference, kReference).empty());
+  const std::vector<Difference> found =
+      differences(kReference, set_of({ee(3, 4, 0.3), vf(9, 1, 0.25), ee(1, 2, 0.5), vf(7, 7, 0.125)}));
+  ASSERT_EQ(found.size(), 2u) << "another time is no difference";
+  EXPECT_EQ(found[0].pair, vf(1, 2, 0).pair);
+  EXPECT_EQ(found[0].truth, 0.75);
+  EXPECT_FALSE(found[0].said.has_value());
+  EXPECT_EQ(found[1].pair, vf(7, 7, 0).pair);
+  EXPECT_FALSE(found[1].truth.has_value());
+  EXPECT_EQ(found[1].said, 0.125);
+}
+
 }  // namespace
 }  // namespace cscd
