@@ -4,6 +4,7 @@
 
 packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev libgmp-dev
                 libgtest-dev python3)
+packages_compare=(libembree-dev libcgal-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_kernels=(libbenchmark-dev)
 packages_clang=(clang)

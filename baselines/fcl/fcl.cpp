@@ -1,3 +1,6 @@
+// Debian builds FCL for any x86-64. With this machine's wider vectors Eigen would lay out FCL's classes
+// otherwise than the library does, and the two would write past each other.
+#define EIGEN_MAX_ALIGN_BYTES 16
 #include "baselines/fcl/fcl.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>

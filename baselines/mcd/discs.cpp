@@ -1,44 +1,49 @@
 #include "baselines/mcd/discs.h"
 
+#include <algorithm>
+#include <compare>
+
 namespace cscd::mcd {
 namespace {
 
-// Scratch for one node after the other: what is not marked with the node's number is of an earlier one.
+// Scratch for one patch after the other: what is not marked with the patch's number is of an earlier one.
 struct Collector {
   struct EdgeUse {
-    NodeIndex node = -1;
+    int patch = 0;
     int triangles = 0;
     int direction = 0;  // triangles that run from the smaller index to the larger, less the others
     VertexId from{}, to{};
   };
   struct VertexUse {
-    NodeIndex node = -1;
+    int patch = 0;
     int contour_edges = 0;  // that leave it
     VertexId next{};
   };
   const TriangleMesh& mesh;
   std::vector<EdgeUse> edge;
   std::vector<VertexUse> vertex;
-  std::vector<EdgeId> edges;  // of the node
+  std::vector<EdgeId> edges;  // of the patch
+  int patch = 0;
 
   explicit Collector(const TriangleMesh& mesh_in)
       : mesh(mesh_in), edge(mesh.edge_count()), vertex(mesh.vertex_count()) {}
 
   // Appends the contour to `out` if the triangles form a disc.
-  void add_contour(NodeIndex node, std::span<const TriangleId> triangles, std::vector<VertexId>& out) {
+  void add_contour(std::span<const TriangleId> triangles, std::vector<VertexId>& out) {
+    ++patch;
     std::size_t vertices = 0, contour_edges = 0;
     edges.clear();
     for (const TriangleId t : triangles) {
       const Triangle& corner = mesh.corners(t);
       for (std::size_t k = 0; k < 3; ++k) {
-        if (vertex[+corner[k]].node != node) {
-          vertex[+corner[k]] = {node, 0, {}};
+        if (vertex[+corner[k]].patch != patch) {
+          vertex[+corner[k]] = {patch, 0, {}};
           ++vertices;
         }
         const EdgeId id = mesh.edges_of(t)[k];
         EdgeUse& use = edge[+id];
-        if (use.node != node) {
-          use = {node, 0, 0, {}, {}};
+        if (use.patch != patch) {
+          use = {patch, 0, 0, {}, {}};
           edges.push_back(id);
         }
         use.from = corner[k], use.to = corner[(k + 1) % 3];
@@ -71,6 +76,49 @@ struct Collector {
   }
 };
 
+struct NodePair {
+  NodeIndex a, b;
+  auto operator<=>(const NodePair&) const = default;
+};
+
+// All pairs of nodes with an edge in common that a self-descent comes to: below the node where the ways to
+// its two triangles part, both one step down at a time.
+std::vector<NodePair> neighbours(const TriangleMesh& mesh, const Tree& tree) {
+  std::vector<NodeIndex> parent(tree.node_count(), -1), leaf(mesh.triangle_count());
+  for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
+    if (tree.is_leaf(node)) {
+      leaf[+tree.triangle(node)] = node;
+    } else {
+      parent[static_cast<std::size_t>(tree.left(node))] = node;
+      parent[static_cast<std::size_t>(tree.right(node))] = node;
+    }
+  }
+  const auto way_up = [&](NodeIndex node, std::vector<NodeIndex>& way) {
+    way.clear();
+    for (; node >= 0; node = parent[static_cast<std::size_t>(node)]) way.push_back(node);
+  };
+
+  std::vector<NodePair> pairs;
+  std::vector<NodeIndex> a, b;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const std::span<const TriangleId> at = mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)});
+    if (at.size() != 2) continue;  // with more no disc, with fewer no neighbours
+    const auto [first, second] = std::minmax(leaf[+at[0]], leaf[+at[1]]);
+    way_up(first, a);
+    way_up(second, b);
+    while (a.back() == b.back()) a.pop_back(), b.pop_back();
+    for (;;) {
+      pairs.push_back({a.back(), b.back()});
+      if (a.size() == 1 && b.size() == 1) break;
+      if (a.size() > 1) a.pop_back();
+      if (b.size() > 1) b.pop_back();
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
 }  // namespace
 
 Discs::Discs(const TriangleMesh& mesh, const Tree& tree) {
@@ -82,17 +130,32 @@ Discs::Discs(const TriangleMesh& mesh, const Tree& tree) {
     if (tree.is_leaf(node)) triangles.push_back(tree.triangle(node));
   }
   leaves_before.back() = triangles.size();
+  const auto below = [&](NodeIndex node) {
+    NodeIndex last = node;
+    while (!tree.is_leaf(last)) last = tree.right(last);
+    const std::size_t first_leaf = leaves_before[static_cast<std::size_t>(node)];
+    return std::span<const TriangleId>(triangles).subspan(
+        first_leaf, leaves_before[static_cast<std::size_t>(last) + 1] - first_leaf);
+  };
 
   Collector collector(mesh);
   for (NodeIndex node = 0; node < nodes; ++node) {
     first_.push_back(vertices_.size());
-    if (tree.is_leaf(node)) continue;
-    NodeIndex last = node;
-    while (!tree.is_leaf(last)) last = tree.right(last);
-    const std::size_t first_leaf = leaves_before[static_cast<std::size_t>(node)];
-    const std::size_t leaves = leaves_before[static_cast<std::size_t>(last) + 1] - first_leaf;
-    collector.add_contour(node, std::span(triangles).subspan(first_leaf, leaves), vertices_);
+    if (!tree.is_leaf(node)) collector.add_contour(below(node), vertices_);
   }
+  std::vector<TriangleId> both;
+  for (const auto& [a, b] : neighbours(mesh, tree)) {
+    const std::size_t size_before = vertices_.size();
+    const std::span<const TriangleId> of_a = below(a), of_b = below(b);
+    both.assign(of_a.begin(), of_a.end());
+    both.insert(both.end(), of_b.begin(), of_b.end());
+    collector.add_contour(both, vertices_);
+    if (vertices_.size() == size_before) continue;
+    first_partner_.resize(static_cast<std::size_t>(a) + 1, partner_.size());
+    partner_.push_back(b);
+    first_.push_back(size_before);
+  }
+  first_partner_.resize(tree.node_count() + 1, partner_.size());
   first_.push_back(vertices_.size());
 }
 

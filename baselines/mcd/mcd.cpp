@@ -23,8 +23,9 @@
 // Fidelity: the paper's text could not be had; this follows what its successors and the code of its authors
 // tell of it. Cones are merged around both children, closer than by Provot's rule. The contour test boxes
 // projected edges at both ends instead of over the whole path, in a hierarchy over the contour. Patches are
-// the nodes of the tree that all strategies here share; those that are no discs (rings, several pieces) are
-// not tried. Pairs across the border of two patches are left to the bounds. Representative triangles and
+// the nodes of the tree that all strategies here share, and pairs of nodes with an edge in common, whose
+// contours are looked up; those that are no discs (rings, several pieces) are not tried and left to the
+// bounds. Representative triangles and
 // orphan sets of the same paper are the strategy `selfccd`; here, as in all strategies but that one, a
 // feature pair is tested once, whichever triangle pair brings it.
 //
@@ -60,7 +61,9 @@ class McdCuller : public Culler {
   CullCounts cull(TrianglePairSink& sink) override {
     contour_.restart();
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-    const auto skip = [&](NodeIndex a, NodeIndex b) { return a == b && never_touches_itself(a); };
+    const auto skip = [&](NodeIndex a, NodeIndex b) {
+      return a == b ? never_touches_itself(discs_.contour(a), cones_[a]) : neighbours_never_touch(a, b);
+    };
     const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
     CullCounts counts;
     counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
@@ -69,10 +72,13 @@ class McdCuller : public Culler {
   }
 
  private:
-  bool never_touches_itself(NodeIndex node) {
-    const std::span<const VertexId> contour = discs_.contour(node);
-    const mcd::NormalCone& cone = cones_[node];
+  bool never_touches_itself(std::span<const VertexId> contour, const mcd::NormalCone& cone) {
     return contour.size() >= kFewest && cone.in_half_space() && contour_.simple(contour, cone.axis, *motion_);
+  }
+  // Nor do two patches that are one together.
+  bool neighbours_never_touch(NodeIndex a, NodeIndex b) {
+    const std::span<const VertexId> contour = discs_.contour(a, b);
+    return contour.size() >= kFewest && never_touches_itself(contour, merged(cones_[a], cones_[b]));
   }
 
   const TriangleMesh& mesh_;

@@ -163,6 +163,32 @@ TEST(Discs, AreNot) {
   EXPECT_TRUE(none(holed, ball.positions.size())) << "with two it is a ring";
 }
 
+// Every pair of leaves at an edge is a square, and so is every pair of nodes that holds one on its two sides.
+TEST(Discs, OfTwoNeighboursHaveOneContour) {
+  const Shape shape = test::torus();
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  const Discs discs(mesh, tree);
+  const auto nodes = static_cast<NodeIndex>(tree.node_count());
+  std::size_t squares = 0, larger = 0;
+  for (NodeIndex a = 0; a < nodes; ++a)
+    for (NodeIndex b = a + 1; b < nodes; ++b) {
+      const std::span<const VertexId> contour = discs.contour(a, b);
+      const bool leaves = tree.is_leaf(a) && tree.is_leaf(b);
+      if (leaves) {
+        const auto one = mesh.edges_of(tree.triangle(a)), other = mesh.edges_of(tree.triangle(b));
+        const bool common = std::any_of(one.begin(), one.end(), [&](EdgeId e) {
+          return std::find(other.begin(), other.end(), e) != other.end();
+        });
+        ASSERT_EQ(contour.size(), common ? 4u : 0u);
+        squares += common;
+      }
+      larger += contour.size() > 4;
+    }
+  EXPECT_EQ(squares, mesh.edge_count());
+  EXPECT_GT(larger, 100u);
+}
+
 bool simple(const std::vector<Vec3>& start, const std::vector<Vec3>& end, const Vec3& direction = {0, 0, 1}) {
   std::vector<VertexId> loop;
   for (std::size_t i = 0; i < start.size(); ++i) loop.push_back(VertexId{static_cast<std::int32_t>(i)});
