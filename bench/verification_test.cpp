@@ -113,12 +113,41 @@ std::vector<std::string> failures(Prepared (*make)(const Setup&), Guarantee guar
   return outcome.verified.record.strategies[1].failures;
 }
 
+void lose_first_and_invent(const Setup& setup, int call, Report& report, ContactSet& found) {
+  lose_first(setup, call, report, found);
+  invent(setup, call, report, found);
+}
+
+// A strategy with an elementary test of its own does not fail; what it gets wrong is listed.
+TEST(Verification, OwnTestsAreComparedAndTimed) {
+  const Outcome outcome = judge(
+      {"checker", "test", Guarantee::heuristic, false, sabotage<lose_first_and_invent>, "checker", true});
+  EXPECT_TRUE(outcome.verified.record.ok());
+  EXPECT_FALSE(outcome.void_times);
+  ASSERT_EQ(outcome.verified.record.own_tests.size(), 1u);
+  const nlohmann::ordered_json& own = outcome.verified.record.own_tests[0];
+  EXPECT_EQ(own["strategy"], "checker");
+  EXPECT_GT(own["misses"], 0);
+  EXPECT_EQ(own["false_alarms"], 1);
+  ASSERT_EQ(own["differences"].size(), own["misses"].get<std::size_t>() + 1);
+  EXPECT_TRUE(own["differences"].front()["said"].is_null());
+  EXPECT_TRUE(own["differences"].front()["true"].is_number());
+  EXPECT_EQ(own["differences"].front()["vertices"].size(), 4u);
+  EXPECT_EQ(own["differences"].back()["said"], 0);
+  EXPECT_TRUE(own["differences"].back()["true"].is_null());
+  const VerifiedStrategy& row = outcome.verified.record.strategies[1];
+  EXPECT_EQ(row.contacts_found + own["misses"].get<std::uint64_t>(), row.contacts_expected);
+}
+
 TEST(Verification, HonestStrategiesPassAndAreTimed) {
   for (const Strategy& strategy : strategies()) {
     const Outcome outcome = judge(strategy);
     EXPECT_TRUE(outcome.verified.record.ok()) << strategy.name;
     EXPECT_FALSE(outcome.void_times) << strategy.name;
-    EXPECT_EQ(outcome.verified.record.strategies[1].intervals_promised, 1u);
+    EXPECT_EQ(outcome.verified.record.strategies[1].intervals_promised,
+              strategy.guarantee == Guarantee::heuristic ? 0u : 1u)
+        << strategy.name;
+    EXPECT_EQ(outcome.verified.record.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
     EXPECT_EQ(outcome.verified.record.colliding, std::vector<std::size_t>{0});
     for (const auto& [stage, repetitions] : outcome.records[1].ms) {
       ASSERT_EQ(repetitions.size(), 3u) << stage;

@@ -72,7 +72,8 @@ std::vector<Vec3> flat(std::size_t vertices) {
 Report run(const TriangleMesh& mesh, const std::vector<Vec3>& start, const std::vector<Vec3>& end,
            std::vector<TrianglePair> pairs, ContactSet& out, const ElementaryTest& test,
            PairOptions options = {}) {
-  const auto detector = compose(std::make_unique<ListCuller>(std::move(pairs)), mesh, test, std::move(options));
+  const auto detector =
+      compose(std::make_unique<ListCuller>(std::move(pairs)), mesh, test, std::move(options));
   const Report report = detector->detect(Motion(start, end), nullptr, out);
   out.sort();
   return report;
