@@ -24,15 +24,18 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
   require_count(scene, "triangles", shape.triangles.size(), scene.expected.triangles);
   require_count(scene, "bones", shape.rig.parent.size(), scene.expected.bones);
   EffectSequence effects(scene.effects, shape, scene.substeps);
-  FrameSink& sink = begin({shape.triangles, shape.positions.size(), shape.rig.parent, false});
+  FrameSink& sink = begin({shape.triangles, shape.positions.size(), shape.rig.parent, effects.predicts()});
 
   SceneState state(shape);
   FrameDigest digest;
   for (std::size_t frame = 0; frame < scene.frames; ++frame) {
     if (frame > 0) effects.advance(state, static_cast<int>(frame), watch);
     const FrameView view{state.positions, state.bones};
-    sink.append(view, nullptr);
-    digest.add(view);
+    // The bones move as the animation has them, whatever the surface is kept from.
+    const FrameView predicted{state.predicted, state.bones};
+    const FrameView* prediction = effects.predicts() && frame > 0 ? &predicted : nullptr;
+    sink.append(view, prediction);
+    digest.add(view, prediction);
     if (progress) progress(frame + 1, scene.frames);
   }
 

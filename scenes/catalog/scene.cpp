@@ -101,6 +101,31 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
+Json parse_json(const std::string& text, const std::string& where) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw InputError(where + ": is not JSON: " + error.what());
+  }
+}
+
+// A scene with a base is a merge patch (RFC 7396) to that scene's file: objects merge, anything else
+// replaces. Story and digest are each scene's own.
+Json with_base(Json json, const std::string& where) {
+  const auto named = json.is_object() ? json.find("base") : json.end();
+  if (named == json.end()) return json;
+  if (!named->is_string()) throw InputError(where + ": base must be a text");
+  const fs::path file = scenes_folder() / (named->get<std::string>() + ".json");
+  json.erase(named);
+  Json merged = parse_json(read_text(file), file.string());
+  if (merged.contains("base"))
+    throw InputError(where + ": its base " + file.string() + " has a base itself; name that");
+  merged.erase("story");
+  if (merged.contains("expected")) merged["expected"].erase("digest");
+  merged.merge_patch(json);
+  return merged;
+}
+
 std::vector<fs::path> scene_files(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -138,12 +163,7 @@ fs::path scenes_folder() {
 }
 
 Scene parse_scene(std::string_view name, const std::string& text, const std::string& where) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw InputError(where + ": is not JSON: " + error.what());
-  }
+  Json json = with_base(parse_json(text, where), where);
   const Reader reader(json, where);
   reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "expected"});
   if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");

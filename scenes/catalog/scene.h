@@ -17,7 +17,8 @@ struct Expected {
   std::string digest;  // of all frames, see FrameDigest
 };
 
-// One scene file, scenes/NAME.json: a shape, what moves it, and what comes of it.
+// One scene file, scenes/NAME.json: a shape, what moves it, and what comes of it. It may name another as its
+// `base` and say only what differs: objects merge, anything else (the list of effects) is replaced.
 struct Scene {
   std::string name;
   std::string story;  // two sentences

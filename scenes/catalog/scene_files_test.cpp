@@ -6,6 +6,7 @@
 
 #include "core/detect/embedding.h"
 #include "core/detect/nearness.h"
+#include "core/engine/drvbc.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::scenes {
@@ -22,6 +23,7 @@ constexpr Asked kScenes[] = {
     {"hand", 11208, 5606},
     {"man", 20000, 10002},
     {"rope", 48440, 24222},
+    {"rope_contact", 48440, 24222},
 };
 void PrintTo(const Asked& asked, std::ostream* out) {
   *out << asked.name;
@@ -37,6 +39,12 @@ constexpr std::size_t kStride = 16;
 
 class SceneFiles : public testing::TestWithParam<Asked> {
  protected:
+  // Whether the surface is kept off itself: then contacts are what the scene is for.
+  static bool responds() { return std::string_view(GetParam().name).ends_with("_contact"); }
+  void SetUp() override {
+    if (kStride > 1 && responds() && GetParam().triangles > 12'000)
+      GTEST_SKIP() << "detecting contacts takes minutes with sanitizers";
+  }
   static Clip frames() {
     const std::unique_ptr<ClipSource> source = open_scene(load_scene(GetParam().name));
     Clip clip(source->header());
@@ -108,6 +116,33 @@ TEST_P(SceneFiles, MovesAllTheTimeAndNotTooFast) {
   EXPECT_GT(sum / static_cast<double>(clip.interval_count()), 0.5);
   EXPECT_LT(fastest, 40);
   EXPECT_GT(moving, clip.interval_count() * 3 / 4);
+}
+
+TEST_P(SceneFiles, MeetsItselfInAQuarterOfItsIntervalsWhereItResponds) {
+  const Clip clip = frames();
+  ASSERT_EQ(clip.header().predicted, responds());
+  if (!responds()) return;
+  const TriangleMesh mesh = this->mesh(clip);
+  const Scene scene = load_scene(GetParam().name);
+  const Shape shape = make_shape(scene.shape, scene.shape_parameters);
+  const auto detector =
+      make_drvbc({mesh, shape.positions, &shape.rig, *find_elementary_test("exact")}).detector;
+  ContactSet found;
+  std::size_t corrected = 0;
+  for (std::size_t i = 0; i < clip.interval_count(); ++i) {
+    const ClipInterval interval = clip.interval(i);
+    const bool differs = !std::ranges::equal(interval.motion.end(), clip.frame(i + 1).positions);
+    corrected += differs;
+    if (i % 8 != 0) continue;
+    detector->detect(interval.motion, &*interval.bones, found);
+    EXPECT_EQ(differs, !found.contacts.empty())
+        << "interval " << i << ": corrected where it collides, nowhere else";
+    const Motion taken(interval.motion.start(), clip.frame(i + 1).positions);
+    detector->detect(taken, &*interval.bones, found);
+    EXPECT_TRUE(found.contacts.empty()) << "interval " << i << ": the way to the next start is free";
+  }
+  RecordProperty("contact_share", std::to_string(corrected) + " of " + std::to_string(clip.interval_count()));
+  EXPECT_GE(4 * corrected, clip.interval_count());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SceneFiles, testing::ValuesIn(kScenes),

@@ -72,6 +72,23 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
             std::string::npos);
 }
 
+TEST(Scene, WithContactResponseHasPredictionsInItsFramesAndItsDigest) {
+  std::string text = kSmallScene;
+  const std::string skinning = "{\"name\": \"skinning_linear\"}";
+  text.replace(text.find(skinning), skinning.size(), skinning + ", {\"name\": \"contact_response\"}");
+  const Scene scene = parse_scene("small", text, "small.json");
+  std::optional<Clip> clip;
+  const Generated generated =
+      run_scene(scene, [&](ClipHeader header) -> FrameSink& { return clip.emplace(std::move(header)); });
+  ASSERT_TRUE(clip->header().predicted);
+  EXPECT_EQ(generated.effects[2].evaluations, 5u);
+  DigestSink digest;
+  copy_frames(*clip, digest);
+  EXPECT_EQ(digest.text(), generated.digest);
+  for (std::size_t i = 0; i < 5; ++i)  // nothing meets here
+    EXPECT_TRUE(std::ranges::equal(clip->interval(i).motion.end(), clip->frame(i + 1).positions));
+}
+
 TEST(SceneFile, PromisesADigest) {
   const std::string text = message([] { generate(parse_scene("small", kSmallScene, "small.json")); });
   EXPECT_EQ(text.find("scene small: the frames have digest "), 0u) << text;
@@ -136,6 +153,33 @@ TEST_F(Catalogue, ListsItsScenesInOrder) {
   EXPECT_EQ(scenes[1].effects, (std::vector<std::string>{"chain_dynamics", "skinning_linear"}));
   EXPECT_EQ(message([] { load_scene("nosuch"); }), "unknown scene nosuch; known are: another, small");
   EXPECT_EQ(message([] { load_scene("../scenes/small"); }).substr(0, 13), "unknown scene");
+}
+
+TEST_F(Catalogue, TakesFromItsBaseWhatASceneDoesNotSay) {
+  const Scene base = load_scene("small");
+  put("variant", R"({"base": "small", "story": "It falls harder. It is led by one end.",
+                     "shape": {"radius": 0.5}, "frames": 7, "effects": [{"name": "skinning_linear"}],
+                     "expected": {"digest": "00"}})");
+  const Scene scene = load_scene("variant");
+  EXPECT_EQ(scene.story, "It falls harder. It is led by one end.");
+  EXPECT_EQ(scene.frames, 7u);
+  EXPECT_EQ(scene.substeps, base.substeps);
+  EXPECT_EQ(scene.shape_parameters.number("radius"), 0.5) << "objects merge";
+  EXPECT_EQ(scene.shape_parameters.number("length"), 20);
+  EXPECT_EQ(scene.effects.size(), 1u) << "lists are replaced";
+  EXPECT_EQ(scene.expected.vertices, base.expected.vertices);
+  EXPECT_EQ(scene.expected.digest, "00");
+  EXPECT_NE(scene.recipe, base.recipe);
+
+  const auto file = (root / "scenes" / "variant.json").string();
+  put("variant", R"({"base": "small", "expected": {"digest": "00"}})");
+  EXPECT_EQ(message([] { load_scene("variant"); }), file + ": story is missing; add it");
+  put("variant", R"({"base": "small", "story": "A. B."})");
+  EXPECT_EQ(message([] { load_scene("variant"); }), file + ", expected: digest is missing; add it");
+  put("variant", R"({"base": "nosuch"})");
+  EXPECT_NE(message([] { load_scene("variant"); }).find("nosuch.json: cannot be read"), std::string::npos);
+  put("second", R"({"base": "variant"})");
+  EXPECT_NE(message([] { load_scene("second"); }).find("has a base itself"), std::string::npos);
 }
 
 TEST_F(Catalogue, FindsItsFolder) {

@@ -24,6 +24,7 @@ struct SceneState {
   std::vector<Bone> bones;
   std::vector<Eigen::Matrix3d> rotations;  // of each bone, from its reference pose
   std::vector<Vec3> positions;
+  std::vector<Vec3> predicted;  // where the step was predicted to end; of an effect that predicts
   double posed = 0;             // the time for which kinematic effects have begun a pose from rest
   std::size_t steady_bone = 0;  // of a chain: the one that does not spin about its own axis
 };
@@ -47,6 +48,7 @@ struct EffectRow {
   Pace pace;
   std::span<const ParameterRow> parameters;
   std::unique_ptr<Effect> (*make)(const Parameters& parameters, const Shape& shape);
+  bool predicts = false;  // leaves a prediction in the state at every step, and corrected positions
 };
 
 // All effects there are.

@@ -16,6 +16,7 @@ EffectSequence::EffectSequence(std::span<const EffectCall> calls, const Shape& s
     }
     if (!found) throw InputError(call.parameters.where() + ": unknown effect; known are: " + known);
     check(call.parameters, found->parameters);
+    predicts_ = predicts_ || found->predicts;
     entries_.push_back({found->name, found->pace, found->make(call.parameters, shape)});
   }
 }

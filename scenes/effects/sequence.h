@@ -31,6 +31,9 @@ class EffectSequence {
   // Advances the state from frame - 1 to frame.
   void advance(SceneState& state, int frame, const Watch& watch = {});
 
+  // Whether frames come with predictions: one of the effects makes them.
+  bool predicts() const { return predicts_; }
+
   std::size_t size() const { return entries_.size(); }
   std::string_view name(std::size_t effect) const { return entries_[effect].name; }
   std::uint64_t evaluations(std::size_t effect) const { return entries_[effect].evaluations; }
@@ -44,6 +47,7 @@ class EffectSequence {
   };
   std::vector<Entry> entries_;
   int substeps_;
+  bool predicts_ = false;
 };
 
 }  // namespace cscd::scenes

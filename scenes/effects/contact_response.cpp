@@ -1,0 +1,134 @@
+#include "scenes/effects/contact_response.h"
+
+#include "core/base/error.h"
+#include "core/detect/compose.h"
+#include "core/detect/embedding.h"
+#include "core/engine/drvbc.h"
+#include "core/hierarchy/descent.h"
+#include "scenes/effects/contact_step.h"
+#include "scenes/effects/effect.h"
+
+namespace cscd::scenes {
+namespace {
+
+// All pairs whose swept bounds overlap, so that every contact is found.
+class EveryOverlap final : public Culler {
+ public:
+  explicit EveryOverlap(const Setup& setup)
+      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+  CullCounts cull(TrianglePairSink& sink) override {
+    CullCounts counts;
+    counts.bvot = self_descent(
+        tree_, bounds_, 0, [&](NodeIndex node) { return tree_.is_leaf(node); },
+        [](NodeIndex, NodeIndex) { return false; },
+        [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); });
+    return counts;
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+};
+
+// Makes the animated surface feel itself. What the effects before have made is where the surface is drawn to,
+// its target; the surface proper starts from where the last step has left it. The predicted end of a step is
+// what the target did, and a part of the way back to it:
+//   predicted = target now + (1 - pull) (surface - target) before.
+// The prediction is what a detector is asked about, so contacts are real; the next frame is the corrected
+// end.
+class ContactResponse final : public Effect {
+ public:
+  ContactResponse(const Parameters& p, const Shape& shape, const MakeDetector& first)
+      : where_(p.where()),
+        pull_(p.number("pull", 0.3)),
+        mesh_(shape.triangles, shape.positions.size(), p.where()),
+        setup_{mesh_, shape.positions, &shape.rig, *find_elementary_test("exact")},
+        embedding_(mesh_, shape.positions),
+        step_(mesh_, shape.positions, first(setup_),
+              compose(std::make_unique<EveryOverlap>(setup_), mesh_, setup_.elementary,
+                      {.relative_boxes = true}),
+              options(p)),
+        surface_(shape.positions),
+        target_(shape.positions),
+        bones_(shape.rig.reference) {
+    require_embedded("frame 0");
+  }
+
+  void step(SceneState& state) override {
+    predicted_.resize(surface_.size());
+    for (std::size_t v = 0; v < surface_.size(); ++v)
+      predicted_[v] = state.positions[v] + (1 - pull_) * (surface_[v] - target_[v]);
+    target_ = state.positions;
+    end_ = predicted_;
+    step_.resolve(surface_, end_, {bones_, state.bones});
+    surface_ = end_;
+    bones_ = state.bones;
+    require_embedded("frame " + std::to_string(static_cast<int>(state.time)));
+    state.positions = surface_;
+    state.predicted = predicted_;
+  }
+
+ private:
+  static ContactStepOptions options(const Parameters& p) {
+    ContactStepOptions options;
+    options.push = p.number("push", options.push);
+    options.spread = p.number("spread", options.spread);
+    options.back_off = p.number("back_off", options.back_off);
+    options.rounds = p.integer("rounds", options.rounds);
+    return options;
+  }
+  void require_embedded(const std::string& frame) {
+    if (const auto found = embedding_.find_intersection(surface_))
+      throw InputError(
+          where_ + ": " + frame + ": triangles " + std::to_string(+found->first) + " and " +
+          std::to_string(+found->second) +
+          " meet, so the next step has no embedded start; mend the shape at rest, or what detects "
+          "contacts");
+  }
+
+  std::string where_;
+  double pull_;
+  TriangleMesh mesh_;
+  Setup setup_;
+  EmbeddingTest embedding_;
+  ContactStep step_;
+  std::vector<Vec3> surface_, target_, predicted_, end_;
+  std::vector<Bone> bones_;
+};
+
+const ParameterRow kRows[] = {
+    {"pull", ParameterKind::number, "share of the way back to the animation that a step tries to make up for",
+     false, 0, 1},
+    {"push", ParameterKind::number, "gap left at a contact, in mean edge lengths of the shape", false, 0,
+     1e3},
+    {"spread", ParameterKind::number, "how far along the surface a contact is felt, in mean edge lengths",
+     false, 1e-3, 1e6},
+    {"back_off", ParameterKind::number,
+     "share of the time before contact that a step keeps which has to be cut as a whole", false, 0.01, 0.99},
+    {"rounds", ParameterKind::integer, "corrections of a step before it is cut as a whole", false, 0, 100},
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, const Shape& shape,
+                                              const MakeDetector& first) {
+  return std::make_unique<ContactResponse>(parameters, shape, first);
+}
+
+EffectRow contact_response_row() {
+  return {"contact_response",
+          "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
+          "short, "
+          "pushes apart",
+          Pace::frame,
+          kRows,
+          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+            return make_contact_response(parameters, shape,
+                                         [](const Setup& setup) { return make_drvbc(setup).detector; });
+          },
+          true};
+}
+
+}  // namespace cscd::scenes

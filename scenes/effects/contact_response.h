@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "core/detect/strategy.h"
+#include "scenes/effects/effect.h"
+
+namespace cscd::scenes {
+
+// The effect with another detector of first contacts than our own: for tests, which put broken ones there.
+using MakeDetector = std::function<std::unique_ptr<Detector>(const Setup& setup)>;
+std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, const Shape& shape,
+                                              const MakeDetector& first);
+
+}  // namespace cscd::scenes
