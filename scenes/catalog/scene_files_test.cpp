@@ -24,6 +24,7 @@ constexpr Asked kScenes[] = {
     {"man", 20000, 10002},
     {"rope", 48440, 24222},
     {"rope_contact", 48440, 24222},
+    {"urchin", 2840, 1422},
 };
 void PrintTo(const Asked& asked, std::ostream* out) {
   *out << asked.name;
