@@ -2,9 +2,9 @@
 # Sourced by the other scripts: what they need from Debian, in one place, and how they build.
 # Each package has its line of reason in README.md.
 
-packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev libgmp-dev
-                libgtest-dev python3)
-packages_compare=(libembree-dev libcgal-dev libfcl-dev)
+packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
+                libgmp-dev libassimp-dev libcgal-dev libgtest-dev python3)
+packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_kernels=(libbenchmark-dev)
 packages_clang=(clang)

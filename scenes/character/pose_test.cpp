@@ -1,0 +1,187 @@
+#include "scenes/character/pose.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "scenes/character/skeleton.h"
+#include "scenes/character/test_characters.h"
+
+namespace cscd::scenes {
+namespace {
+
+constexpr double kNear = 1e-12;
+
+std::vector<Vec3> skinned(const Character& character, const Pose& pose) {
+  std::vector<Vec3> out;
+  skin(character, pose, out);
+  return out;
+}
+
+TEST(Pose, AtRestJointsLeaveVerticesWhereTheMeshPutsThem) {
+  const Character tube = bending_tube();
+  const std::vector<Vec3> at_rest = skinned(tube, rest_pose(tube));
+  for (std::size_t v = 0; v < at_rest.size(); ++v)
+    EXPECT_LT((at_rest[v] - tube.parts[0].positions[v] - Vec3(0, 0, 5)).norm(), kNear);
+}
+
+TEST(Pose, MovesVerticesWithTheirJoints) {
+  const Character tube = bending_tube();
+  const std::vector<Vec3> bent = skinned(tube, pose_at(tube, tube.animations[0], 1));
+  for (std::size_t v = 0; v < bent.size(); ++v) {
+    const Vec3& x = tube.parts[0].positions[v];
+    if (x.x() < 1.4) {
+      EXPECT_LT((bent[v] - x - Vec3(0, 0, 5)).norm(), kNear);
+    } else if (x.x() > 2.6) {
+      // A quarter turn about the upper joint at x = 2.
+      EXPECT_LT((bent[v] - Vec3(2 - x.y(), x.x() - 2, x.z() + 5)).norm(), kNear);
+    }
+  }
+}
+
+TEST(Pose, HoldsTheFirstAndLastKeyAndTurnsBetween) {
+  const Character tube = bending_tube();
+  const Animation& bend = tube.animations[0];
+  EXPECT_EQ(pose_at(tube, bend, -1)[4].column[0], pose_at(tube, bend, 0)[4].column[0]);
+  EXPECT_EQ(pose_at(tube, bend, 9)[4].column[0], pose_at(tube, bend, 1)[4].column[0]);
+  const Vec3 half = pose_at(tube, bend, 0.5)[4].column[0];
+  EXPECT_LT((half - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), kNear);
+}
+
+// A channel that moves a node only must keep its rotation at rest, and nodes without a channel stay.
+TEST(Pose, PartsWithoutKeysStayAtRest) {
+  Character tube = bending_tube();
+  tube.nodes[4].local = quarter_turn({1, 0, 0});
+  tube.animations[0].channels = {{4, {{0, Vec3(7, 0, 0)}}, {}, {}}};
+  const Pose pose = pose_at(tube, tube.animations[0], 0);
+  EXPECT_LT((pose[4].column[0] - Vec3(0, 1, 0)).norm(), kNear);
+  EXPECT_LT((pose[4].origin - Vec3(8, 0, 5)).norm(), kNear);
+  EXPECT_EQ(pose[2].origin, rest_pose(tube)[2].origin);
+}
+
+TEST(Pose, VerticesWithoutWeightsFollowTheirNode) {
+  Character tube = bending_tube();
+  Part& part = tube.parts[0];
+  part.joints.clear();
+  part.influences.clear();
+  std::fill(part.first.begin(), part.first.end(), 0);
+  part.node = 4;
+  const std::vector<Vec3> bent = skinned(tube, pose_at(tube, tube.animations[0], 1));
+  const Vec3& x = part.positions[3];
+  EXPECT_LT((bent[3] - Vec3(2 - x.y(), x.x(), x.z() + 5)).norm(), kNear);
+  EXPECT_EQ(moving_nodes(tube), std::vector<int>{4});
+}
+
+// Files whose nodes rest in the first pose of a clip: the offsets still know how the skin was bound.
+TEST(BindPose, ComesFromTheOffsetsAndNotFromTheRest) {
+  Character tube = bending_tube();
+  const Pose bound = bind_pose(tube);
+  tube.nodes[4].local = quarter_turn({1, 0, 0});
+  EXPECT_GT((rest_pose(tube)[4].column[0] - bound[4].column[0]).norm(), 1);
+  for (std::size_t n = 0; n < bound.size(); ++n) {
+    EXPECT_LT((bind_pose(tube)[n].column[0] - bound[n].column[0]).norm(), kNear);
+    EXPECT_LT((bind_pose(tube)[n].origin - bound[n].origin).norm(), kNear);
+  }
+}
+
+TEST(BlendedPose, KeepsTheUpperJointOnItsWayAboutTheLower) {
+  const Character tube = bending_tube();
+  Character turned = tube;
+  turned.nodes[2].local = quarter_turn();
+  const Pose a = rest_pose(tube), b = rest_pose(turned);
+  const Pose middle = blend(tube, a, b, 0.5);
+  // Half-way on the circle of radius 2, not on the chord.
+  EXPECT_LT((middle[4].origin - Vec3(std::sqrt(2.0), std::sqrt(2.0), 5)).norm(), kNear);
+  EXPECT_EQ(blend(tube, a, b, 1)[4].origin, b[4].origin);
+}
+
+TEST(Skeleton, RunsFromJointToJointAndEndsInTheBody) {
+  const Character tube = bending_tube();
+  const Pose bound = bind_pose(tube);
+  const std::vector<Vec3> positions = skinned(tube, bound);
+  const Skeleton skeleton = make_skeleton(tube, bound, positions, std::vector<bool>(positions.size(), true));
+  ASSERT_EQ(skeleton.node, (std::vector<int>{2, 4}));  // the helper moves nothing
+  EXPECT_EQ(skeleton.parent, (std::vector<BoneId>{BoneId{-1}, BoneId{0}}));
+  std::vector<Bone> bones;
+  bones_at(skeleton, bound, bones);
+  EXPECT_LT((bones[0].head - Vec3(0, 0, 5)).norm(), kNear);
+  EXPECT_LT((bones[0].tail - bones[1].head).norm(), kNear);
+  EXPECT_LT((bones[1].head - Vec3(2, 0, 5)).norm(), kNear);
+  EXPECT_GT(bones[1].tail.x(), 2.5);
+  EXPECT_LT(bones[1].tail.x(), 4);
+
+  bones_at(skeleton, pose_at(tube, tube.animations[0], 1), bones);
+  EXPECT_LT((bones[1].head - Vec3(2, 0, 5)).norm(), kNear);
+  EXPECT_GT(bones[1].tail.y(), 0.5);
+}
+
+TEST(Skeleton, LeavesOutBonesOfVerticesThatAreNotUsed) {
+  const Character tube = bending_tube();
+  const Pose bound = bind_pose(tube);
+  const std::vector<Vec3> positions = skinned(tube, bound);
+  std::vector<bool> used(positions.size());
+  for (std::size_t v = 0; v < used.size(); ++v) used[v] = positions[v].x() > 3;
+  const Skeleton skeleton = make_skeleton(tube, bound, positions, used);
+  EXPECT_EQ(skeleton.node, std::vector<int>{4});
+  EXPECT_EQ(skeleton.parent, std::vector<BoneId>{BoneId{-1}});
+}
+
+template <class Spoil>
+std::string refusal(const Spoil& spoil, const CharacterLimits& limits = {}) {
+  Character character = bending_tube();
+  spoil(character);
+  try {
+    validate(character, limits);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Validate, AcceptsTheTube) {
+  EXPECT_EQ(refusal([](Character&) {}), "");
+}
+
+TEST(Validate, NamesWhatIsWrong) {
+  const double nan = std::nan("");
+  EXPECT_NE(refusal([&](Character& c) { c.parts[0].positions[5].y() = nan; }).find("vertex 5"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].positions[5].y() = 1e300; }).find("vertex 5"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].triangles[7][1] = 9999; }).find("triangle 7"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].triangles[7][1] = -1; }).find("triangle 7"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].influences[3].weight = 0.5; }).find("vertex 3"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].influences[3].joint = 2; }).find("vertex 3"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].first.pop_back(); }).find("influences"), std::string::npos);
+  EXPECT_NE(refusal([&](Character& c) { c.parts[0].joints[1].offset.origin.x() = nan; }).find("'upper'"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.parts[0].joints[1].node = 5; }).find("node 5"), std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.nodes[2].parent = 2; }).find("'lower'"), std::string::npos);
+  EXPECT_NE(refusal([&](Character& c) { c.nodes[2].local.origin.x() = nan; }).find("'lower'"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal([&](Character& c) { c.animations[0].channels[0].rotations[1].value.w = nan; }).find("key 1"),
+      std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.animations[0].channels[0].rotations[1].time = 0; }).find("key 1"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) { c.animations[0].channels[0].node = 77; }).find("node 77"),
+            std::string::npos);
+}
+
+TEST(Validate, HoldsToTheLimits) {
+  CharacterLimits few;
+  few.joints = 1;
+  EXPECT_NE(refusal([](Character&) {}, few).find("2 bones"), std::string::npos);
+  few = {};
+  few.vertices = 100;
+  EXPECT_NE(refusal([](Character&) {}, few).find("vertices"), std::string::npos);
+  few = {};
+  few.keys = 1;
+  EXPECT_NE(refusal([](Character&) {}, few).find("keys"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes

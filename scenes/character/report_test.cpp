@@ -1,0 +1,71 @@
+#include "scenes/character/report.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "scenes/character/options.h"
+
+namespace cscd::scenes {
+namespace {
+
+ImportReport some_report() {
+  ImportReport report;
+  report.format = "FBX";
+  report.centimetres_per_unit = 2.54;
+  report.vertices = 12345678901;
+  report.chosen_clip = 1;
+  report.fps = 1.0 / 3;
+  report.weld_spread = 1e-17;
+  report.clips = {{"walk", 1.5, 24, 46, 3}, {"", 0, 0, 1, 0}};
+  report.chosen_components = {0, 7};
+  report.component_bones = {3, 0, 12};
+  report.notes = {"2 things ignored"};
+  return report;
+}
+
+TEST(ImportReport, SurvivesItsText) {
+  EXPECT_EQ(parse_report(to_text(some_report())), some_report());
+  EXPECT_EQ(parse_report(to_text(ImportReport{})), ImportReport{});
+}
+
+TEST(ImportReport, NamesFromFilesCannotForgeLinesOrTerminals) {
+  ImportReport report;
+  report.clips = {{"a\nnote\tforged\x1b[31m\xff\xfe", 1, 1, 1, 1}};
+  const ImportReport back = parse_report(to_text(report));
+  EXPECT_TRUE(back.notes.empty());
+  EXPECT_EQ(back.clips[0].name, "a?note?forged?[31m?");
+}
+
+TEST(ImportReport, RefusesWhatIsNotWhole) {
+  const std::string whole = to_text(some_report());
+  EXPECT_THROW(parse_report(""), InputError);
+  EXPECT_THROW(parse_report("other\n"), InputError);
+  EXPECT_THROW(parse_report(whole.substr(0, whole.size() - 1)), InputError);
+  EXPECT_THROW(parse_report(whole + "clip\tonly\n"), InputError);
+  EXPECT_THROW(parse_report(whole + "fps\tfast\n"), InputError);
+  EXPECT_THROW(parse_report(whole + "fps\tnan\n"), InputError);
+  EXPECT_THROW(parse_report(whole + "nodes\t-1\n"), InputError);
+  EXPECT_THROW(parse_report(whole + "unheard\t1\n"), InputError);
+}
+
+TEST(ImportOptions, SurviveTheCommandLine) {
+  ImportOptions options;
+  EXPECT_EQ(parse_arguments(to_arguments(options)), options);
+  options = {"a clip", 23.976, true, "all", 12, true, 0.1 / 3e4, true};
+  EXPECT_EQ(parse_arguments(to_arguments(options)), options);
+}
+
+TEST(ImportOptions, AreChecked) {
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{{"--fps", "0"},
+                                                                                     {"--fps", "nan"},
+                                                                                     {"--fps", "x"},
+                                                                                     {"--fps"},
+                                                                                     {"--weld", "-1"},
+                                                                                     {"--weld", "0.5"},
+                                                                                     {"--fill-holes", "-3"},
+                                                                                     {"--unheard"}})
+    EXPECT_THROW(parse_arguments(wrong), InputError) << wrong.front();
+}
+
+}  // namespace
+}  // namespace cscd::scenes

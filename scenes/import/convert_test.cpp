@@ -1,0 +1,252 @@
+#include "scenes/import/convert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "scenes/character/test_characters.h"
+#include "scenes/clip/point_cache.h"
+
+namespace cscd::scenes {
+namespace {
+
+class Convert : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::remove_all(root);
+    std::filesystem::create_directories(root);
+  }
+  void TearDown() override { std::filesystem::remove_all(root); }
+
+  Clip converted(const Character& character, const ImportOptions& options = {},
+                 const CharacterLimits& limits = {}) {
+    validate(character, limits);
+    const std::filesystem::path file = root / (std::to_string(serial_++) + ".h5");
+    report = convert(character, options, limits, file);
+    return read_clip(file);
+  }
+  std::string refusal(const Character& character, const ImportOptions& options = {},
+                      const CharacterLimits& limits = {}) {
+    try {
+      converted(character, options, limits);
+      return {};
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  const std::filesystem::path root =
+      std::filesystem::temp_directory_path() / ("cscd-convert-" + std::to_string(getpid()));
+  ImportReport report;
+
+ private:
+  int serial_ = 0;
+};
+
+TriangleMesh mesh_of(const Clip& clip) {
+  return TriangleMesh(clip.header().triangles, clip.header().vertex_count);
+}
+
+// Every triangle with three vertices of its own, and the two halves of the list as two parts on one skeleton:
+// what exporters make of hard edges and two materials.
+Character torn_tube() {
+  Character tube = bending_tube();
+  const Part whole = tube.parts[0];
+  tube.parts.clear();
+  for (const bool second : {false, true}) {
+    Part part = whole;
+    part.positions.clear();
+    part.triangles.clear();
+    part.first.clear();
+    part.influences.clear();
+    for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
+      if ((t % 2 == 1) != second) continue;
+      std::array<std::int32_t, 3> corner;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(whole.triangles[t][k]);
+        corner[k] = static_cast<std::int32_t>(part.positions.size());
+        part.positions.push_back(whole.positions[v]);
+        part.first.push_back(part.influences.size());
+        for (std::size_t i = whole.first[v]; i < whole.first[v + 1]; ++i)
+          part.influences.push_back(whole.influences[i]);
+      }
+      part.triangles.push_back(corner);
+    }
+    part.first.push_back(part.influences.size());
+    tube.parts.push_back(std::move(part));
+  }
+  return tube;
+}
+
+TEST_F(Convert, WritesFramesAtTheRateWithBones) {
+  ImportOptions options;
+  options.fps = 10;
+  const Clip clip = converted(bending_tube(), options);
+  EXPECT_EQ(clip.frame_count(), 11u);
+  EXPECT_EQ(clip.header().bone_parent, (std::vector<BoneId>{BoneId{-1}, BoneId{0}}));
+  EXPECT_TRUE(mesh_of(clip).closed_and_oriented());
+  EXPECT_EQ(report.chosen_clip, 0);
+  EXPECT_EQ(report.clips[0].driven, 1u);
+  EXPECT_EQ(report.joints, 2u);
+  EXPECT_EQ(report.most_influences, 2u);
+  EXPECT_EQ(report.welded_vertices, 0u);
+}
+
+TEST_F(Convert, WeldsAcrossTrianglesPartsAndMaterials) {
+  const Clip whole = converted(bending_tube()), torn = converted(torn_tube());
+  EXPECT_EQ(torn.header().vertex_count, whole.header().vertex_count);
+  EXPECT_TRUE(mesh_of(torn).closed_and_oriented());
+  EXPECT_EQ(report.weld_tolerance, kDefaultWeld);
+  EXPECT_LT(report.weld_spread, 1e-15);
+}
+
+TEST_F(Convert, DoesNotWeldWhatMovesApart) {
+  // A second tube whose end touches the first one's: equal points at rest, and later not.
+  Character two = bending_tube();
+  Part other = two.parts[0];
+  for (Vec3& x : other.positions) x.x() += 4;
+  other.influences.clear();
+  for (std::size_t v = 0; v < other.positions.size(); ++v) {
+    other.first[v] = v;
+    other.influences.push_back({0, 1});
+  }
+  other.first.back() = other.positions.size();
+  two.parts.push_back(other);
+  ImportOptions all;
+  all.component = "all";
+  EXPECT_EQ(mesh_of(converted(two, all)).component_count(), 2);
+  EXPECT_EQ(report.welded_vertices, 0u);
+}
+
+// A sheet of two sides, 1e-7 of the diagonal apart: the default would weld them.
+TEST_F(Convert, LowersTheToleranceWhereDetailWouldCollapse) {
+  Character thin = bending_tube();
+  for (Vec3& x : thin.parts[0].positions) x.z() *= 4e-7;
+  const Clip clip = converted(thin);
+  EXPECT_EQ(clip.header().vertex_count, thin.parts[0].positions.size());
+  EXPECT_LT(report.weld_tolerance, kDefaultWeld);
+  EXPECT_FALSE(report.notes.empty());
+  ImportOptions forced;
+  forced.weld = 1e-6;
+  EXPECT_NE(refusal(thin, forced).find("more than two triangles"), std::string::npos);
+}
+
+TEST_F(Convert, BeginsInTheBindPose) {
+  Character tube = bending_tube();
+  // The clip starts bent.
+  tube.animations[0].channels[0].rotations.erase(tube.animations[0].channels[0].rotations.begin());
+  tube.animations[0].channels[0].moves = {{0, Vec3(1, 0, 0)}, {1, Vec3(1, 0, 0)}};
+  ImportOptions options;
+  options.fps = 20;
+  EXPECT_EQ(converted(tube, options).frame_count(), 21u);
+  options.from_bind_pose = true;
+  const Clip clip = converted(tube, options);
+  EXPECT_EQ(clip.frame_count(), 31u);
+  EXPECT_EQ(report.lead_in, 10u);
+  for (std::size_t v = 0; v < clip.header().vertex_count; ++v) {
+    const Vec3 bound = tube.parts[0].positions[v] + Vec3(0, 0, 5);
+    EXPECT_LT((clip.frame(0).positions[v] - bound).norm(), 1e-12);
+    if (bound.x() < 2.6) continue;
+    // Half of the quarter turn about (2, 0) after half of the lead-in.
+    const double half = std::sqrt(0.5), along = bound.x() - 2, across = bound.y();
+    const Vec3 turned(2 + half * (along - across), half * (along + across), bound.z());
+    EXPECT_LT((clip.frame(5).positions[v] - turned).norm(), 1e-9);
+  }
+}
+
+TEST_F(Convert, ChoosesClipsByNameNumberOrLength) {
+  Character tube = bending_tube();
+  const Animation bend = tube.animations[0];
+  tube.animations = {{"pose", 0, 0, 24, bend.channels}, bend, {"", 3, 2, 0, bend.channels}};
+  converted(tube);
+  EXPECT_EQ(report.chosen_clip, 1);
+  ImportOptions options;
+  options.clip = "2";
+  EXPECT_EQ(converted(tube, options).frame_count(), 61u);
+  options.clip = "bend";
+  converted(tube, options);
+  EXPECT_EQ(report.chosen_clip, 1);
+  options.clip = "pose";
+  EXPECT_NE(refusal(tube, options).find("--from-bind-pose"), std::string::npos);
+  options.from_bind_pose = true;
+  EXPECT_EQ(converted(tube, options).frame_count(), 16u);
+  options.clip = "run";
+  EXPECT_NE(refusal(tube, options).find("0 'pose', 1 'bend', 2 ''"), std::string::npos);
+  tube.animations.clear();
+  EXPECT_NE(refusal(tube).find("no clip"), std::string::npos);
+}
+
+TEST_F(Convert, FillsHolesAndFlipsComponents) {
+  Character tube = bending_tube();
+  Part& part = tube.parts[0];
+  // Take the fan of one end away, and turn everything inside out.
+  const std::int32_t tip = static_cast<std::int32_t>(part.positions.size()) - 1;
+  std::erase_if(part.triangles, [&](const auto& t) { return t[0] == tip || t[1] == tip || t[2] == tip; });
+  for (auto& t : part.triangles) std::swap(t[1], t[2]);
+  EXPECT_FALSE(mesh_of(converted(tube)).closed_and_oriented());
+  ImportOptions options;
+  options.fill_holes = 7;
+  EXPECT_FALSE(mesh_of(converted(tube, options)).closed_and_oriented());
+  EXPECT_EQ(report.filled_holes, 0u);
+  options.fill_holes = 8;
+  options.flip_inward = true;
+  const Clip clip = converted(tube, options);
+  EXPECT_TRUE(mesh_of(clip).closed_and_oriented());
+  EXPECT_EQ(report.filled_holes, 1u);
+  EXPECT_EQ(report.filled_triangles, 6u);
+  EXPECT_EQ(report.flipped_components, 1u);
+  const test::Shape shape{{clip.frame(0).positions.begin(), clip.frame(0).positions.end()},
+                          clip.header().triangles};
+  EXPECT_GT(test::six_volumes(shape), 0);
+}
+
+TEST_F(Convert, DropsZeroAreaAndDuplicateFacesAndSaysSo) {
+  Character tube = bending_tube();
+  Part& part = tube.parts[0];
+  const std::size_t triangles = part.triangles.size();
+  part.triangles.push_back(part.triangles[3]);
+  part.triangles.push_back({5, 5, 6});
+  const Clip clip = converted(tube);
+  EXPECT_EQ(clip.header().triangles.size(), triangles);
+  EXPECT_EQ(report.duplicate_triangles, 1u);
+  EXPECT_EQ(report.collapsed_triangles, 1u);
+  EXPECT_TRUE(mesh_of(clip).closed_and_oriented());
+}
+
+TEST_F(Convert, SurveysAllComponentsAndTheStartsOfClips) {
+  Character tube = bending_tube();
+  tube.animations.push_back(tube.animations[0]);
+  tube.animations[1].start = 1;
+  ImportOptions survey;
+  survey.survey = true;
+  const Clip clip = converted(tube, survey);
+  EXPECT_EQ(clip.frame_count(), 3u);
+  EXPECT_EQ(report.component_bones, std::vector<std::size_t>{2});
+  EXPECT_TRUE(std::equal(clip.frame(0).positions.begin(), clip.frame(0).positions.end(),
+                         clip.frame(1).positions.begin()));
+  EXPECT_FALSE(std::equal(clip.frame(0).positions.begin(), clip.frame(0).positions.end(),
+                          clip.frame(2).positions.begin()));
+  tube.animations.clear();
+  EXPECT_EQ(converted(tube, survey).frame_count(), 2u);
+}
+
+TEST_F(Convert, RefusesSkeletonsWithoutSurfaceAndTooManyFrames) {
+  Character bones = bending_tube();
+  bones.parts.clear();
+  EXPECT_NE(refusal(bones).find("5 nodes and 1 clips, but no triangles"), std::string::npos);
+  CharacterLimits few;
+  few.frames = 20;
+  EXPECT_NE(refusal(bending_tube(), {}, few).find("lower --fps"), std::string::npos);
+  few = {};
+  few.cache_bytes = 1000;
+  EXPECT_NE(refusal(bending_tube(), {}, few).find("lower --fps"), std::string::npos);
+  Character point = bending_tube();
+  for (Vec3& x : point.parts[0].positions) x = Vec3(1, 2, 3);
+  EXPECT_NE(refusal(point).find("one point"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes

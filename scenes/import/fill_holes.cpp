@@ -1,0 +1,97 @@
+#include "scenes/import/fill_holes.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/utility.h>
+#include <algorithm>
+#include <iterator>
+#include <unordered_map>
+
+namespace cscd::scenes {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Loop = std::vector<VertexId>;
+
+// The boundary edges as the missing triangles would run along them, one after the other. Where two holes
+// share a vertex it is not clear how they go on; such loops are left out.
+struct Boundary {
+  std::vector<Loop> loops;
+  std::size_t unclear = 0;
+};
+
+Boundary boundary_of(const TriangleMesh& mesh) {
+  std::unordered_map<std::int32_t, VertexId> next;
+  std::unordered_map<std::int32_t, int> leaving;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const EdgeId edge{static_cast<std::int32_t>(e)};
+    if (mesh.triangles_at(edge).size() != 1) continue;
+    const TriangleId t = mesh.triangles_at(edge).front();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (mesh.edges_of(t)[k] != edge) continue;
+      const VertexId from = mesh.corners(t)[(k + 1) % 3], to = mesh.corners(t)[k];
+      next[static_cast<std::int32_t>(from)] = to;
+      ++leaving[static_cast<std::int32_t>(from)];
+    }
+  }
+  Boundary boundary;
+  std::vector<std::int32_t> starts;
+  for (const auto& [from, count] : leaving) starts.push_back(from);
+  std::sort(starts.begin(), starts.end());
+  std::vector<bool> seen(mesh.vertex_count(), false);
+  for (const std::int32_t start : starts) {
+    if (seen[static_cast<std::size_t>(start)]) continue;
+    Loop loop;
+    bool clear = true;
+    VertexId v{start};
+    while (!seen[+v]) {
+      seen[+v] = true;
+      loop.push_back(v);
+      const auto out = next.find(static_cast<std::int32_t>(v));
+      clear = clear && out != next.end() && leaving[static_cast<std::int32_t>(v)] == 1;
+      if (!clear) break;
+      v = out->second;
+    }
+    if (clear && v == VertexId{start} && loop.size() >= 3)
+      boundary.loops.push_back(std::move(loop));
+    else
+      ++boundary.unclear;
+  }
+  return boundary;
+}
+
+}  // namespace
+
+FilledHoles fill_holes(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t most_edges) {
+  const Boundary boundary = boundary_of(mesh);
+  FilledHoles filled;
+  filled.left = boundary.unclear;
+  for (const Loop& loop : boundary.loops) {
+    if (loop.size() > most_edges) {
+      ++filled.left;
+      continue;
+    }
+    std::vector<Kernel::Point_3> polyline;
+    for (const VertexId v : loop)
+      polyline.emplace_back(positions[+v].x(), positions[+v].y(), positions[+v].z());
+    std::vector<CGAL::Triple<int, int, int>> patch;
+    CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
+        polyline, std::back_inserter(patch),
+        CGAL::parameters::use_delaunay_triangulation(true).geom_traits(Kernel()));
+    if (patch.size() + 2 != loop.size()) {
+      ++filled.left;
+      continue;
+    }
+    for (const auto& t : patch) {
+      std::array<int, 3> corner{t.first, t.second, t.third};
+      std::sort(corner.begin(), corner.end());  // along the polyline, hence turned as the hole is
+      filled.triangles.push_back({loop[static_cast<std::size_t>(corner[0])],
+                                  loop[static_cast<std::size_t>(corner[1])],
+                                  loop[static_cast<std::size_t>(corner[2])]});
+    }
+    ++filled.holes;
+  }
+  return filled;
+}
+
+}  // namespace cscd::scenes

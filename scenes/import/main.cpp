@@ -1,0 +1,46 @@
+// cscd-import MODEL CACHE.h5 REPORT [options]: turns a model file into a point cache and a report. `cscd`
+// runs it under limits (bench/import.h), so that assimp never reads a file in the program that answers.
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "scenes/character/report.h"
+#include "scenes/import/convert.h"
+#include "scenes/import/read_model.h"
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+int complain(const std::string& what) {
+  std::fprintf(stderr, "%s\n", cscd::scenes::printable(what, 1000).c_str());
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace cscd::scenes;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() < 3) return complain("usage: cscd-import MODEL CACHE.h5 REPORT [options]; run by cscd");
+  try {
+    const CharacterLimits limits;
+    const ImportOptions options = parse_arguments(std::span(words).subspan(3));
+    const Character character = read_model(words[0], limits);
+    const ImportReport report = convert(character, options, limits, words[1]);
+    std::ofstream out(words[2], std::ios::binary);
+    out << to_text(report);
+    out.close();
+    return out ? 0 : complain("its report cannot be written; choose another place for temporary files");
+  } catch (const cscd::InputError& error) {
+    return complain(error.what());
+  } catch (const std::bad_alloc&) {
+    return complain("does not fit into the memory that imports may use; raise --import-memory");
+  } catch (const std::exception& error) {
+    return complain(std::string("cannot be imported: ") + error.what());
+  }
+}

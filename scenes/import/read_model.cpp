@@ -1,0 +1,284 @@
+#include "scenes/import/read_model.h"
+
+#include <algorithm>
+#include <array>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <new>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "scenes/import/file_system.h"
+
+namespace cscd::scenes {
+namespace {
+
+// Importers by name: two claim glTF's extensions.
+struct Format {
+  std::string_view extension, importer, name;
+};
+constexpr std::array kFormats = {
+    Format{".glb", "glTF2 Importer", "glTF 2"},           Format{".gltf", "glTF2 Importer", "glTF 2"},
+    Format{".fbx", "Autodesk FBX Importer", "FBX"},       Format{".dae", "Collada Importer", "Collada"},
+    Format{".x", "Direct3D XFile Importer", "DirectX X"}, Format{".bvh", "BVH Importer (MoCap)", "BVH"},
+};
+
+// What assimp means by 0 ticks a second is "the file does not say"; its own viewer takes 25.
+constexpr double kTicksWhereUnsaid = 25;
+
+const Format& format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string(), known;
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const Format& format : kFormats) {
+    if (extension == format.extension) return format;
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw InputError("files of the kind '" + extension + "' are not read; convert it to one of " + known);
+}
+
+void keep_only(Assimp::Importer& importer, std::string_view name) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
+    if (importer.GetImporterInfo(i)->mName != name) importer.UnregisterLoader(importer.GetImporter(i));
+}
+
+std::string text(const aiString& string) {
+  return {string.data, std::min<std::size_t>(string.length, sizeof string.data - 1)};
+}
+
+Vec3 vector(const aiVector3D& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+Transform transform(const aiMatrix4x4& m) {
+  const auto column = [](ai_real x, ai_real y, ai_real z) { return vector(aiVector3D(x, y, z)); };
+  return {{column(m.a1, m.b1, m.c1), column(m.a2, m.b2, m.c2), column(m.a3, m.b3, m.c3)},
+          column(m.a4, m.b4, m.c4)};
+}
+
+class Reader {
+ public:
+  Reader(const aiScene& scene, const CharacterLimits& limits) : scene_(scene), limits_(limits) {}
+
+  Character read() {
+    if (scene_.mRootNode == nullptr) throw InputError("has no nodes; export it again");
+    read_nodes();
+    for (std::size_t n = 0; n < source_.size(); ++n)
+      for (unsigned i = 0; i < source_[n]->mNumMeshes; ++i)
+        read_part(static_cast<int>(n), source_[n]->mMeshes[i]);
+    for (unsigned i = 0; i < scene_.mNumAnimations; ++i) read_animation(*scene_.mAnimations[i]);
+    read_unit();
+    note(lines_, "points and lines left out");
+    note(morphs_, "blend shapes not applied");
+    note(again_, "meshes that several nodes share taken once, as their joints place them");
+    note(strangers_, "animation channels name no node of the file and are ignored");
+    note(dropped_keys_, "keys out of order or not finite ignored");
+    note(many_, "weights not positive or without a bone ignored");
+    return std::move(character_);
+  }
+
+ private:
+  void note(std::size_t count, const char* what) {
+    if (count > 0) character_.notes.push_back(std::to_string(count) + " " + what);
+  }
+
+  // Depth first without recursion: how deep a file nests is not in our hands.
+  void read_nodes() {
+    std::vector<std::pair<const aiNode*, int>> open{{scene_.mRootNode, -1}};
+    while (!open.empty()) {
+      const auto [node, parent] = open.back();
+      open.pop_back();
+      if (character_.nodes.size() >= limits_.nodes)
+        throw InputError("has more than " + std::to_string(limits_.nodes) + " nodes; simplify the model");
+      const int index = static_cast<int>(source_.size());
+      character_.nodes.push_back({text(node->mName), parent, transform(node->mTransformation)});
+      source_.push_back(node);
+      by_name_.try_emplace(text(node->mName), index);
+      for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], index);
+    }
+  }
+
+  void read_part(int node, unsigned mesh_index) {
+    if (mesh_index >= scene_.mNumMeshes)
+      throw InputError("a node names a mesh that does not exist; repair it");
+    const aiMesh& mesh = *scene_.mMeshes[mesh_index];
+    morphs_ += mesh.mNumAnimMeshes;
+    if (mesh.mNumBones > 0 && !skinned_.try_emplace(mesh_index, node).second) {
+      ++again_;
+      return;
+    }
+    Part part;
+    part.name = text(mesh.mName);
+    part.node = node;
+    vertices_ += mesh.mNumVertices;
+    if (vertices_ > limits_.vertices)
+      throw InputError("has more than " + std::to_string(limits_.vertices) + " vertices; simplify the model");
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) part.positions.push_back(vector(mesh.mVertices[v]));
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3) {
+        ++lines_;
+        continue;
+      }
+      std::array<std::int32_t, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (face.mIndices[k] >= mesh.mNumVertices)
+          throw InputError("mesh '" + part.name + "', triangle " + std::to_string(f) +
+                           ": names a vertex that does not exist; repair it");
+        corners[k] = static_cast<std::int32_t>(face.mIndices[k]);
+      }
+      part.triangles.push_back(corners);
+    }
+    read_joints(mesh, part);
+    character_.parts.push_back(std::move(part));
+  }
+
+  void read_joints(const aiMesh& mesh, Part& part) {
+    std::vector<std::size_t> count(mesh.mNumVertices + std::size_t{1}, 0);
+    std::vector<double> sum(mesh.mNumVertices, 0);
+    struct Entry {
+      std::size_t vertex;
+      Influence influence;
+    };
+    std::vector<Entry> entries;
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const aiBone& bone = *mesh.mBones[b];
+      const auto found = by_name_.find(text(bone.mName));
+      if (found == by_name_.end()) {
+        many_ += bone.mNumWeights;
+        continue;
+      }
+      const int joint = static_cast<int>(part.joints.size());
+      part.joints.push_back({found->second, transform(bone.mOffsetMatrix)});
+      for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+        const aiVertexWeight& weight = bone.mWeights[w];
+        if (weight.mVertexId >= mesh.mNumVertices)
+          throw InputError("bone '" + text(bone.mName) + "': weighs a vertex that does not exist; repair it");
+        const auto value = static_cast<double>(weight.mWeight);
+        if (!(value >= 0) || !std::isfinite(value)) ++many_;
+        if (!(value > 0) || !std::isfinite(value)) continue;
+        ++count[weight.mVertexId + std::size_t{1}];
+        sum[weight.mVertexId] += value;
+        entries.push_back({weight.mVertexId, {joint, value}});
+      }
+    }
+    for (std::size_t v = 0; v < mesh.mNumVertices; ++v) count[v + 1] += count[v];
+    part.first = count;
+    part.influences.resize(entries.size());
+    for (const Entry& entry : entries)
+      part.influences[count[entry.vertex]++] = {entry.influence.joint,
+                                                entry.influence.weight / sum[entry.vertex]};
+  }
+
+  template <class AiKey, class Value, class Convert>
+  void read_keys(const AiKey* from, unsigned count, double seconds_per_tick, std::vector<Key<Value>>& to,
+                 const Convert& convert) {
+    keys_ += count;
+    if (keys_ > limits_.keys)
+      throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
+    for (unsigned i = 0; i < count; ++i) {
+      const double time = from[i].mTime * seconds_per_tick;
+      if (!std::isfinite(time) || (!to.empty() && !(time > to.back().time)))
+        ++dropped_keys_;
+      else
+        to.push_back({time, convert(from[i].mValue)});
+    }
+  }
+
+  void read_animation(const aiAnimation& source) {
+    Animation animation;
+    animation.name = text(source.mName);
+    animation.ticks_per_second = source.mTicksPerSecond > 0 ? source.mTicksPerSecond : 0;
+    const double tick = 1 / (source.mTicksPerSecond > 0 ? source.mTicksPerSecond : kTicksWhereUnsaid);
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (unsigned c = 0; c < source.mNumChannels; ++c) {
+      const aiNodeAnim& channel = *source.mChannels[c];
+      const auto found = by_name_.find(text(channel.mNodeName));
+      if (found == by_name_.end()) {
+        ++strangers_;
+        continue;
+      }
+      Channel to{found->second, {}, {}, {}};
+      read_keys(channel.mPositionKeys, channel.mNumPositionKeys, tick, to.moves, vector);
+      read_keys(channel.mRotationKeys, channel.mNumRotationKeys, tick, to.rotations,
+                [](const aiQuaternion& q) {
+                  return normalised({static_cast<double>(q.w), static_cast<double>(q.x),
+                                     static_cast<double>(q.y), static_cast<double>(q.z)});
+                });
+      read_keys(channel.mScalingKeys, channel.mNumScalingKeys, tick, to.scales, vector);
+      const auto reach = [&](const auto& keys) {
+        if (keys.empty()) return;
+        first = std::min(first, keys.front().time);
+        last = std::max(last, keys.back().time);
+      };
+      reach(to.moves);
+      reach(to.rotations);
+      reach(to.scales);
+      animation.channels.push_back(std::move(to));
+    }
+    // By its keys: importers differ in where they begin to count the duration.
+    animation.start = first <= last ? first : 0;
+    animation.seconds = first <= last ? last - first : 0;
+    character_.animations.push_back(std::move(animation));
+  }
+
+  void read_unit() {
+    if (scene_.mMetaData == nullptr) return;
+    for (unsigned i = 0; i < scene_.mMetaData->mNumProperties; ++i) {
+      const aiMetadataEntry& entry = scene_.mMetaData->mValues[i];
+      if (text(scene_.mMetaData->mKeys[i]) != "UnitScaleFactor" || entry.mData == nullptr) continue;
+      double value = 0;
+      if (entry.mType == AI_DOUBLE) std::memcpy(&value, entry.mData, sizeof value);
+      if (entry.mType == AI_FLOAT) {
+        float single = 0;
+        std::memcpy(&single, entry.mData, sizeof single);
+        value = static_cast<double>(single);
+      }
+      if (std::isfinite(value) && value > 0) character_.centimetres_per_unit = value;
+    }
+  }
+
+  const aiScene& scene_;
+  const CharacterLimits& limits_;
+  Character character_;
+  std::vector<const aiNode*> source_;    // by node
+  std::map<std::string, int> by_name_;   // the first of equal names
+  std::map<unsigned, int> skinned_;      // meshes with joints that are already in
+  std::size_t vertices_ = 0, keys_ = 0;  // so far
+  std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
+};
+
+}  // namespace
+
+Character read_model(const std::filesystem::path& path, const CharacterLimits& limits) {
+  const Format& format = format_of(path);
+  Assimp::Importer importer;
+  keep_only(importer, format.importer);
+  importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  // Nothing else: what to weld is decided by position (assimp's own step keeps seams of normals and textures
+  // open), weights are not cut to four, and the checks are ours.
+  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
+  const std::string_view error = importer.GetErrorString();
+  if (error.find("bad_alloc") != error.npos) throw std::bad_alloc();
+  if (scene == nullptr)
+    throw InputError(std::string("the ") + std::string(format.name) +
+                     " importer refuses it: " + std::string(error) + "; export it again");
+  Character character = Reader(*scene, limits).read();
+  character.format = format.name;
+  if (format.name == "Collada" || format.name == "glTF 2") character.centimetres_per_unit = 0;
+  validate(character, limits);
+  return character;
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "scenes/character/character.h"
+
+namespace cscd::scenes {
+
+// Reads a model file with assimp. To be called in a process that may be lost: assimp 5.2.5 crashes on some
+// damaged files. Throws InputError for formats outside the short list below, files that assimp refuses, and
+// what validate() refuses.
+//
+// The list: glTF 2, FBX, Collada, DirectX X, and BVH (which holds no surface and is read to say so). Other
+// formats of assimp can hold skinned characters too, but each importer is one more reader of untrusted bytes.
+Character read_model(const std::filesystem::path& path, const CharacterLimits& limits);
+
+}  // namespace cscd::scenes

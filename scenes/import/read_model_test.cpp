@@ -1,0 +1,145 @@
+#include "scenes/import/read_model.h"
+
+#include <assimp/IOStream.hpp>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <memory>
+#include <unistd.h>
+
+#include "core/base/error.h"
+#include "scenes/character/pose.h"
+#include "scenes/import/file_system.h"
+
+namespace cscd::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Model : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(root);
+    fs::create_directories(root / "models");
+    std::ofstream(root / "secret.bin") << "outside";
+    std::ofstream(root / "models" / "near.bin") << "0123456789";
+    fs::create_directories(root / "models" / "sub");
+    fs::create_symlink(root / "secret.bin", root / "models" / "link.bin");
+  }
+  void TearDown() override { fs::remove_all(root); }
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(root / "models" / name) << text;
+    return (root / "models" / name).string();
+  }
+  std::string refusal(const std::string& file) {
+    try {
+      read_model(file, {});
+      return {};
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  const fs::path root = fs::temp_directory_path() / ("cscd-model-" + std::to_string(getpid()));
+};
+
+TEST_F(Model, FilesOutsideItsFolderDoNotExist) {
+  FolderFiles files(root / "models" / "near.bin", 100);
+  EXPECT_TRUE(files.Exists("near.bin"));
+  EXPECT_TRUE(files.Exists((root / "models" / "near.bin").c_str()));
+  for (const std::string& name :
+       {std::string("../secret.bin"), std::string("sub/../../secret.bin"), (root / "secret.bin").string(),
+        std::string("link.bin"), std::string("/etc/passwd"), std::string("sub"), std::string("none.bin"),
+        std::string("/dev/zero")}) {
+    EXPECT_FALSE(files.Exists(name.c_str())) << name;
+    EXPECT_EQ(files.Open(name.c_str(), "rb"), nullptr) << name;
+  }
+  EXPECT_EQ(files.Open("near.bin", "wb"), nullptr);
+  EXPECT_EQ(files.Open("near.bin", "r+b"), nullptr);
+}
+
+TEST_F(Model, FilesAreReadUpToALimitInAll) {
+  FolderFiles files(root / "models" / "near.bin", 15);
+  Assimp::IOStream* file = files.Open("near.bin", "rb");
+  ASSERT_NE(file, nullptr);
+  EXPECT_EQ(file->FileSize(), 10u);
+  char bytes[16] = {};
+  EXPECT_EQ(file->Read(bytes, 4, 9), 2u);
+  EXPECT_EQ(file->Tell(), 8u);
+  EXPECT_EQ(std::string(bytes, 8), "01234567");
+  EXPECT_EQ(file->Seek(11, aiOrigin_SET), aiReturn_FAILURE);
+  EXPECT_EQ(file->Seek(1, aiOrigin_SET), aiReturn_SUCCESS);
+  EXPECT_EQ(file->Read(bytes, 1, 16), 9u);
+  EXPECT_EQ(file->Write(bytes, 1, 1), 0u);
+  files.Close(file);
+  EXPECT_EQ(files.Open("near.bin", "rb"), nullptr);
+}
+
+// Two triangles on two joints; a frame that says nothing of ticks and has a channel for one joint.
+constexpr char kXFile[] = R"(xof 0303txt 0032
+Frame Root {
+ FrameTransformMatrix { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;; }
+ Frame Upper {
+  FrameTransformMatrix { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 1.0;; }
+ }
+ Mesh Flag {
+  4;
+  0.0;0.0;0.0;, 1.0;0.0;0.0;, 1.0;2.0;0.0;, 0.0;2.0;0.0;;
+  2;
+  3;0,1,2;,
+  3;0,2,3;;
+  XSkinMeshHeader { 1; 1; 2; }
+  SkinWeights { "Root"; 2; 0, 1; 0.5, 0.5; 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;; }
+  SkinWeights { "Upper"; 2; 2, 3; 1.0, 1.0; 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -2.0, 0.0, 1.0;; }
+ }
+}
+AnimationSet Wave {
+ Animation { { Upper }
+  AnimationKey { 2; 2; 0; 3; 0.0, 2.0, 0.0;;, 4800; 3; 1.0, 2.0, 0.0;;; }
+ }
+}
+)";
+
+TEST_F(Model, ReadsASkinnedAnimation) {
+  const Character flag = read_model(write("flag.x", kXFile), {});
+  EXPECT_EQ(flag.format, "DirectX X");
+  ASSERT_EQ(flag.parts.size(), 1u);
+  EXPECT_EQ(flag.parts[0].triangles.size(), 2u);
+  EXPECT_EQ(flag.parts[0].joints.size(), 2u);
+  for (const Influence& influence : flag.parts[0].influences)
+    EXPECT_EQ(influence.weight, 1) << "made to sum to 1";
+  ASSERT_EQ(flag.animations.size(), 1u);
+  const Animation& wave = flag.animations[0];
+  EXPECT_EQ(wave.name, "Wave");
+  EXPECT_GT(wave.seconds, 0);
+  std::vector<Vec3> at_rest, waved;
+  skin(flag, bind_pose(flag), at_rest);
+  skin(flag, pose_at(flag, wave, wave.start + wave.seconds), waved);
+  double moved = 0, still = 0;
+  for (std::size_t v = 0; v < waved.size(); ++v) {
+    const bool upper =
+        flag.parts[0]
+                .joints[static_cast<std::size_t>(flag.parts[0].influences[flag.parts[0].first[v]].joint)]
+                .node != 0 &&
+        flag.nodes[static_cast<std::size_t>(flag.parts[0]
+                                                .joints[static_cast<std::size_t>(
+                                                    flag.parts[0].influences[flag.parts[0].first[v]].joint)]
+                                                .node)]
+                .name == "Upper";
+    (upper ? moved : still) += (waved[v] - at_rest[v]).norm();
+  }
+  EXPECT_GT(moved, 1.5);
+  EXPECT_LT(still, 1e-6);
+}
+
+TEST_F(Model, RefusesOtherKindsAndDamage) {
+  EXPECT_NE(refusal(write("a.obj", "v 0 0 0\n")).find("'.obj' are not read"), std::string::npos);
+  EXPECT_NE(refusal(write("a", "xof")).find("are not read"), std::string::npos);
+  EXPECT_NE(refusal(write("cut.x", std::string(kXFile).substr(0, 300))).find("refuses it"),
+            std::string::npos);
+  // glTF 1 has the same extension and an importer of its own, which must not be asked.
+  EXPECT_NE(refusal(write("old.gltf", R"({"asset":{"version":"1.0"},"meshes":{}})")).find("glTF 2"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes
