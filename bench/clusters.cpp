@@ -4,6 +4,7 @@
 #include "bench/catalogue.h"
 #include "bench/command.h"
 #include "bench/input.h"
+#include "bench/model_options.h"
 #include "bench/output.h"
 #include "core/base/error.h"
 
@@ -14,13 +15,14 @@ struct ClusterOptions {
   std::string input, strategy, output;
   std::size_t frame = 0;
   bool force = false;
+  ModelOptions model;
 };
 
 // One interval's clusters and the surface at its start, for a picture.
 void clusters(const ClusterOptions& options) {
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
   OutputFile output(options.output, options.force);
-  Input input = open_input(options.input);
+  Input input = open_input(options.input, options.model);
   if (strategy == nullptr) strategy = &default_strategy(input);
   if (options.frame >= input.clip->interval_count())
     throw InputError("--frame " + std::to_string(options.frame) + ": " + options.input +
@@ -56,12 +58,13 @@ void add_clusters(CLI::App& app) {
   auto options = std::make_shared<ClusterOptions>();
   CLI::App* command = app.add_subcommand(
       "clusters", "Write the surface at one frame with the cluster of every triangle, for a picture.");
-  command->add_option("input", options->input, "a scene (cscd list) or a .h5 point cache")->required();
+  command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--frame", options->frame, "where the interval starts")->capture_default_str();
   command->add_option("--strategy", options->strategy,
                       "a radial strategy; default the best that the input allows");
   command->add_option("--json", options->output, "where it goes")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
+  add_model_options(*command, options->model);
   command->callback([options] { clusters(*options); });
 }
 

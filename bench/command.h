@@ -15,6 +15,7 @@ struct ExitStatus {
 inline constexpr ExitStatus kVerificationFailed{1};
 
 void add_query(CLI::App& app);
+void add_inspect(CLI::App& app);
 void add_elementary(CLI::App& app);
 void add_run(CLI::App& app);
 void add_tables(CLI::App& app);

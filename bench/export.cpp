@@ -2,34 +2,47 @@
 #include <cstdio>
 
 #include "bench/command.h"
-#include "bench/progress.h"
-#include "scenes/catalog/scene_cache.h"
+#include "bench/input.h"
+#include "bench/model_options.h"
+#include "core/base/error.h"
+#include "scenes/clip/point_cache.h"
 
 namespace cscd::bench {
+namespace {
+
+struct ExportOptions {
+  std::string input, output;
+  bool force = false;
+  ModelOptions model;
+};
+
+void export_frames(const ExportOptions& options) {
+  // What exists already is refused before the work, not after it.
+  std::error_code ignored;
+  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(options.output, ignored)))
+    throw InputError(options.output +
+                     ": exists already; choose another name, or ask to overwrite with --force");
+  const Input input = open_input(options.input, options.model);
+  scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
+  scenes::copy_frames(*input.clip, writer);
+  writer.finish();
+  std::printf("%s: %zu frames of %zu vertices and %zu triangles\n", options.output.c_str(),
+              input.clip->frame_count(), input.mesh.vertex_count(), input.mesh.triangle_count());
+}
+
+}  // namespace
 
 void add_export(CLI::App& app) {
-  struct Options {
-    std::string scene, output;
-    bool force = false;
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "Write exactly the frames that a run replays as a point cache.\n\n  cscd export rope rope.h5");
-  command->add_option("scene", options->scene, "a scene (cscd list scenes)")->required();
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export",
+                                         "Write exactly the frames that a run replays as a point cache.\n\n"
+                                         "  cscd export rope rope.h5\n"
+                                         "  cscd export character.glb walk.h5 --clip walk --fps 60");
+  command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("output", options->output, "the .h5 file to write")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
-  command->callback([options] {
-    const scenes::Scene scene = scenes::load_scene(options->scene);
-    std::optional<Progress> progress;
-    scenes::export_scene(scene, options->output, options->force, [&](std::size_t done, std::size_t total) {
-      if (!progress) progress.emplace("generating " + scene.name, total);
-      progress->set(done);
-    });
-    progress.reset();
-    std::printf("%s: %zu frames of %zu vertices and %zu triangles\n", options->output.c_str(), scene.frames,
-                scene.expected.vertices, scene.expected.triangles);
-  });
+  add_model_options(*command, options->model);
+  command->callback([options] { export_frames(*options); });
 }
 
 }  // namespace cscd::bench

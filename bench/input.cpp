@@ -1,8 +1,10 @@
 #include "bench/input.h"
 
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 
+#include "bench/applicable.h"
 #include "bench/catalogue.h"
 #include "bench/progress.h"
 #include "core/base/error.h"
@@ -16,15 +18,7 @@ bool is_point_cache(const std::filesystem::path& path) {
   return path.extension() == ".h5" || path.extension() == ".hdf5";
 }
 
-std::unique_ptr<scenes::ClipSource> open_clip(const std::string& name) {
-  const std::filesystem::path path(name);
-  if (is_point_cache(path)) return std::make_unique<scenes::PointCacheReader>(path);
-  std::error_code ignored;
-  if (path.has_extension() || std::filesystem::exists(path, ignored))
-    throw InputError(
-        "input " + name +
-        ": neither a scene nor a point cache; name a scene (cscd list) or convert it to a .h5 point "
-        "cache");
+std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
   const scenes::Scene scene = scenes::load_scene(name);
   std::optional<Progress> progress;
   return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
@@ -45,14 +39,36 @@ std::size_t parse_frame(std::string_view digits, std::size_t otherwise, const st
 
 }  // namespace
 
-Input open_input(const std::string& name) {
-  std::unique_ptr<scenes::ClipSource> clip = open_clip(name);
+bool is_model_file(const std::string& name) {
+  const std::filesystem::path path(name);
+  std::error_code ignored;
+  return !is_point_cache(path) && (path.has_extension() || std::filesystem::exists(path, ignored));
+}
+
+Input open_input(const std::string& name, const ModelOptions& options) {
+  const bool model = is_model_file(name);
+  if (!model && options != ModelOptions{})
+    throw InputError("input " + name +
+                     ": is no model file, so its frames are used as they are; leave out the options of model "
+                     "files (--clip, --fps, ...)");
+  std::unique_ptr<scenes::ClipSource> clip;
+  std::optional<scenes::ImportReport> import;
+  if (model) {
+    ImportedModel imported = import_model(name, options);
+    clip = std::move(imported.clip);
+    import = std::move(imported.report);
+    std::printf("%s (%s)\n%s", name.c_str(), import->format.c_str(), import_text(*import).c_str());
+  } else if (is_point_cache(name)) {
+    clip = std::make_unique<scenes::PointCacheReader>(name);
+  } else {
+    clip = open_scene_named(name);
+  }
   const scenes::ClipHeader& header = clip->header();
   TriangleMesh mesh(header.triangles, header.vertex_count, name);
   std::optional<Rig> rig = scenes::rig_of(*clip);
   const scenes::FrameView first = clip->load_frame(0);
   std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-  return {name, std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
+  return {name, std::move(clip), std::move(mesh), std::move(reference), std::move(rig), std::move(import)};
 }
 
 IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
@@ -72,9 +88,7 @@ IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
 }
 
 bool allows(const Input& input, const Strategy& strategy) {
-  return (input.rig || !strategy.needs_rig) &&
-         (input.mesh.closed_and_oriented() || strategy.guarantee == Guarantee::complete ||
-          !strategy.needs_rig);
+  return !why_not(strategy, input.mesh, input.rig.has_value());
 }
 
 const Strategy& default_strategy(const Input& input) {

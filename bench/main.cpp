@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   cscd::bench::add_list(app);
   cscd::bench::add_query(app);
+  cscd::bench::add_inspect(app);
   cscd::bench::add_elementary(app);
   cscd::bench::add_export(app);
   cscd::bench::add_clusters(app);

@@ -8,6 +8,7 @@
 #include "bench/command.h"
 #include "bench/input.h"
 #include "bench/json_text.h"
+#include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/statistics.h"
@@ -23,6 +24,7 @@ struct NearnessOptions {
   std::string input, frames, output;
   std::size_t every = 1;
   bool force = false;
+  ModelOptions model;
 };
 
 std::string length(double mean_edges) {
@@ -35,7 +37,7 @@ std::string length(double mean_edges) {
 void nearness(const NearnessOptions& options) {
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
-  Input input = open_input(options.input);
+  Input input = open_input(options.input, options.model);
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const std::vector<std::size_t> chosen = every_kth(range, options.every);
 
@@ -99,13 +101,14 @@ void add_nearness(CLI::App& app) {
                          "Distances of 4 mean edge lengths and more are not told apart (null). Whether "
                          "starts are embedded is decided\n"
                          "exactly.");
-  command->add_option("input", options->input, "a scene (cscd list) or a .h5 point cache")->required();
+  command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
   command->add_option("--every", options->every, "measure each K-th interval, from the first")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--json", options->output, "all distances, for a machine to read");
   command->add_flag("--force", options->force, "replace the output if it exists");
+  add_model_options(*command, options->model);
   command->callback([options] { nearness(*options); });
 }
 

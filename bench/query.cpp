@@ -5,6 +5,7 @@
 #include "bench/catalogue.h"
 #include "bench/command.h"
 #include "bench/input.h"
+#include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/report_json.h"
@@ -18,6 +19,7 @@ using nlohmann::json;
 struct QueryOptions {
   std::string input, strategy, elementary = "exact", frames, output;
   bool force = false, unproven = false;
+  ModelOptions model;
 };
 
 json to_json(const Contact& contact, const TriangleMesh& mesh) {
@@ -57,7 +59,7 @@ void query(const QueryOptions& options) {
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
   OutputFile output(options.output, options.force);
 
-  Input input = open_input(options.input);
+  Input input = open_input(options.input, options.model);
   if (strategy == nullptr) strategy = &default_strategy(input);
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const Setup setup = input.setup(elementary);
@@ -94,9 +96,10 @@ void query(const QueryOptions& options) {
     progress.advance();
   }
 
-  const json document = {{"schema", "cscd.query/1"},      {"input", options.input},
-                         {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
-                         {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
+  json document = {{"schema", "cscd.query/1"},      {"input", options.input},
+                   {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
+                   {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
+  if (input.import) document["import"] = import_json(*input.import);
   output.commit(document.dump(1) + "\n");
   std::printf(
       "%s: %zu intervals, %zu with contacts, %zu with a start that is not embedded (strategy %s, elementary "
@@ -113,11 +116,12 @@ void add_query(CLI::App& app) {
       app.add_subcommand("query",
                          "Find where and when a mesh first touches itself in each interval of a clip.\n\n"
                          "  cscd query rope --json rope.json\n"
-                         "  cscd query character.h5 --strategy base --frames 0:10 --json out.json\n\n"
+                         "  cscd query character.h5 --strategy base --frames 0:10 --json out.json\n"
+                         "  cscd query character.glb --clip walk --json out.json\n\n"
                          "Where a start is not embedded, the guarantee first_contact is void, and the "
                          "complete reference strategy\n"
                          "answers that interval instead (--unproven: do not).");
-  command->add_option("input", options->input, "a scene (cscd list) or a .h5 point cache")->required();
+  command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--strategy", options->strategy,
                       "culling strategy (cscd list); without it, the best that the input allows");
   command->add_option("--elementary", options->elementary, "elementary test (cscd list)")
@@ -126,6 +130,7 @@ void add_query(CLI::App& app) {
   command->add_option("--json", options->output, "where the answer goes")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_flag("--unproven", options->unproven, "run the strategy even where its guarantee is void");
+  add_model_options(*command, options->model);
   command->callback([options] { query(*options); });
 }
 

@@ -8,6 +8,7 @@
 #include "bench/environment.h"
 #include "bench/input.h"
 #include "bench/json_text.h"
+#include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/record.h"
 #include "bench/timing.h"
@@ -27,6 +28,7 @@ struct RunOptions {
   std::size_t repetitions = 5, time_every = 1, verify_every = 1;
   std::uint64_t seed = 2014;
   bool smoke = false, force = false;
+  ModelOptions model;
 };
 
 // Enough to see that everything works, in seconds; too little to conclude anything from its times.
@@ -34,18 +36,24 @@ constexpr std::size_t kSmokeIntervals = 16, kSmokeRepetitions = 2, kSmokeVerifyE
 
 // What was asked for, with every default spelt out; where the result goes is left out.
 std::vector<std::string> command_line(const RunOptions& options, std::span<const Contestant> contestants,
-                                      const IntervalRange& range) {
+                                      const IntervalRange& range, bool is_model) {
   std::string names;
   for (const Contestant& c : contestants) names += (names.empty() ? "" : ",") + std::string(c.strategy->name);
-  return {"cscd",           "run",
-          "--scene",        options.scene,
-          "--strategy",     names,
-          "--elementary",   options.elementary,
-          "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
-          "--repetitions",  std::to_string(options.repetitions),
-          "--time-every",   std::to_string(options.time_every),
-          "--verify-every", std::to_string(options.verify_every),
-          "--seed",         std::to_string(options.seed)};
+  std::vector<std::string> words = {
+      "cscd",           "run",
+      "--scene",        options.scene,
+      "--strategy",     names,
+      "--elementary",   options.elementary,
+      "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
+      "--repetitions",  std::to_string(options.repetitions),
+      "--time-every",   std::to_string(options.time_every),
+      "--verify-every", std::to_string(options.verify_every),
+      "--seed",         std::to_string(options.seed)};
+  if (is_model) {
+    const std::vector<std::string> model = to_arguments(options.model.import);
+    words.insert(words.end(), model.begin(), model.end());
+  }
+  return words;
 }
 
 SceneRecord describe(Input& input) {
@@ -103,7 +111,7 @@ void run(RunOptions options) {
     if (strategies_in(name).empty()) strategy_named(name);
   OutputFile output(options.output, options.force);
 
-  Input input = open_input(options.scene);
+  Input input = open_input(options.scene, options.model);
   IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   if (options.smoke) {
     range.last = std::min(range.last, range.first + kSmokeIntervals);
@@ -124,7 +132,7 @@ void run(RunOptions options) {
   record.intervals = range.last - range.first;
   record.timed_intervals = every_kth(range, options.time_every);
   std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
-  record.command = command_line(options, contestants, range);
+  record.command = command_line(options, contestants, range, input.import.has_value());
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
 
   VerificationOutcome verified =
@@ -165,8 +173,7 @@ void add_run(CLI::App& app) {
       "Rows that belong to a group (cscd list strategies) run only when they or their group is named: all "
       "pairs of\n"
       "triangles, a thousand million of them on the rope at every interval, and the ablation.");
-  command->add_option("--scene", options->scene, "a scene (cscd list) or a .h5 point cache")
-      ->capture_default_str();
+  command->add_option("--scene,--input", options->scene, kInputHelp)->capture_default_str();
   command
       ->add_option("--strategy", options->strategies,
                    "strategies or groups of them, with commas between; default all without a group")
@@ -188,6 +195,7 @@ void add_run(CLI::App& app) {
   command->add_flag("--smoke", options->smoke, "16 intervals, 2 repetitions, every 4th interval verified");
   command->add_option("--json", options->output, "where the record goes")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
+  add_model_options(*command, options->model);
   command->callback([options] { run(*options); });
 }
 

@@ -1,0 +1,19 @@
+#include "bench/applicable.h"
+
+#include "core/base/error.h"
+
+namespace cscd::bench {
+
+std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones) {
+  if (!strategy.needs_rig) return std::nullopt;
+  if (!has_bones) return "needs bones, and there are none";
+  if (strategy.guarantee == Guarantee::complete) return std::nullopt;
+  try {
+    require_closed_and_oriented(mesh, "it");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "scenes/character/options.h"
+#include "scenes/character/report.h"
+#include "scenes/clip/clip.h"
+
+namespace cscd::bench {
+
+// How a model file is to be read, and with how much.
+struct ModelOptions {
+  scenes::ImportOptions import;
+  std::size_t memory_mib = 4096;
+  double seconds = 60;
+  bool operator==(const ModelOptions&) const = default;
+};
+
+struct ImportedModel {
+  std::unique_ptr<scenes::ClipSource> clip;
+  scenes::ImportReport report;
+};
+
+// Has cscd-import (beside this program) turn a model file into a temporary point cache, under limits, and
+// opens that; the file is gone when the clip is. Throws InputError, in one line, for whatever goes wrong with
+// the file or in the other process: a crash, too much time, too much memory.
+ImportedModel import_model(const std::filesystem::path& path, const ModelOptions& options);
+
+// What was chosen and what was done to it, in a few lines.
+std::string import_text(const scenes::ImportReport& report);
+nlohmann::json import_json(const scenes::ImportReport& report);
+
+}  // namespace cscd::bench
