@@ -1,10 +1,14 @@
 #include "bench/import.h"
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
@@ -46,8 +50,21 @@ class TemporaryFolder {
   const fs::path& path() const { return path_; }
 
  private:
+  static constexpr char kPrefix[] = "import-";
+
+  // What processes left here that were killed: a folder carries the id of its own.
+  static void remove_forsaken(const fs::path& place) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.starts_with(kPrefix)) continue;
+      const int owner = std::atoi(name.c_str() + std::strlen(kPrefix));
+      if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+    }
+  }
   bool make_in(const fs::path& place) {
-    std::string name = (place / "import-XXXXXX").string();
+    remove_forsaken(place);
+    std::string name = (place / (kPrefix + std::to_string(getpid()) + "-XXXXXX")).string();
     if (mkdtemp(name.data()) == nullptr) return false;
     path_ = name;
     return true;

@@ -99,10 +99,10 @@ json strategies_json(const TriangleMesh& mesh, bool has_bones, const json& embed
     const std::optional<std::string> reason = why_not(strategy, mesh, has_bones);
     json why;
     if (reason) why = *reason;
-    std::string promise = "every contact";
+    std::string promise = "finds every contact";
     if (strategy.guarantee == Guarantee::first_contact)
-      promise = always ? "the first contact" : "the first contact, where the start is embedded";
-    if (strategy.guarantee == Guarantee::heuristic) promise = "nothing";
+      promise = always ? "finds the first contact" : "finds the first contact where the start is embedded";
+    if (strategy.guarantee == Guarantee::heuristic) promise = "promises nothing";
     rows.push_back({{"name", strategy.name}, {"can", !reason}, {"why_not", why}});
     if (!reason) rows.back()["promise"] = promise;
   }

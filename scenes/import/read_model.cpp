@@ -212,8 +212,10 @@ class Reader {
                                      static_cast<double>(q.y), static_cast<double>(q.z)});
                 });
       read_keys(channel.mScalingKeys, channel.mNumScalingKeys, tick, to.scales, vector);
+      // A single key holds at all times, so it says nothing of the length: for what a channel leaves out,
+      // assimp adds one at 0.
       const auto reach = [&](const auto& keys) {
-        if (keys.empty()) return;
+        if (keys.size() < 2) return;
         first = std::min(first, keys.front().time);
         last = std::max(last, keys.back().time);
       };

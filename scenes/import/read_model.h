@@ -10,6 +10,8 @@ namespace cscd::scenes {
 // damaged files. Throws InputError for formats outside the short list below, files that assimp refuses, and
 // what validate() refuses.
 //
+// Where an FBX file has curves for some components of a channel only, assimp 5.2.5 takes the others as 0.
+//
 // The list: glTF 2, FBX, Collada, DirectX X, and BVH (which holds no surface and is read to say so). Other
 // formats of assimp can hold skinned characters too, but each importer is one more reader of untrusted bytes.
 Character read_model(const std::filesystem::path& path, const CharacterLimits& limits);

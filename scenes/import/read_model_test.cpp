@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "scenes/character/pose.h"
+#include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
 
 namespace cscd::scenes {
@@ -129,6 +130,116 @@ TEST_F(Model, ReadsASkinnedAnimation) {
   }
   EXPECT_GT(moved, 1.5);
   EXPECT_LT(still, 1e-6);
+}
+
+// 4800 ticks are a second at 4800 of them, and long at 24. Where the file says nothing, 25.
+TEST_F(Model, TicksPerSecondOfAnyKindBecomeSeconds) {
+  for (const int ticks : {1000, 24, 4800, 120, 0}) {
+    const std::string said = ticks == 0 ? "" : "AnimTicksPerSecond { " + std::to_string(ticks) + "; }\n";
+    const Character flag = read_model(write("flag.x", kXFile + said), {});
+    ASSERT_EQ(flag.animations.size(), 1u);
+    EXPECT_EQ(flag.animations[0].ticks_per_second, ticks);
+    EXPECT_NEAR(flag.animations[0].seconds, 4800.0 / (ticks == 0 ? 25 : ticks), 1e-9);
+  }
+}
+
+// Two triangles in the plane of a node that is scaled to centimetres: a unit of 2.54, a pivot that assimp
+// turns into a chain of helper nodes, one bone and a curve that moves it by 3 in a second.
+constexpr char kFbxFile[] = R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7300
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UnitScaleFactor", "double", "Number", "",2.54
+		P: "TimeMode", "enum", "", "",11
+	}
+}
+Objects:  {
+	Geometry: 10, "Geometry::Flag", "Mesh" {
+		Vertices: *12 { a: 0,0,0,1,0,0,1,2,0,0,2,0 }
+		PolygonVertexIndex: *6 { a: 0,1,-3,0,2,-4 }
+		GeometryVersion: 124
+	}
+	Model: 20, "Model::Flag", "Mesh" { Version: 232 }
+	Model: 30, "Model::Pole", "LimbNode" {
+		Version: 232
+		Properties70:  {
+			P: "RotationPivot", "Vector3D", "Vector", "",0,1,0
+			P: "PreRotation", "Vector3D", "Vector", "",0,0,90
+			P: "RotationActive", "bool", "", "",1
+			P: "Lcl Translation", "Lcl Translation", "", "A",5,0,0
+		}
+	}
+	NodeAttribute: 31, "NodeAttribute::", "LimbNode" { TypeFlags: "Skeleton" }
+	Deformer: 40, "Deformer::", "Skin" { Version: 101 }
+	Deformer: 41, "SubDeformer::", "Cluster" {
+		Version: 100
+		Indexes: *4 { a: 0,1,2,3 }
+		Weights: *4 { a: 1,1,1,1 }
+		Transform: *16 { a: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1 }
+		TransformLink: *16 { a: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1 }
+	}
+	AnimationStack: 50, "AnimStack::", "" {
+		Properties70:  {
+			P: "LocalStop", "KTime", "Time", "",46186158000
+			P: "ReferenceStop", "KTime", "Time", "",46186158000
+		}
+	}
+	AnimationLayer: 51, "AnimLayer::Base", "" { }
+	AnimationCurveNode: 52, "AnimCurveNode::T", "" { Properties70:  { P: "d|Y", "Number", "", "A",0 } }
+	AnimationCurve: 54, "AnimCurve::", "" {
+		KeyTime: *2 { a: 0,46186158000 }
+		KeyValueFloat: *2 { a: 5,5 }
+	}
+	AnimationCurve: 53, "AnimCurve::", "" {
+		KeyTime: *2 { a: 0,46186158000 }
+		KeyValueFloat: *2 { a: 0,3 }
+	}
+}
+Connections:  {
+	C: "OO",20,0
+	C: "OO",30,0
+	C: "OO",10,20
+	C: "OO",31,30
+	C: "OO",40,10
+	C: "OO",41,40
+	C: "OO",30,41
+	C: "OO",51,50
+	C: "OO",52,51
+	C: "OP",52,30, "Lcl Translation"
+	C: "OP",53,52, "d|Y"
+	C: "OP",54,52, "d|X"
+}
+)";
+
+TEST_F(Model, HelperNodesOfFbxMoveBonesAndAreNone) {
+  const Character flag = read_model(write("flag.fbx", kFbxFile), {});
+  std::size_t helpers = 0;
+  for (const Node& node : flag.nodes) helpers += node.name.find("$AssimpFbx$") != std::string::npos;
+  EXPECT_GT(helpers, 1u);
+  EXPECT_NEAR(flag.centimetres_per_unit, 2.54, 1e-6);
+  ASSERT_EQ(flag.animations.size(), 1u);
+  EXPECT_EQ(flag.animations[0].name, "");
+  EXPECT_NEAR(flag.animations[0].seconds, 1, 1e-6);
+
+  std::vector<Vec3> at_start, at_end;
+  const Animation& clip = flag.animations[0];
+  skin(flag, pose_at(flag, clip, clip.start), at_start);
+  skin(flag, pose_at(flag, clip, clip.start + clip.seconds), at_end);
+  ASSERT_EQ(at_end.size(), 6u);
+  for (std::size_t v = 0; v < at_end.size(); ++v) {
+    // A quarter turn about the pivot (0, 1, 0), then the move; in the file's own units.
+    const Vec3& x = flag.parts[0].positions[v];
+    EXPECT_LT((at_start[v] - Vec3(5 - (x.y() - 1), 1 + x.x(), 0)).norm(), 1e-5);
+    EXPECT_LT((at_end[v] - at_start[v] - Vec3(0, 3, 0)).norm(), 1e-5);
+  }
+  const Pose bound = bind_pose(flag);
+  const Skeleton skeleton = make_skeleton(flag, bound, at_start, std::vector<bool>(at_start.size(), true));
+  ASSERT_EQ(skeleton.node.size(), 1u);
+  EXPECT_EQ(flag.nodes[static_cast<std::size_t>(skeleton.node[0])].name, "Pole");
 }
 
 TEST_F(Model, RefusesOtherKindsAndDamage) {
