@@ -16,6 +16,7 @@ struct ModelOptions {
   scenes::ImportOptions import;
   std::size_t memory_mib = 4096;
   double seconds = 60;
+  std::size_t answer_memory_mib = 8192;  // of this process, once the file has been read
   bool operator==(const ModelOptions&) const = default;
 };
 

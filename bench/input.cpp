@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
+#include "scenes/sandbox/run_limited.h"
 
 namespace cscd::bench {
 namespace {
@@ -55,6 +56,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::optional<scenes::ImportReport> import;
   if (model) {
     ImportedModel imported = import_model(name, options);
+    scenes::limit_memory(options.answer_memory_mib << 20);
     clip = std::move(imported.clip);
     import = std::move(imported.report);
     std::printf("%s (%s)\n%s", name.c_str(), import->format.c_str(), import_text(*import).c_str());

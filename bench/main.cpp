@@ -50,7 +50,8 @@ int main(int argc, char** argv) {
   } catch (const cscd::InputError& error) {
     return complain(error.what());
   } catch (const std::bad_alloc&) {
-    return complain("out of memory; use a smaller input or a machine with more");
+    return complain(
+        "out of memory; use a smaller input, a larger --memory for a model file, or a machine with more");
   } catch (const std::exception& error) {
     return complain(std::string("unexpected: ") + error.what());
   }

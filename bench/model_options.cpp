@@ -35,6 +35,10 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       ->check(CLI::Range(16, 1 << 20))
       ->capture_default_str()
       ->group(kGroup);
+  command.add_option("--memory", options.answer_memory_mib, "MiB that everything after that may take")
+      ->check(CLI::Range(64, 1 << 24))
+      ->capture_default_str()
+      ->group(kGroup);
   command.add_option("--import-seconds", options.seconds, "seconds that reading the file may take")
       ->check(CLI::Range(0.01, 86400.0))
       ->capture_default_str()

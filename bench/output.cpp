@@ -9,6 +9,11 @@
 #include "core/base/error.h"
 
 namespace cscd::bench {
+namespace {
+
+const char* pending = nullptr;
+
+}  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path, bool force) : path_(std::move(path)), force_(force) {
   std::error_code ignored;
@@ -21,10 +26,12 @@ OutputFile::OutputFile(std::filesystem::path path, bool force) : path_(std::move
   temporary_ += ".writing-" + std::to_string(getpid());
   file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file_ < 0) fail("create");
+  pending = temporary_.c_str();
 }
 
 OutputFile::~OutputFile() {
   if (file_ < 0) return;
+  pending = nullptr;
   close(file_);
   unlink(temporary_.c_str());
 }
@@ -40,9 +47,14 @@ void OutputFile::commit(std::string_view content) {
   // A hard link fails if somebody else has written the file meanwhile; a rename replaces it.
   if (!force_ && link(temporary_.c_str(), path_.c_str()) != 0) fail("name");
   if (force_ && rename(temporary_.c_str(), path_.c_str()) != 0) fail("name");
+  pending = nullptr;
   close(file_);
   file_ = -1;
   if (!force_) unlink(temporary_.c_str());
+}
+
+void discard_pending_output() noexcept {
+  if (pending != nullptr) unlink(pending);
 }
 
 void OutputFile::fail(const char* doing) const {

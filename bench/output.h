@@ -25,4 +25,8 @@ class OutputFile {
   int file_ = -1;
 };
 
+// Removes what the OutputFile made last has written so far, if it has not been committed. For signal
+// handlers: system calls only.
+void discard_pending_output() noexcept;
+
 }  // namespace cscd::bench

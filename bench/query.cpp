@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bench/catalogue.h"
 #include "bench/command.h"
@@ -9,6 +10,7 @@
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/report_json.h"
+#include "bench/watchdog.h"
 #include "core/detect/embedding.h"
 
 namespace cscd::bench {
@@ -19,6 +21,7 @@ using nlohmann::json;
 struct QueryOptions {
   std::string input, strategy, elementary = "exact", frames, output;
   bool force = false, unproven = false;
+  std::optional<double> interval_seconds;
   ModelOptions model;
 };
 
@@ -54,6 +57,10 @@ json to_json(const ContactSet& found, const TriangleMesh& mesh) {
   return {{"collides", collides}, {"time", time}, {"contacts", contacts}, {"undecided", undecided}};
 }
 
+// Of one interval, where nothing else was asked for: a model file is not trusted to end, what was made for
+// this program is.
+constexpr double kModelIntervalSeconds = 60;
+
 void query(const QueryOptions& options) {
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
@@ -62,6 +69,10 @@ void query(const QueryOptions& options) {
   Input input = open_input(options.input, options.model);
   if (strategy == nullptr) strategy = &default_strategy(input);
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
+  const double patience = options.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
+  Watchdog watchdog(patience, "cscd: " + options.input +
+                                  ": an interval, or the preparation, took more than " +
+                                  json(patience).dump() + " s; raise --interval-seconds to wait longer");
   const Setup setup = input.setup(elementary);
   const std::unique_ptr<Detector> detector = strategy->make(setup).detector;
   const bool may_fall_back = strategy->guarantee == Guarantee::first_contact && !options.unproven;
@@ -73,6 +84,7 @@ void query(const QueryOptions& options) {
   json intervals = json::array();
   std::size_t colliding = 0, not_embedded = 0;
   for (std::size_t i = range.first; i < range.last; ++i) {
+    watchdog.restart();
     const scenes::ClipInterval interval = input.clip->load(i);
     const bool embedded = embedding.embedded(interval.motion.start());
     const bool fall_back = may_fall_back && !embedded;
@@ -96,6 +108,7 @@ void query(const QueryOptions& options) {
     progress.advance();
   }
 
+  watchdog.restart();
   json document = {{"schema", "cscd.query/1"},      {"input", options.input},
                    {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
                    {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
@@ -130,6 +143,10 @@ void add_query(CLI::App& app) {
   command->add_option("--json", options->output, "where the answer goes")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_flag("--unproven", options->unproven, "run the strategy even where its guarantee is void");
+  command
+      ->add_option("--interval-seconds", options->interval_seconds,
+                   "seconds after which an interval is given up; default 60 for model files, else none")
+      ->check(CLI::Range(0.01, 1e6));
   add_model_options(*command, options->model);
   command->callback([options] { query(*options); });
 }

@@ -64,7 +64,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(kNotStarted);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  if (kMayLimitMemory) limit(RLIMIT_AS, limits.memory_bytes);
+  limit_memory(limits.memory_bytes);
   limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
   limit(RLIMIT_FSIZE, limits.file_bytes);
   limit(RLIMIT_NOFILE, limits.open_files);
@@ -92,6 +92,13 @@ bool drain(int pipe, std::string& errors) {
 }
 
 }  // namespace
+
+void limit_memory(std::size_t bytes) {
+  if (!kMayLimitMemory) return;
+  rlimit now{};
+  getrlimit(RLIMIT_AS, &now);
+  limit(RLIMIT_AS, std::min<rlim_t>(bytes, now.rlim_max));
+}
 
 Outcome run_limited(const std::filesystem::path& program, std::span<const std::string> arguments,
                     const Limits& limits) {

@@ -30,6 +30,9 @@ struct Outcome {
 Outcome run_limited(const std::filesystem::path& program, std::span<const std::string> arguments,
                     const Limits& limits);
 
+// Limits the address space of this process, as far as it may; does nothing under AddressSanitizer.
+void limit_memory(std::size_t bytes);
+
 // "ended by signal 6 (Aborted) after 0.1 s", "exit status 3", ...
 std::string to_text(const Outcome& outcome);
 
