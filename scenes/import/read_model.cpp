@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <new>
 #include <string_view>
 
@@ -45,7 +47,10 @@ const Format& format_of(const std::filesystem::path& path) {
 
 void keep_only(Assimp::Importer& importer, std::string_view name) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
-    if (importer.GetImporterInfo(i)->mName != name) importer.UnregisterLoader(importer.GetImporter(i));
+    if (importer.GetImporterInfo(i)->mName != name) {
+      const std::unique_ptr<Assimp::BaseImporter> ours(importer.GetImporter(i));  // once it is unregistered
+      importer.UnregisterLoader(ours.get());
+    }
 }
 
 std::string text(const aiString& string) {

@@ -12,6 +12,11 @@
 #include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
 
+// On files that are cut short assimp's parsers lose memory; their process ends soon after.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libassimp";
+}
+
 namespace cscd::scenes {
 namespace {
 
