@@ -67,6 +67,7 @@ std::string read(const fs::path& path) {
 constexpr const char* kUsable[] = {"cesium_man.glb",
                                    "fox_khronos.glb",
                                    "hand_xrtools_right.glb",
+                                   "hand_xrtools_left.gltf",
                                    "horse.glb",
                                    "kenney_humanoid.glb",
                                    "shiba_inu.glb",
@@ -96,8 +97,9 @@ TEST_P(Characters, NoFirstContactIsLost) {
   std::size_t clips = 1, intervals = 0, embedded = 0, with_contact = 0;
   for (std::size_t clip = 0; clip < clips; ++clip) {
     options.import.clip = std::to_string(clip);
+    if (GetParam() == std::string("hand_xrtools_left.gltf")) options.import.clip.clear();  // it has none
     Input input = open_input(model(GetParam()), options);
-    clips = input.import->clips.size();
+    clips = std::max<std::size_t>(1, input.import->clips.size());
     ASSERT_TRUE(input.mesh.closed_and_oriented());
     ASSERT_TRUE(input.rig.has_value());
     std::vector<std::unique_ptr<Detector>> detectors;

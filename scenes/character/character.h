@@ -56,9 +56,9 @@ struct Channel {
 };
 
 struct Animation {
-  std::string name;         // may be empty
-  double start, seconds;    // the time of the first key, and from there to the last
-  double ticks_per_second;  // as the file says; 0 where it does not
+  std::string name;               // may be empty
+  double start = 0, seconds = 0;  // the time of the first key, and from there to the last
+  double ticks_per_second = 0;    // as the file says; 0 where it does not
   std::vector<Channel> channels;
 };
 

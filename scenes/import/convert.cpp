@@ -203,9 +203,10 @@ std::string known_clips(const Character& character) {
 std::size_t choose_clip(const Character& character, const ImportOptions& options) {
   const auto& all = character.animations;
   if (all.empty())
-    throw InputError("has a bind pose but no clip, so nothing moves (" +
-                     std::to_string(character.nodes.size()) + " nodes, " +
-                     std::to_string(moving_nodes(character).size()) + " bones); export it with an animation");
+    throw InputError(
+        "has a bind pose but no clip, so nothing moves (" + std::to_string(character.nodes.size()) +
+        " nodes, " + std::to_string(moving_nodes(character).size()) +
+        " bones); export it with an animation, or pass --from-bind-pose to move to the pose at rest");
   if (options.clip.empty()) {
     for (std::size_t i = 0; i < all.size(); ++i)
       if (frames_of(all[i], options.fps) >= 2) return i;
@@ -240,18 +241,21 @@ Frames plan(const Character& character, const Pose& bound, const ImportOptions& 
     };
     return {std::max<std::size_t>(2, character.animations.size() + 1), start_of_clip};  // a cache has two
   }
-  const std::size_t chosen = choose_clip(character, options);
-  const Animation& animation = character.animations[chosen];
+  const bool to_rest = character.animations.empty() && options.from_bind_pose;
+  if (to_rest) report.notes.push_back("has no clip; moves from the bind pose to the pose at rest");
+  const long chosen = to_rest ? -1 : static_cast<long>(choose_clip(character, options));
+  const Animation at_rest{};
+  const Animation& animation = to_rest ? at_rest : character.animations[static_cast<std::size_t>(chosen)];
   const std::size_t frames = frames_of(animation, options.fps);
   const std::size_t lead_in =
       options.from_bind_pose
           ? std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kLeadInSeconds * options.fps)))
           : 0;
-  report.chosen_clip = static_cast<long>(chosen);
+  report.chosen_clip = chosen;
   report.lead_in = lead_in;
   if (frames + lead_in < 2)
     throw InputError("--clip " + options.clip + ": is one frame; pass --from-bind-pose to move to it");
-  const auto pose = [&character, &bound, &animation, fps = options.fps, lead_in](std::size_t frame) {
+  const auto pose = [&character, &bound, animation, fps = options.fps, lead_in](std::size_t frame) {
     if (frame < lead_in)
       return blend(character, bound, pose_at(character, animation, animation.start),
                    static_cast<double>(frame) / static_cast<double>(lead_in));

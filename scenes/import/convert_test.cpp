@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/clip/point_cache.h"
 
@@ -177,6 +178,23 @@ TEST_F(Convert, ChoosesClipsByNameNumberOrLength) {
   EXPECT_NE(refusal(tube, options).find("0 'pose', 1 'bend', 2 ''"), std::string::npos);
   tube.animations.clear();
   EXPECT_NE(refusal(tube).find("no clip"), std::string::npos);
+}
+
+TEST_F(Convert, MovesToTheRestWhereThereIsNoClip) {
+  Character tube = bending_tube();
+  tube.animations.clear();
+  tube.nodes[4].local = quarter_turn({1, 0, 0});
+  ImportOptions options;
+  options.from_bind_pose = true;
+  const Clip clip = converted(tube, options);
+  EXPECT_EQ(clip.frame_count(), 16u);
+  EXPECT_EQ(report.chosen_clip, -1);
+  std::vector<Vec3> at_rest;
+  skin(tube, rest_pose(tube), at_rest);
+  for (std::size_t v = 0; v < at_rest.size(); ++v) {
+    EXPECT_LT((clip.frame(0).positions[v] - tube.parts[0].positions[v] - Vec3(0, 0, 5)).norm(), 1e-12);
+    EXPECT_LT((clip.frame(15).positions[v] - at_rest[v]).norm(), 1e-12);
+  }
 }
 
 TEST_F(Convert, FillsHolesAndFlipsComponents) {
