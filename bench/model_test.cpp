@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "bench/catalogue.h"
@@ -344,6 +345,20 @@ TEST(Models, LeaveNothingBehind) {
   cscd({"inspect", model("bvh/cmu_02_01_walk.bvh")});
   cscd({"inspect", model("horse.glb"), "--import-seconds", "0.01"});
   EXPECT_LE(left(), before);
+
+  // Those of processes that were killed go with the next import; those of living ones stay.
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  const fs::path dead = cache / ("import-" + std::to_string(child) + "-abcdef"),
+                 living = cache / ("import-" + std::to_string(getpid()) + "-abcdef");
+  fs::create_directories(dead);
+  fs::create_directories(living);
+  write(dead / "frames.h5", "half of it");
+  cscd({"inspect", model("fox_khronos.glb")});
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(living));
+  fs::remove_all(living);
 }
 
 TEST(Models, DefectiveOnesSayWhy) {

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "bench/catalogue.h"
 #include "bench/command.h"
@@ -59,8 +60,10 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
 SceneRecord describe(Input& input) {
   SceneRecord record;
   record.name = input.name;
-  for (const scenes::SceneSummary& scene : scenes::list_scenes())
-    if (scene.name == input.name) record.story = scene.story;
+  const bool is_file = std::filesystem::path(input.name).has_extension();  // it has no story
+  if (!is_file)
+    for (const scenes::SceneSummary& scene : scenes::list_scenes())
+      if (scene.name == input.name) record.story = scene.story;
   scenes::DigestSink digest;
   scenes::copy_frames(*input.clip, digest);
   record.digest = digest.text();
