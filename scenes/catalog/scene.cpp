@@ -109,8 +109,9 @@ Json parse_json(const std::string& text, const std::string& where) {
   }
 }
 
-// A scene with a base is a merge patch (RFC 7396) to that scene's file: objects merge, anything else
-// replaces. Story and digest are each scene's own.
+// A scene with a base is that scene's file, changed first by its patch (RFC 6902, which reaches single items
+// of lists) and then by what else it says (RFC 7396: objects merge, anything else replaces). Story and digest
+// are each scene's own.
 Json with_base(Json json, const std::string& where) {
   const auto named = json.is_object() ? json.find("base") : json.end();
   if (named == json.end()) return json;
@@ -122,6 +123,15 @@ Json with_base(Json json, const std::string& where) {
     throw InputError(where + ": its base " + file.string() + " has a base itself; name that");
   merged.erase("story");
   if (merged.contains("expected")) merged["expected"].erase("digest");
+  if (const auto patch = json.find("patch"); patch != json.end()) {
+    try {
+      merged.patch_inplace(*patch);
+    } catch (const Json::exception& error) {
+      throw InputError(where + ": its patch (RFC 6902) does not fit its base " + file.string() + ": " +
+                       error.what());
+    }
+    json.erase(patch);
+  }
   merged.merge_patch(json);
   return merged;
 }

@@ -171,7 +171,17 @@ TEST_F(Catalogue, TakesFromItsBaseWhatASceneDoesNotSay) {
   EXPECT_EQ(scene.expected.digest, "00");
   EXPECT_NE(scene.recipe, base.recipe);
 
+  put("variant", R"({"base": "small", "story": "It falls slowly. It is led by one end.",
+                     "patch": [{"op": "add", "path": "/effects/0/drag", "value": 0.25}],
+                     "expected": {"digest": "00"}})");
+  const std::vector<EffectCall> patched = load_scene("variant").effects;
+  ASSERT_EQ(patched.size(), base.effects.size());
+  EXPECT_EQ(patched[0].parameters.number("drag"), 0.25);
+
   const auto file = (root / "scenes" / "variant.json").string();
+  put("variant", R"({"base": "small", "patch": [{"op": "replace", "path": "/effects/9/drag", "value": 1}]})");
+  EXPECT_NE(message([] { load_scene("variant"); }).find("its patch (RFC 6902) does not fit"),
+            std::string::npos);
   put("variant", R"({"base": "small", "expected": {"digest": "00"}})");
   EXPECT_EQ(message([] { load_scene("variant"); }), file + ": story is missing; add it");
   put("variant", R"({"base": "small", "story": "A. B."})");

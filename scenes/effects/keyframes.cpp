@@ -65,6 +65,7 @@ const ParameterRow kRows[] = {
     {"start", ParameterKind::number, "frame before which the effect does nothing", false},
     {"end", ParameterKind::number, "frame after which it does nothing", false},
     {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
+    {"weight", ParameterKind::number, "factor on the whole effect, 1 by default", false},
     {"*", ParameterKind::table,
      "bones' names (* for any text, blanks between): frame, x, y, z: its rotation vector relative to its "
      "parent, in turns, "

@@ -11,6 +11,7 @@ Envelope Envelope::from(const Parameters& parameters) {
   envelope.start = parameters.number("start", envelope.start);
   if (parameters.has("end")) envelope.end = parameters.number("end");
   envelope.fade = parameters.number("fade", envelope.fade);
+  envelope.weight = parameters.number("weight", envelope.weight);
   if (!(envelope.end > envelope.start))
     throw InputError(parameters.where() + ": parameter end must be above start");
   return envelope;
@@ -23,7 +24,7 @@ double Envelope::at(double frame) const {
     const double t = since / fade;
     return t * t * (3 - 2 * t);
   };
-  return faded(frame - start) * faded(end - frame);
+  return weight * faded(frame - start) * faded(end - frame);
 }
 
 }  // namespace cscd::scenes

@@ -11,9 +11,10 @@ namespace cscd::scenes {
 struct Envelope {
   double start = 0;
   double end = std::numeric_limits<double>::infinity();
-  double fade = 0;  // how long either takes
+  double fade = 0;    // how long either takes
+  double weight = 1;  // in between
 
-  // Of the parameters start, end and fade, each optional. Throws InputError where they leave no time.
+  // Of the parameters start, end, fade and weight, each optional. Throws InputError where they leave no time.
   static Envelope from(const Parameters& parameters);
   double at(double frame) const;
 };

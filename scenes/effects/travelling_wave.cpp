@@ -81,6 +81,7 @@ EffectRow travelling_wave_row() {
       {"start", ParameterKind::number, "frame before which the effect does nothing", false},
       {"end", ParameterKind::number, "frame after which it does nothing", false},
       {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
+      {"weight", ParameterKind::number, "factor on the whole effect, 1 by default", false},
   };
   return {"travelling_wave", "runs waves along chains of bones", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
