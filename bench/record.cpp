@@ -158,6 +158,9 @@ void require_whole(const Record& record) {
 }  // namespace
 
 ordered_json to_json(const Record& record) {
+  ordered_json effects = ordered_json::array();
+  for (const scenes::EffectCost& effect : record.scene.effects)
+    effects.push_back({{"name", effect.name}, {"evaluations", effect.evaluations}, {"ms", effect.ms}});
   ordered_json strategies = ordered_json::array();
   for (const StrategyRecord& strategy : record.strategies) strategies.push_back(to_json(strategy));
   const SceneRecord& scene = record.scene;
@@ -172,7 +175,8 @@ ordered_json to_json(const Record& record) {
             {"vertices", scene.vertices},
             {"triangles", scene.triangles},
             {"bones", scene.bones},
-            {"frames", scene.frames}}},
+            {"frames", scene.frames},
+            {"effects", std::move(effects)}}},
           {"elementary", record.elementary},
           {"first_interval", record.first_interval},
           {"intervals", record.intervals},
@@ -195,6 +199,8 @@ Record parse_record(const std::string& text, const std::string& where) {
     const ordered_json& scene = document.at("scene");
     out.scene = {scene.at("name"),      scene.at("story"), scene.at("digest"), scene.at("vertices"),
                  scene.at("triangles"), scene.at("bones"), scene.at("frames")};
+    for (const ordered_json& effect : scene.at("effects"))
+      out.scene.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
     out.elementary = document.at("elementary");
     out.first_interval = document.at("first_interval");
     out.intervals = document.at("intervals");

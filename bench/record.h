@@ -13,6 +13,7 @@
 #include "bench/footprint.h"
 #include "core/detect/detector.h"
 #include "core/detect/verify.h"
+#include "scenes/catalog/generate.h"
 
 // What one run of the harness keeps (schema cscd.run/1): every raw sample of every stage of every interval of
 // every repetition, beside the counters, the digests and the verdict without which there are no samples.
@@ -67,6 +68,7 @@ struct VerificationRecord {
 struct SceneRecord {
   std::string name, story, digest;
   std::size_t vertices = 0, triangles = 0, bones = 0, frames = 0;
+  std::vector<scenes::EffectCost> effects = {};  // as its frames were generated; empty for files
 };
 
 struct Record {

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 
 #include "bench/catalogue.h"
@@ -15,12 +16,13 @@
 #include "bench/timing.h"
 #include "bench/verification.h"
 #include "core/base/error.h"
-#include "scenes/catalog/scene.h"
+#include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/digest.h"
 
 namespace cscd::bench {
 namespace {
 
+constexpr char kAllScenes[] = "all";
 constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 
 struct RunOptions {
@@ -60,10 +62,12 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
 SceneRecord describe(Input& input) {
   SceneRecord record;
   record.name = input.name;
-  const bool is_file = std::filesystem::path(input.name).has_extension();  // it has no story
-  if (!is_file)
-    for (const scenes::SceneSummary& scene : scenes::list_scenes())
-      if (scene.name == input.name) record.story = scene.story;
+  const bool is_file = input.import || std::filesystem::path(input.name).has_extension();
+  if (!is_file) {
+    const scenes::Scene scene = scenes::load_scene(input.name);
+    record.story = scene.story;
+    record.effects = scenes::effect_costs(scene);
+  }
   scenes::DigestSink digest;
   scenes::copy_frames(*input.clip, digest);
   record.digest = digest.text();
@@ -107,13 +111,10 @@ void print(const VerificationRecord& v, const std::string& timed) {
       static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
-void run(RunOptions options) {
+// Whether every strategy kept its promise.
+bool run_one(RunOptions options, OutputFile& output) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
-  for (const std::string& name : options.strategies)  // before anything is opened
-    if (strategies_in(name).empty()) strategy_named(name);
-  OutputFile output(options.output, options.force);
-
   Input input = open_input(options.scene, options.model);
   IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   if (options.smoke) {
@@ -154,7 +155,42 @@ void run(RunOptions options) {
   print(verified.record, options.elementary);
   record.verification = std::move(verified.record);
   output.commit(json_text(to_json(record)));
-  if (!ok) throw kVerificationFailed;
+  return ok;
+}
+
+// Every scene that there is, each to its own record in the folder named as output.
+bool run_all(const RunOptions& options) {
+  const std::filesystem::path folder = options.output;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
+                     "; choose another with --json");
+  std::vector<RunOptions> runs;
+  std::deque<OutputFile> outputs;  // what stands in the way of any is found before the work
+  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+    runs.push_back(options);
+    runs.back().scene = scene.name;
+    outputs.emplace_back(folder / (scene.name + ".json"), options.force);
+  }
+  bool ok = true;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
+    ok = run_one(runs[i], outputs[i]) && ok;
+  }
+  return ok;
+}
+
+void run(const RunOptions& options) {
+  elementary_test_named(options.elementary);
+  for (const std::string& name : options.strategies)  // before anything is opened
+    if (strategies_in(name).empty()) strategy_named(name);
+  if (options.scene == kAllScenes) {
+    if (!run_all(options)) throw kVerificationFailed;
+    return;
+  }
+  OutputFile output(options.output, options.force);
+  if (!run_one(options, output)) throw kVerificationFailed;
 }
 
 }  // namespace
@@ -165,6 +201,7 @@ void add_run(CLI::App& app) {
       "run",
       "Replay a scene with several culling strategies: verify their answers, then time them.\n\n"
       "  cscd run --scene rope --json rope.json\n"
+      "  cscd run --scene all --json records         a record of every scene into that folder\n"
       "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n\n"
       "First every strategy answers the verified intervals with the exact elementary test and is judged "
       "against\n"
@@ -196,7 +233,10 @@ void add_run(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the order in which strategies run")->capture_default_str();
   command->add_flag("--smoke", options->smoke, "16 intervals, 2 repetitions, every 4th interval verified");
-  command->add_option("--json", options->output, "where the record goes")->required();
+  command
+      ->add_option("--json", options->output,
+                   "where the record goes; with --scene all, the folder of the records")
+      ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { run(*options); });

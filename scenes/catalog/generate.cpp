@@ -1,5 +1,6 @@
 #include "scenes/catalog/generate.h"
 
+#include <chrono>
 #include <optional>
 
 #include "core/base/error.h"
@@ -15,10 +16,26 @@ void require_count(const Scene& scene, const std::string& what, std::size_t foun
                      ", the scene file expects " + std::to_string(expected) + "; correct one of them");
 }
 
+// Charges the time between two calls to the effect that was entered at the first.
+class EffectClock {
+ public:
+  explicit EffectClock(std::size_t effects) : ms_(effects + 1), running_(effects) {}
+  void enter(std::size_t effect) {
+    const auto now = std::chrono::steady_clock::now();
+    ms_[running_] += std::chrono::duration<double, std::milli>(now - since_).count();
+    running_ = effect, since_ = now;
+  }
+  double ms(std::size_t effect) const { return ms_[effect]; }
+
+ private:
+  std::vector<double> ms_;  // the last is of what lies between the effects of two frames
+  std::size_t running_;
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace
 
-Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress,
-                    const EffectSequence::Watch& watch) {
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress) {
   const Shape shape = make_shape(scene.shape, scene.shape_parameters);
   require_count(scene, "vertices", shape.positions.size(), scene.expected.vertices);
   require_count(scene, "triangles", shape.triangles.size(), scene.expected.triangles);
@@ -26,10 +43,11 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
   EffectSequence effects(scene.effects, shape, scene.substeps);
   FrameSink& sink = begin({shape.triangles, shape.positions.size(), shape.rig.parent, effects.predicts()});
 
+  EffectClock clock(effects.size());
   SceneState state(shape);
   FrameDigest digest;
   for (std::size_t frame = 0; frame < scene.frames; ++frame) {
-    if (frame > 0) effects.advance(state, static_cast<int>(frame), watch);
+    if (frame > 0) effects.advance(state, static_cast<int>(frame), [&](std::size_t i) { clock.enter(i); });
     const FrameView view{state.positions, state.bones};
     // The bones move as the animation has them, whatever the surface is kept from.
     const FrameView predicted{state.predicted, state.bones};
@@ -41,7 +59,7 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
 
   Generated generated;
   for (std::size_t i = 0; i < effects.size(); ++i)
-    generated.effects.push_back({std::string(effects.name(i)), effects.evaluations(i)});
+    generated.effects.push_back({std::string(effects.name(i)), effects.evaluations(i), clock.ms(i)});
   generated.digest = digest.text();
   return generated;
 }

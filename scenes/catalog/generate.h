@@ -14,13 +14,16 @@ namespace cscd::scenes {
 // Frames done so far, and how many there will be.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-// What generating took: which effects ran, how often, and the digest of the frames.
+// What one effect of a scene took: how often it ran, and the time of all that together.
+struct EffectCost {
+  std::string name;
+  std::uint64_t evaluations = 0;
+  double ms = 0;
+};
+
+// What generating took, and the digest of the frames.
 struct Generated {
-  struct EffectRecord {
-    std::string name;
-    std::uint64_t evaluations;
-  };
-  std::vector<EffectRecord> effects;  // those of the scene, in its order
+  std::vector<EffectCost> effects;  // those of the scene, in its order
   std::string digest;
 };
 
@@ -28,8 +31,7 @@ struct Generated {
 // frame by frame. Throws InputError when the shape's counts are not the expected ones. Does not judge the
 // digest.
 using BeginFrames = std::function<FrameSink&(ClipHeader header)>;
-Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {},
-                    const EffectSequence::Watch& watch = {});
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {});
 
 // Throws InputError when the frames are not those that the scene file promises.
 void require_expected_digest(const Scene& scene, const std::string& digest);

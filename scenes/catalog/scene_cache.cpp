@@ -1,7 +1,12 @@
 #include "scenes/catalog/scene_cache.h"
 
 #include <cstdlib>
+#include <fcntl.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "scenes/clip/digest.h"
@@ -25,12 +30,47 @@ std::optional<std::string> digest_of(const fs::path& file) {
   }
 }
 
-void generate_to_file(const Scene& scene, const fs::path& file, bool force, const Progress& progress) {
+fs::path costs_file(const Scene& scene) {
+  return cache_file(scene).replace_extension(".effects.json");
+}
+
+void write_costs(const Scene& scene, const Generated& generated) {
+  auto effects = nlohmann::ordered_json::array();
+  for (const EffectCost& effect : generated.effects)
+    effects.push_back({{"name", effect.name}, {"evaluations", effect.evaluations}, {"ms", effect.ms}});
+  std::ofstream(costs_file(scene)) << effects.dump(1) << "\n";
+}
+
+// Held while a cache is looked at and generated; the system lets go of it when the process ends.
+class CacheLock {
+ public:
+  explicit CacheLock(const fs::path& cache)
+      : file_(open(cache.string().append(".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
+    if (file_ >= 0) flock(file_, LOCK_EX);  // without one, the same is only generated twice
+  }
+  ~CacheLock() {
+    if (file_ >= 0) close(file_);
+  }
+  CacheLock(const CacheLock&) = delete;
+  CacheLock& operator=(const CacheLock&) = delete;
+
+ private:
+  int file_;
+};
+
+bool is_whole(const Scene& scene) {
+  std::error_code error;
+  return digest_of(cache_file(scene)) == scene.expected.digest && fs::exists(costs_file(scene), error);
+}
+
+void generate_to_cache(const Scene& scene, const Progress& progress) {
+  const fs::path file = cache_file(scene);
   std::optional<PointCacheWriter> writer;
   const Generated generated = run_scene(
-      scene, [&](ClipHeader header) -> FrameSink& { return writer.emplace(file, std::move(header), force); },
+      scene, [&](ClipHeader header) -> FrameSink& { return writer.emplace(file, std::move(header), true); },
       progress);
   require_expected_digest(scene, generated.digest);
+  write_costs(scene, generated);
   writer->finish();
 }
 
@@ -48,15 +88,30 @@ fs::path cache_file(const Scene& scene) {
 
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress) {
   const fs::path file = cache_file(scene);
-  if (digest_of(file) != scene.expected.digest) {
+  if (!is_whole(scene)) {
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     if (error)
       throw InputError(file.parent_path().string() + ": cannot be made: " + error.message() +
                        "; let CSCD_CACHE name a folder that can");
-    generate_to_file(scene, file, true, progress);
+    const CacheLock lock(file);
+    if (!is_whole(scene)) generate_to_cache(scene, progress);  // no other has meanwhile
   }
   return std::make_unique<PointCacheReader>(file);
+}
+
+std::vector<EffectCost> effect_costs(const Scene& scene) {
+  const fs::path file = costs_file(scene);
+  std::vector<EffectCost> costs;
+  try {
+    std::ifstream stream(file);
+    for (const nlohmann::json& effect : nlohmann::json::parse(stream))
+      costs.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(file.string() + ": cannot be read (" + error.what() +
+                     "); remove it, and the scene is generated anew");
+  }
+  return costs;
 }
 
 void export_scene(const Scene& scene, const fs::path& path, bool force, const Progress& progress) {

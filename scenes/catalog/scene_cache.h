@@ -19,8 +19,13 @@ std::filesystem::path cache_folder();
 std::filesystem::path cache_file(const Scene& scene);
 
 // The scene's frames, streamed from its cache. Generated first where the cache is missing, and again where it
-// is damaged; the digest is verified either way. `progress` tells of generating only.
+// is damaged; the digest is verified either way. Of several processes that miss the same cache, one generates
+// it. `progress` tells of generating only.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
+
+// What the effects of a scene took when its cache was generated; open_scene first. Throws InputError when the
+// file beside the cache that tells cannot be read.
+std::vector<EffectCost> effect_costs(const Scene& scene);
 
 // Writes exactly the frames that open_scene gives. Refuses a path that exists unless `force`.
 void export_scene(const Scene& scene, const std::filesystem::path& path, bool force,
