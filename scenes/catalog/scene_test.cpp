@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
@@ -222,6 +224,41 @@ TEST_F(Catalogue, GeneratesOnceAndAgainWhenTheCacheIsDamaged) {
   fs::resize_file(file, size / 2);
   EXPECT_EQ(generated(scene), 6u) << "cut short";
   EXPECT_EQ(generated(scene), 0u);
+}
+
+TEST_F(Catalogue, GeneratesOnceForProcessesThatMissTheSameCache) {
+  const Scene scene = load_scene("small");
+  const auto generated_slowly = [&] {
+    std::size_t frames = 0;
+    open_scene(scene, [&](std::size_t, std::size_t) { ++frames, usleep(20'000); });
+    return frames;
+  };
+  const pid_t child = fork();
+  if (child == 0) _exit(static_cast<int>(generated_slowly()));
+  const std::size_t frames = generated_slowly();
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(frames + static_cast<std::size_t>(WEXITSTATUS(status)), 6u);
+}
+
+TEST_F(Catalogue, KeepsWhatEachEffectTook) {
+  const Scene scene = load_scene("small");
+  open_scene(scene);
+  const std::vector<EffectCost> costs = effect_costs(scene);
+  ASSERT_EQ(costs.size(), 2u);
+  EXPECT_EQ(costs[0].name, "chain_dynamics");
+  EXPECT_EQ(costs[0].evaluations, 5u * static_cast<unsigned>(scene.substeps)) << "runs at every substep";
+  EXPECT_EQ(costs[1].name, "skinning_linear");
+  EXPECT_EQ(costs[1].evaluations, 5u) << "runs once a frame";
+  for (const EffectCost& cost : costs) EXPECT_GT(cost.ms, 0) << cost.name;
+
+  const fs::path file = cache_file(scene).replace_extension(".effects.json");
+  std::ofstream(file) << "[{";
+  EXPECT_NE(message([&] { effect_costs(scene); }).find("remove it, and the scene is generated anew"),
+            std::string::npos);
+  fs::remove(file);
+  EXPECT_EQ(generated(scene), 6u) << "a cache that does not tell is none";
 }
 
 TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
