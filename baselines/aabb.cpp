@@ -1,7 +1,7 @@
 #include "baselines/aabb.h"
 
-#include "baselines/plain_culler.h"
 #include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
 
 // Idea: a box of three slabs is half the memory of a 16-DOP and quicker to refit and to compare, but lets
 // more pairs through.

@@ -1,7 +1,7 @@
 #include "baselines/base.h"
 
-#include "baselines/plain_culler.h"
 #include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
 
 namespace cscd {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/detect/compose.h"
-#include "core/hierarchy/descent.h"
+#include "core/detect/plain_culler.h"
 
 // Idea: a feature pair is carried by many triangle pairs (a vertex and a face by about six, two edges by
 // four) and need be tested for one of them only, its representative; and of triangle pairs that share a
@@ -75,32 +75,6 @@ class Representatives : public FeatureAssignment {
   std::vector<FeaturePair> orphans_;
 };
 
-// All triangle pairs without a common vertex whose bounds overlap.
-class SelfCcdCuller : public Culler {
- public:
-  explicit SelfCcdCuller(const Setup& setup)
-      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
-
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
-
-  CullCounts cull(TrianglePairSink& sink) override {
-    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-    const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
-    const auto emit = [&](NodeIndex a, NodeIndex b) {
-      const TriangleId t = tree_.triangle(a), u = tree_.triangle(b);
-      if (!share_vertex(mesh_.corners(t), mesh_.corners(u))) sink.add(t, u);
-    };
-    CullCounts counts;
-    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_none, emit);
-    return counts;
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
-};
-
 }  // namespace
 
 std::unique_ptr<const FeatureAssignment> representative_triangles(const TriangleMesh& mesh) {
@@ -110,7 +84,8 @@ std::unique_ptr<const FeatureAssignment> representative_triangles(const Triangle
 Prepared make_selfccd(const Setup& setup) {
   PairOptions options;
   options.assignment = representative_triangles(setup.mesh);
-  return {compose(std::make_unique<SelfCcdCuller>(setup), setup.mesh, setup.elementary, std::move(options)),
+  return {compose(std::make_unique<PlainCuller<Kdop16, false>>(setup), setup.mesh, setup.elementary,
+                  std::move(options)),
           {}};
 }
 

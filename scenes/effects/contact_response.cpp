@@ -3,34 +3,13 @@
 #include "core/base/error.h"
 #include "core/detect/compose.h"
 #include "core/detect/embedding.h"
+#include "core/detect/plain_culler.h"
 #include "core/engine/drvbc.h"
-#include "core/hierarchy/descent.h"
 #include "scenes/effects/contact_step.h"
 #include "scenes/effects/effect.h"
 
 namespace cscd::scenes {
 namespace {
-
-// All pairs whose swept bounds overlap, so that every contact is found.
-class EveryOverlap final : public Culler {
- public:
-  explicit EveryOverlap(const Setup& setup)
-      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
-  CullCounts cull(TrianglePairSink& sink) override {
-    CullCounts counts;
-    counts.bvot = self_descent(
-        tree_, bounds_, 0, [&](NodeIndex node) { return tree_.is_leaf(node); },
-        [](NodeIndex, NodeIndex) { return false; },
-        [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); });
-    return counts;
-  }
-
- private:
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
-};
 
 // Makes the animated surface feel itself. What the effects before have made is where the surface is drawn to,
 // its target; the surface proper starts from where the last step has left it. The predicted end of a step is
@@ -47,7 +26,7 @@ class ContactResponse final : public Effect {
         setup_{mesh_, shape.positions, &shape.rig, *find_elementary_test("exact")},
         embedding_(mesh_, shape.positions),
         step_(mesh_, shape.positions, first(setup_),
-              compose(std::make_unique<EveryOverlap>(setup_), mesh_, setup_.elementary,
+              compose(std::make_unique<PlainCuller<Kdop16>>(setup_), mesh_, setup_.elementary,
                       {.relative_boxes = true}),
               options(p)),
         surface_(shape.positions),

@@ -3,12 +3,13 @@
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
 #include "core/hierarchy/descent.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd {
 
-// All triangle pairs whose bounds overlap, by one descent of one hierarchy. A "no" is a proof because the
-// bounds are rounded outward.
-template <class Volume>
+// All triangle pairs whose bounds overlap, by one descent of one hierarchy; or, where `kAdjacent` is false,
+// only those without a common vertex. A "no" is a proof because the bounds are rounded outward.
+template <class Volume, bool kAdjacent = true>
 class PlainCuller : public Culler {
  public:
   explicit PlainCuller(const Setup& setup)
@@ -19,7 +20,10 @@ class PlainCuller : public Culler {
   CullCounts cull(TrianglePairSink& sink) override {
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
     const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
-    const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
+    const auto emit = [&](NodeIndex a, NodeIndex b) {
+      const TriangleId t = tree_.triangle(a), u = tree_.triangle(b);
+      if (kAdjacent || !share_vertex(mesh_.corners(t), mesh_.corners(u))) sink.add(t, u);
+    };
     CullCounts counts;
     counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_none, emit);
     return counts;
