@@ -6,66 +6,20 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <random>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "bench/catalogue.h"
 #include "bench/input.h"
+#include "bench/test_program.h"
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
-#include "scenes/catalog/scene.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/character/test_gltf.h"
-#include "scenes/clip/test_sparse_cache.h"
-#include "scenes/sandbox/run_limited.h"
 
-// Model files from end to end: real characters, which are not part of the repository ($CSCD_MODELS, else
-// ../shared/models beside it; tests skip where they are absent), and the same files damaged.
+// Model files from end to end: real characters, and some that the tests write.
 namespace cscd::bench {
 namespace {
-
-namespace fs = std::filesystem;
-using scenes::Limits;
-using scenes::Outcome;
-
-fs::path models_folder() {
-  if (const char* named = std::getenv("CSCD_MODELS")) return named;
-  return scenes::scenes_folder().parent_path() / ".." / "shared" / "models";
-}
-
-std::string model(const std::string& name) {
-  return (models_folder() / name).string();
-}
-
-bool absent(const std::string& name) {
-  std::error_code error;
-  return !fs::exists(model(name), error);
-}
-
-Outcome cscd(const std::vector<std::string>& arguments, const Limits& limits = {}) {
-  return scenes::run_limited(fs::read_symlink("/proc/self/exe").parent_path() / "cscd", arguments, limits);
-}
-
-// A folder that is gone after the test.
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / ("cscd-model-test-" + std::to_string(getpid()));
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-};
-
-void write(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 constexpr const char* kUsable[] = {"cesium_man.glb",
                                    "fox_khronos.glb",
@@ -437,203 +391,6 @@ TEST(Models, AnswersDoNotFillTheMemory) {
   EXPECT_LT(outcome.peak_bytes, std::size_t{200} << 20);
   EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path), {}), 1);
 #endif
-}
-
-// What a reader of untrusted files may do: answer, or refuse in one line, within its limits.
-class Hostile : public testing::Test {
- protected:
-  static constexpr double kImportSeconds = 5;
-  static constexpr std::size_t kImportMiB = 1024;
-
-  void attack(const std::string& file) {
-    const bool ask = ++runs % 2 == 0;
-    std::vector<std::string> arguments{ask ? "query" : "inspect", file};
-    if (ask)
-      arguments.insert(arguments.end(), {"--frames", "0:1", "--interval-seconds", "10", "--json",
-                                         scratch / "out.json", "--force"});
-    arguments.insert(arguments.end(), {"--import-seconds", std::to_string(kImportSeconds), "--import-memory",
-                                       std::to_string(kImportMiB)});
-    Limits limits;
-    limits.memory_bytes = std::size_t{2 * kImportMiB} << 20;
-    limits.seconds = 30;
-    const Outcome outcome = cscd(arguments, limits);
-    slowest = std::max(slowest, outcome.seconds);
-    largest = std::max(largest, outcome.peak_bytes);
-    ASSERT_EQ(outcome.end, Outcome::End::exited) << to_text(outcome) << kept(file);
-    ASSERT_TRUE(outcome.code == 0 || outcome.code == 2) << to_text(outcome) << kept(file);
-    accepted += outcome.code == 0;
-    if (outcome.code == 0) {
-      EXPECT_EQ(outcome.errors, "") << file;
-    } else {
-      EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << file << outcome.errors;
-      EXPECT_TRUE(outcome.errors.starts_with("cscd: ")) << file << outcome.errors;
-      crashed += outcome.errors.find("crashed") != std::string::npos;
-      timed_out += outcome.errors.find("-seconds") != std::string::npos;
-    }
-#if !defined(__SANITIZE_ADDRESS__)
-    EXPECT_LT(outcome.peak_bytes, (kImportMiB + 256) << 20) << file;
-#endif
-  }
-
-  void report(const char* what) const {
-    std::printf(
-        "%s: %zu runs, %zu accepted, %zu refused, %zu of them lost importers, %zu late; slowest %.1f s, "
-        "largest %zu MiB\n",
-        what, runs, accepted, runs - accepted, crashed, timed_out, slowest, largest >> 20);
-  }
-
-  // A file that did it outlives the test.
-  std::string kept(const std::string& file) const {
-    const fs::path copy =
-        fs::temp_directory_path() / ("cscd-hostile-" + std::to_string(getpid()) + "-" + std::to_string(runs) +
-                                     fs::path(file).extension().string());
-    std::error_code error;
-    fs::copy_file(file, copy, error);
-    return error ? ": " + file : "; kept as " + copy.string();
-  }
-
-  const Scratch scratch;
-  std::size_t runs = 0, accepted = 0, crashed = 0, timed_out = 0, largest = 0;
-  double slowest = 0;
-};
-
-std::string flipped(std::string bytes, std::mt19937_64& random) {
-  const std::size_t flips = std::size_t{1} << (random() % 7);
-  // Half of them all over the file, half near its beginning, where headers and counts stand.
-  const std::size_t reach = random() % 2 ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096);
-  for (std::size_t i = 0; i < flips; ++i) bytes[random() % reach] ^= static_cast<char>(1u << (random() % 8));
-  return bytes;
-}
-
-std::string scribbled(std::string bytes, std::mt19937_64& random) {
-  const std::size_t first = random() % bytes.size(),
-                    count = std::min<std::size_t>(random() % 64 + 1, bytes.size() - first);
-  const bool same = random() % 2;
-  const char value = static_cast<char>(random() % 3 == 0 ? 0xff : random());
-  for (std::size_t i = first; i < first + count; ++i) bytes[i] = same ? value : static_cast<char>(random());
-  return bytes;
-}
-
-// The shared models, and those of Debian's assimp-testmodels.
-std::vector<fs::path> samples() {
-  std::vector<fs::path> files;
-  std::error_code ignored;
-  for (const fs::path& folder : {models_folder(), fs::path("/usr/share/assimp/models")})
-    for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-      std::string kind = entry.path().extension();
-      for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      const bool sample = kind == ".glb" || kind == ".gltf" || kind == ".fbx" || kind == ".x" ||
-                          kind == ".dae" || kind == ".bvh";
-      const std::uintmax_t bytes = sample && entry.is_regular_file(ignored) ? entry.file_size(ignored) : 0;
-      if (bytes > 0 && bytes < 2'000'000) files.push_back(entry.path());
-    }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-// $CSCD_HOSTILE damaged copies of each sample; a few without it.
-TEST_F(Hostile, DamagedSamplesNeverCrashHangOrFillTheMemory) {
-  const char* asked = std::getenv("CSCD_HOSTILE");
-  const std::size_t copies = asked ? static_cast<std::size_t>(std::atoll(asked)) : 4;
-  const std::vector<fs::path> files = samples();
-  if (files.empty()) GTEST_SKIP() << "no samples in " << models_folder();
-  std::mt19937_64 random(2014);
-  for (const fs::path& file : files) {
-    const std::string whole = read(file);
-    const std::string damaged = scratch / ("damaged" + file.extension().string());
-    for (std::size_t i = 0; i < copies && !HasFatalFailure(); ++i) {
-      SCOPED_TRACE(file.string() + ", copy " + std::to_string(i));
-      const std::size_t kind = i % 4;
-      if (kind == 0) write(damaged, whole.substr(0, random() % (i % 8 == 0 ? whole.size() : 256)));
-      if (kind == 1 || kind == 2) write(damaged, flipped(whole, random));
-      if (kind == 3) write(damaged, scribbled(whole, random));
-      attack(damaged);
-    }
-  }
-  report("damaged samples");
-}
-
-TEST_F(Hostile, WhatIsNoModelAtAllIsRefused) {
-  const std::string glb = std::string("glTF\x02\0\0\0", 8);
-  const auto word = [](std::uint32_t n) {
-    std::string bytes(4, '\0');
-    for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>(n >> (8 * i));
-    return bytes;
-  };
-  std::string noise(100'000, '\0');
-  std::mt19937 random(1);
-  for (char& c : noise) c = static_cast<char>(random());
-  std::string deep = R"({"asset":{"version":"2.0"},"scenes":)";
-  for (int i = 0; i < 200'000; ++i) deep += '[';
-  const std::vector<std::pair<std::string, std::string>> files = {
-      {"empty.glb", ""},
-      {"empty.fbx", ""},
-      {"noise.glb", noise},
-      {"noise.fbx", noise},
-      {"noise.dae", noise},
-      {"noise.x", noise},
-      {"noise.bvh", noise},
-      {"noise.xyz", noise},
-      {"noise.h5", noise},
-      {"huge.glb", glb + word(0xffffffff) + word(0xfffffff0) + "JSON{}"},
-      {"huge.fbx", std::string("Kaydara FBX Binary  \0\x1a\0", 23) + word(7400) + word(0xfffffff0) +
-                       word(0xffffffff) + word(0xffffffff)},
-      {"count.gltf",
-       R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4000000000}],"bufferViews":[{"buffer":0,"byteLength":4000000000}],"accessors":[{"bufferView":0,"componentType":5126,"count":333333333,"type":"VEC3"}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0})"},
-      {"outside.gltf",
-       R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":100,"uri":"../../../../../../../etc/passwd"}]})"},
-      {"device.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":100,"uri":"/dev/zero"}]})"},
-      {"deep.gltf", deep},
-      {"deep.dae", [] {
-         std::string text = "<COLLADA version=\"1.4.1\">";
-         for (int i = 0; i < 100'000; ++i) text += "<node>";
-         return text;
-       }()}};
-  for (const auto& [name, bytes] : files) {
-    SCOPED_TRACE(name);
-    write(scratch.path / name, bytes);
-    attack(scratch / name);
-    attack(scratch / name);
-  }
-  // Not even opened: it would block.
-  ASSERT_EQ(mkfifo((scratch / "pipe.glb").c_str(), 0600), 0);
-  attack(scratch / "pipe.glb");
-  fs::create_directories(scratch / "folder.glb");
-  attack(scratch / "folder.glb");
-  attack(scratch / "absent.glb");
-  attack("/dev/zero");
-  write(scratch.path / "large.fbx", "");
-  fs::resize_file(scratch.path / "large.fbx", std::uintmax_t{1} << 40);
-  attack(scratch / "large.fbx");
-  EXPECT_EQ(accepted, 0u);
-  report("no models");
-}
-
-// 20 GB of frames, nearly all of them a hole in the file, at both ends of the clip.
-TEST(LargeClips, AreStreamed) {
-  const Scratch scratch;
-  const std::string file = scratch / "large.h5";
-  const test::Shape sphere = test::icosphere(5);
-  constexpr hsize_t frames = 82'000;
-  const hsize_t stored[] = {0, 1, 2, frames - 2, frames - 1};
-  scenes::write_sparse_cache(file, sphere, frames, stored);
-  ASSERT_GT(frames * sphere.positions.size() * sizeof(Vec3), 20'000'000'000u);
-  Limits limits;
-  limits.memory_bytes = std::size_t{1} << 30;
-  for (const char* range : {"0:2", "81998:81999"}) {
-    const Outcome outcome =
-        cscd({"query", file, "--frames", range, "--json", scratch / "out.json", "--force"}, limits);
-    ASSERT_EQ(outcome.end, Outcome::End::exited) << to_text(outcome);
-    EXPECT_EQ(outcome.code, 0) << outcome.errors;
-#if !defined(__SANITIZE_ADDRESS__)
-    EXPECT_LT(outcome.peak_bytes, std::size_t{200} << 20);
-#endif
-    const auto answer = nlohmann::json::parse(read(scratch / "out.json"));
-    for (const auto& interval : answer["intervals"]) {
-      EXPECT_EQ(interval["starts_embedded"], true) << "the frame that is stored there";
-      EXPECT_EQ(interval["collides"], false);
-    }
-  }
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "scenes/catalog/scene.h"
+#include "scenes/sandbox/run_limited.h"
+
+// The program from outside: run with arguments and limits, in a folder of its own, on the shared models,
+// which are not part of the repository ($CSCD_MODELS, else ../shared/models beside it; tests skip where they
+// are absent).
+namespace cscd::bench {
+
+namespace fs = std::filesystem;
+using scenes::Limits;
+using scenes::Outcome;
+
+inline fs::path models_folder() {
+  if (const char* named = std::getenv("CSCD_MODELS")) return named;
+  return scenes::scenes_folder().parent_path() / ".." / "shared" / "models";
+}
+
+inline std::string model(const std::string& name) {
+  return (models_folder() / name).string();
+}
+
+inline bool absent(const std::string& name) {
+  std::error_code error;
+  return !fs::exists(model(name), error);
+}
+
+inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& limits = {}) {
+  return scenes::run_limited(fs::read_symlink("/proc/self/exe").parent_path() / "cscd", arguments, limits);
+}
+
+// A folder that is gone after the test.
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / ("cscd-model-test-" + std::to_string(getpid()));
+  Scratch() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Scratch() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+};
+
+inline void write(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+inline std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace cscd::bench
