@@ -15,7 +15,14 @@ std::span<const Strategy> strategies();
 const Strategy& strategy_named(std::string_view name);
 // The rows of a group; those without one for "".
 std::vector<const Strategy*> strategies_in(std::string_view group);
+
+// All elementary tests: those of the core, and those of packages where they are there.
+std::span<const ElementaryTest> all_elementary_tests();
+// A row by its name, or one with other parameters: NAME@TOLERANCE or NAME@TOLERANCE:STEPS, as in
+// inclusion@1e-4:1000. Lives as long as the program. Throws InputError that lists the known names.
 const ElementaryTest& elementary_test_named(std::string_view name);
+// Several by names with commas between them; `all` stands for every row.
+std::vector<const ElementaryTest*> elementary_tests_named(std::string_view names);
 
 // The complete strategy with the fewest demands that is not quadratic: what stands in where the start of an
 // interval is not embedded, and the reference that others are verified against.

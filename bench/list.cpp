@@ -40,11 +40,15 @@ json strategies_json() {
 
 json tests_json() {
   json rows = json::array();
-  for (const ElementaryTest& test : elementary_tests())
+  for (const ElementaryTest& test : all_elementary_tests()) {
     rows.push_back({{"name", test.name},
                     {"source", test.source},
                     {"apart_is_proof", test.apart_is_proof},
                     {"contact_is_proof", test.contact_is_proof}});
+    if (test.parameters.tolerance >= 0) rows.back()["tolerance"] = test.parameters.tolerance;
+    if (test.parameters.tolerance >= 0) rows.back()["tolerance_is"] = test.tolerance;
+    if (test.parameters.steps >= 0) rows.back()["steps"] = test.parameters.steps;
+  }
   return rows;
 }
 

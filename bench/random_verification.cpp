@@ -17,10 +17,10 @@ constexpr ElementaryTest kPutOff{"put off",
                                  "everything is undecided",
                                  false,
                                  false,
-                                 [](const MovingVertexFace&) -> Answer {
+                                 [](const MovingVertexFace&, const TestParameters&) -> Answer {
                                    return {Verdict::undecided, 0};
                                  },
-                                 [](const MovingEdgeEdge&) -> Answer {
+                                 [](const MovingEdgeEdge&, const TestParameters&) -> Answer {
                                    return {Verdict::undecided, 0};
                                  }};
 

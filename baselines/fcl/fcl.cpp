@@ -6,13 +6,13 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/kDOP.h>
 #include <fcl/math/bv/utility.h>
-#include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_continuous_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "baselines/fcl/fcl_elementary.h"
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
 #include "core/detect/feature_pair_set.h"
@@ -44,7 +44,6 @@ namespace {
 using Volume = fcl::KDOP<double, 16>;
 using Model = fcl::BVHModel<Volume>;
 using FclTraversal = fcl::detail::MeshContinuousCollisionTraversalNode<Volume>;
-using Kernel = fcl::detail::Intersect<double>;
 
 // Keeps the leaves instead of testing them.
 class Traversal : public FclTraversal {
@@ -115,26 +114,13 @@ class FclDetector : public Detector {
     for (const auto& reported : traversal_.pairs) {
       const TrianglePair pair{TriangleId{reported.id1}, TriangleId{reported.id2}};
       for_each_carried(mesh_, pair, true, [&](const FeaturePair& features) {
-        double time = 0;
-        if (met_.insert(features) && touch(motion, features, time))
-          out.contacts.push_back({features, Verdict::contact, time});
+        if (!met_.insert(features)) return;
+        const Answer answer = ask(test_, mesh_, motion, features);
+        if (answer.verdict == Verdict::contact)
+          out.contacts.push_back({features, answer.verdict, answer.time});
       });
     }
   }
-  bool touch(const Motion& motion, const FeaturePair& pair, double& time) const {
-    Vec3 where;
-    if (pair.kind == FeaturePair::Kind::vertex_face) {
-      const auto q = vertex_face(mesh_, motion, VertexId{pair.a}, TriangleId{pair.b});
-      return Kernel::intersect_VF(q.corner[0].start, q.corner[1].start, q.corner[2].start, q.vertex.start,
-                                  q.corner[0].end, q.corner[1].end, q.corner[2].end, q.vertex.end, &time,
-                                  &where);
-    }
-    const auto q = edge_edge(mesh_, motion, EdgeId{pair.a}, EdgeId{pair.b});
-    return Kernel::intersect_EE(q.first[0].start, q.first[1].start, q.second[0].start, q.second[1].start,
-                                q.first[0].end, q.first[1].end, q.second[0].end, q.second[1].end, &time,
-                                &where);
-  }
-
   const TriangleMesh& mesh_;
   StageClock clock_;
   std::vector<Vec3> positions_;  // as FCL takes them
@@ -142,6 +128,7 @@ class FclDetector : public Detector {
   Traversal traversal_;
   fcl::CollisionRequest<double> request_;
   FeaturePairSet met_;
+  const ElementaryTest test_ = fcl_elementary_test();
 };
 
 }  // namespace

@@ -51,11 +51,11 @@ const ElementaryTest kRecorder{
     "",
     false,
     false,
-    [](const MovingVertexFace& q) {
+    [](const MovingVertexFace& q, const TestParameters&) {
       ++g_asked[{q.vertex.start.x(), q.corner[0].start.x(), q.corner[1].start.x(), q.corner[2].start.x()}];
       return Answer{Verdict::apart, 0};
     },
-    [](const MovingEdgeEdge& q) {
+    [](const MovingEdgeEdge& q, const TestParameters&) {
       ++g_asked[{-1, q.first[0].start.x(), q.first[1].start.x(), q.second[0].start.x(),
                  q.second[1].start.x()}];
       return Answer{Verdict::apart, 0};
@@ -254,10 +254,10 @@ TEST(Compose, UndecidedPairsAreKept) {
                              "",
                              false,
                              false,
-                             [](const MovingVertexFace&) {
+                             [](const MovingVertexFace&, const TestParameters&) {
                                return Answer{Verdict::undecided, 0.5};
                              },
-                             [](const MovingEdgeEdge&) {
+                             [](const MovingEdgeEdge&, const TestParameters&) {
                                return Answer{Verdict::apart, 0};
                              }};
   ContactSet out;

@@ -85,11 +85,11 @@ TEST(Ask, FindsTheFeaturesOfThePair) {
                                 "",
                                 false,
                                 false,
-                                [](const MovingVertexFace& q) {
+                                [](const MovingVertexFace& q, const TestParameters&) {
                                   asked_vf = q;
                                   return Answer{Verdict::contact, 0.25};
                                 },
-                                [](const MovingEdgeEdge& q) {
+                                [](const MovingEdgeEdge& q, const TestParameters&) {
                                   asked_ee = q;
                                   return Answer{Verdict::undecided, 0.5};
                                 }};

@@ -1,8 +1,11 @@
 #include <array>
 
+#include "core/elementary/additive.h"
+#include "core/elementary/cubic.h"
 #include "core/elementary/elementary_test.h"
 #include "core/elementary/exact.h"
 #include "core/elementary/filter.h"
+#include "core/elementary/inclusion.h"
 #include "core/elementary/newton.h"
 #include "core/elementary/relative_box.h"
 
@@ -18,11 +21,37 @@ Answer filtered_referee(const Query& query) {
 }
 
 constexpr std::array kTests = {
-    ElementaryTest{"newton",
-                   "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
-                   false, newton_vertex_face, newton_edge_edge},
+    ElementaryTest{
+        "newton", "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
+        false, plain<MovingVertexFace, newton_vertex_face>, plain<MovingEdgeEdge, newton_edge_edge>},
     ElementaryTest{"exact", "the referee: exact arithmetic behind certified filters", true, true,
-                   filtered_referee, filtered_referee},
+                   plain<MovingVertexFace, filtered_referee>, plain<MovingEdgeEdge, filtered_referee>},
+    ElementaryTest{
+        "cubic",
+        "closed root finding on the coplanarity cubic, distance at the roots (Bridson et al. 2002)",
+        false,
+        false,
+        cubic_vertex_face,
+        cubic_edge_edge,
+        {.tolerance = 1e-6},
+        "distance that counts as touching, in extents of the query"},
+    ElementaryTest{
+        "inclusion",
+        "inclusion-based root finding over (t, u, v) with an error bound (Snyder 1992, Wang et al. 2021)",
+        true,
+        false,
+        inclusion_vertex_face,
+        inclusion_edge_edge,
+        {.tolerance = 1e-6, .steps = 20'000},
+        "distance that counts as touching, along each axis, in extents of the query"},
+    ElementaryTest{"additive",
+                   "conservative advancement by distance over relative displacement (Li et al. 2021)",
+                   false,
+                   false,
+                   additive_vertex_face,
+                   additive_edge_edge,
+                   {.tolerance = 0.1, .steps = 10'000},
+                   "share of the starting distance that counts as touching"},
 };
 
 }  // namespace

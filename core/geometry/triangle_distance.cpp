@@ -2,24 +2,12 @@
 
 #include <algorithm>
 
+#include "core/geometry/feature_distance.h"
+
 // Two triangles that do not cross are nearest at a vertex and a face or at two edges, so the least of six and
 // nine such distances is theirs. If they cross, an edge of one pierces the other.
 namespace cscd {
 namespace {
-
-// Closest points of two segments (Ericson, "Real-Time Collision Detection", 2005, 5.1.9).
-double squared_distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
-  const Vec3 p = p1 - p0, q = q1 - q0, r = p0 - q0;
-  const double a = p.squaredNorm(), e = q.squaredNorm(), b = p.dot(q), c = p.dot(r), f = q.dot(r);
-  const double determinant = a * e - b * b;
-  double s = determinant > 0 ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
-  double t = e > 0 ? (b * s + f) / e : 0.0;
-  if (t < 0 || t > 1 || e == 0) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = a > 0 ? std::clamp((b * t - c) / a, 0.0, 1.0) : 0.0;
-  }
-  return (r + s * p - t * q).squaredNorm();
-}
 
 // On which side of each edge of the triangle, seen along its normal, a point of its plane lies.
 bool above_face(const Vec3& p, const TriangleCorners& t, const Vec3& normal) {
@@ -62,7 +50,7 @@ double triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {
   double least = (a[0] - b[0]).squaredNorm();
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
-      least = std::min(least, squared_distance(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+      least = std::min(least, squared_segment_distance(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
   least = to_face(a, Faced(b), least);
   least = to_face(b, Faced(a), least);
   return std::sqrt(least);

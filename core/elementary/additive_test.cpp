@@ -1,0 +1,61 @@
+#include "core/elementary/additive.h"
+
+#include <gtest/gtest.h>
+
+#include "core/elementary/exact.h"
+#include "core/elementary/test_queries.h"
+
+namespace cscd {
+namespace {
+
+using test::query_of;
+using test::QueryMaker;
+
+constexpr TestParameters kUsual{.tolerance = 0.1, .steps = 10'000};
+
+MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
+  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
+  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
+}
+
+TEST(Additive, FindsWhatCrossesAndIsNeverLate) {
+  QueryMaker make{3};
+  for (int i = 0; i < 2000; ++i) {
+    const double t = make.uniform(0.01, 0.99), u = make.uniform(0.01, 0.49), v = make.uniform(0.01, 0.49);
+    const auto check = [](const Answer& answer, const auto& truth) {
+      ASSERT_TRUE(truth);
+      EXPECT_EQ(answer.verdict, Verdict::contact);
+      EXPECT_LE(answer.time, truth->hi);
+    };
+    const auto vf = query_of<MovingVertexFace>(test::vertex_meets_face(make, t, u, v));
+    const auto ee = query_of<MovingEdgeEdge>(test::edge_meets_edge(make, t, u, v));
+    check(additive_vertex_face(vf, kUsual), exact::first_contact(vf));
+    check(additive_edge_edge(ee, kUsual), exact::first_contact(ee));
+  }
+}
+
+TEST(Additive, TheToleranceIsAShareOfTheStartingDistance) {
+  // Falls from a height of 1 to one of 0.05 above the face, all of it approach.
+  const MovingVertexFace query = against_triangle({1, 1, 1}, {1, 1, 0.05});
+  EXPECT_EQ(additive_vertex_face(query, kUsual).verdict, Verdict::apart) << "the filter's";
+  const MovingVertexFace beside = against_triangle({-0.05, 1, 1}, {-0.05, 1, -1});
+  ASSERT_FALSE(exact::first_contact(beside));
+  EXPECT_EQ(additive_vertex_face(beside, kUsual).verdict, Verdict::contact);
+  EXPECT_EQ(additive_vertex_face(beside, {.tolerance = 0.01, .steps = 10'000}).verdict, Verdict::apart);
+}
+
+TEST(Additive, ContactAtTheStartAndStandingStill) {
+  const Answer touching = additive_vertex_face(against_triangle({1, 1, 0}, {1, 1, 1}), kUsual);
+  EXPECT_EQ(touching.verdict, Verdict::contact);
+  EXPECT_EQ(touching.time, 0);
+  EXPECT_EQ(additive_vertex_face(against_triangle({9, 9, 0}, {9, 9, 0}), kUsual).verdict, Verdict::apart);
+}
+
+TEST(Additive, StopsAtTheLimitWithoutAnAnswer) {
+  const Answer answer = additive_vertex_face(against_triangle({1, 1, 1}, {1, 1, -1}), {1e-6, 2});
+  EXPECT_EQ(answer.verdict, Verdict::undecided);
+  EXPECT_LE(answer.time, 0.5);
+}
+
+}  // namespace
+}  // namespace cscd

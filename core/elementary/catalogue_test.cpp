@@ -1,0 +1,140 @@
+// What the rows of the catalogue promise, held against the referee; a new row is tested by being there.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/elementary/elementary_test.h"
+#include "core/elementary/exact.h"
+#include "core/elementary/test_queries.h"
+
+namespace cscd {
+namespace {
+
+using test::FourMovingPoints;
+using test::query_of;
+using test::QueryMaker;
+
+struct Family {
+  const char* name;
+  int count;
+  std::function<FourMovingPoints(QueryMaker&, bool vertex_face)> make;
+};
+
+FourMovingPoints crossing(QueryMaker& make, bool vertex_face, double hair) {
+  const double t = make.uniform(0.05, 0.95), along = make.uniform(0.1, 0.9);
+  return vertex_face ? test::vertex_meets_face(make, t, hair, along * (1 - hair))
+                     : test::edge_meets_edge(make, t, hair, along);
+}
+FourMovingPoints moved(FourMovingPoints points, const Vec3& start, const Vec3& end) {
+  for (MovingPoint& p : points) p = {p.start + start, p.end + end};
+  return points;
+}
+FourMovingPoints scaled(FourMovingPoints points, double factor) {
+  for (MovingPoint& p : points) p = {factor * p.start, factor * p.end};
+  return points;
+}
+
+const std::vector<Family> kFamilies = {
+    {"any", 1500, [](QueryMaker& make, bool) { return make.any(); }},
+    {"crossing", 500, [](QueryMaker& make, bool vf) { return crossing(make, vf, 0.3); }},
+    {"grazing", 500,
+     [](QueryMaker& make, bool vf) { return crossing(make, vf, make.below(2) ? 1e-7 : -1e-7); }},
+    {"lattice", 1500, [](QueryMaker& make, bool) { return make.lattice(1 + make.below(3)); }},
+    {"far from the origin", 500,
+     [](QueryMaker& make, bool vf) {
+       const Vec3 far = 1e3 * make.vector();
+       return moved(crossing(make, vf, make.uniform(0, 0.5)), far, far);
+     }},
+    {"fast common motion", 500,
+     [](QueryMaker& make, bool vf) {
+       return moved(crossing(make, vf, make.uniform(0, 0.5)), Vec3::Zero(), 1e6 * make.vector());
+     }},
+    {"tiny", 300,
+     [](QueryMaker& make, bool vf) { return scaled(crossing(make, vf, make.uniform(-0.1, 0.5)), 1e-300); }},
+    {"huge", 300,
+     [](QueryMaker& make, bool vf) { return scaled(crossing(make, vf, make.uniform(-0.1, 0.5)), 1e150); }},
+    {"subnormal", 300, [](QueryMaker& make, bool) { return scaled(make.lattice(2), 0x1p-1070); }},
+};
+
+std::string text(const FourMovingPoints& points) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
+  return out.str();
+}
+
+template <class Query>
+Answer ask(const ElementaryTest& row, const Query& query) {
+  if constexpr (std::is_same_v<Query, MovingVertexFace>)
+    return row.vertex_face(query);
+  else
+    return row.edge_edge(query);
+}
+
+// Calls with the row, the points, the query and the truth.
+template <class Check>
+void for_each_question(const Check& check) {
+  for (const Family& family : kFamilies) {
+    QueryMaker make{17};
+    for (int i = 0; i < family.count; ++i) {
+      const FourMovingPoints vf = family.make(make, true), ee = family.make(make, false);
+      const auto ask_all = [&](const FourMovingPoints& points, const auto& query) {
+        const auto truth = exact::first_contact(query);
+        for (const ElementaryTest& row : elementary_tests()) {
+          SCOPED_TRACE(std::string(row.name) + ", " + family.name + "\n" + text(points));
+          check(row, ask(row, query), truth);
+        }
+      };
+      ask_all(vf, query_of<MovingVertexFace>(vf));
+      ask_all(ee, query_of<MovingEdgeEdge>(ee));
+      if (testing::Test::HasFailure()) return;  // one is enough to read
+    }
+  }
+}
+
+TEST(Catalogue, ProofsHold) {
+  int contacts = 0;
+  for_each_question([&](const ElementaryTest& row, const Answer& answer, const auto& truth) {
+    contacts += truth.has_value();
+    if (row.apart_is_proof && truth) {
+      EXPECT_NE(answer.verdict, Verdict::apart);
+      if (answer.verdict == Verdict::contact && row.contact_is_proof) {
+        EXPECT_NEAR(answer.time, truth->lo, 1e-12);
+      }
+    }
+    if (row.contact_is_proof && !truth) {
+      EXPECT_NE(answer.verdict, Verdict::contact);
+    }
+  });
+  EXPECT_GT(contacts, 1000);
+}
+
+TEST(Catalogue, TimesOfRowsWhoseApartIsAProofAreNeverLate) {
+  for_each_question([&](const ElementaryTest& row, const Answer& answer, const auto& truth) {
+    if (row.apart_is_proof && truth && answer.verdict != Verdict::apart) {
+      EXPECT_LE(answer.time, truth->hi);
+    }
+  });
+}
+
+TEST(Catalogue, TimesAreInTheInterval) {
+  for_each_question([&](const ElementaryTest&, const Answer& answer, const auto&) {
+    if (answer.verdict != Verdict::apart) {
+      EXPECT_GE(answer.time, 0);
+      EXPECT_LE(answer.time, 1);
+    }
+  });
+}
+
+TEST(Catalogue, NamesAreUnique) {
+  for (const ElementaryTest& row : elementary_tests()) EXPECT_EQ(find_elementary_test(row.name), &row);
+  EXPECT_EQ(find_elementary_test("none such"), nullptr);
+}
+
+}  // namespace
+}  // namespace cscd

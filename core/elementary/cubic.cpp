@@ -1,0 +1,92 @@
+#include "core/elementary/cubic.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/elementary/extent.h"
+#include "core/elementary/filter.h"
+#include "core/geometry/feature_distance.h"
+
+// The roots of the coplanarity cubic, each with the distance of the features there (Provot, "Collision and
+// self-collision handling in cloth model dedicated to design garments", 1997; Bridson, Fedkiw and Anderson,
+// "Robust treatment of collisions, contact and friction for cloth animation", SIGGRAPH 2002, section 7.1).
+//
+// The turning points of the cubic cut [0, 1] into at most three monotone pieces. Each piece is closed: a
+// change of sign within it gives a root, and its ends are looked at in any case, so that double roots and
+// roots at 0 and 1 survive rounding. Differences: the cubic is kept in Bernstein form, the filter in front is
+// certified, and the tolerance is relative to the query.
+//
+// A "no" proves nothing unless the filter said it: distances are judged at rounded roots, and features that
+// stay in one plane are looked at in both ends alone, as in the papers.
+namespace cscd {
+namespace {
+
+// Where the derivative of the cubic is zero, in [0, 1]; 0 and 1 where it is not.
+struct TurningPoints {
+  double first = 0, second = 1;
+
+  explicit TurningPoints(const BernsteinCubic& f) {
+    const double d0 = f.c[1] - f.c[0], d1 = f.c[2] - f.c[1], d2 = f.c[3] - f.c[2];
+    const double square = d0 - 2 * d1 + d2, half_b = d1 - d0;
+    const double q =
+        -(half_b + std::copysign(std::sqrt(std::max(0.0, half_b * half_b - square * d0)), half_b));
+    const auto inside = [](double t) { return t > 0 && t < 1; };
+    const double r = q / square, s = d0 / q;  // NaN and infinity are not inside
+    first = inside(r) ? r : inside(s) ? s : 0;
+    second = inside(s) ? s : 1;
+    if (first > second) std::swap(first, second);
+  }
+};
+
+// In a monotone piece with a change of sign: Newton's iteration, kept in the bracket by bisection.
+double root_between(const BernsteinCubic& f, double low, double high) {
+  const bool rising = f.at(low) < 0;
+  double t = (low + high) / 2;
+  for (int i = 0; i < 64 && high - low > 0x1p-50; ++i) {
+    const double value = f.at(t);
+    if (value == 0) return t;
+    ((value < 0) == rising ? low : high) = t;
+    const double s = 1 - t;
+    const double slope =
+        3 * (s * s * (f.c[1] - f.c[0]) + 2 * s * t * (f.c[2] - f.c[1]) + t * t * (f.c[3] - f.c[2]));
+    const double next = t - value / slope;
+    const bool useful = next > low && next < high;
+    if (useful && std::abs(next - t) <= 0x1p-52) return next;
+    t = useful ? next : (low + high) / 2;
+  }
+  return t;
+}
+
+template <class Query>
+Answer cubic(const Query& given, const TestParameters& parameters) {
+  const Query query = in_range(given);
+  const BernsteinCubic f = coplanarity(query);
+  if (certain_sign(f) != 0) return {Verdict::apart, 0};
+  const double near = parameters.tolerance * extent(query);
+  const auto touch = [&](double t) { return distance_at(query, t) <= near; };
+
+  if (touch(0)) return {Verdict::contact, 0};
+  const TurningPoints turning(f);
+  double low = 0;
+  for (const double high : {turning.first, turning.second, 1.0}) {
+    if (high <= low) continue;
+    if ((f.at(low) < 0) != (f.at(high) < 0)) {
+      const double root = root_between(f, low, high);
+      if (touch(root)) return {Verdict::contact, root};
+    }
+    if (touch(high)) return {Verdict::contact, high};
+    low = high;
+  }
+  return {Verdict::apart, 0};
+}
+
+}  // namespace
+
+Answer cubic_vertex_face(const MovingVertexFace& query, const TestParameters& parameters) {
+  return cubic(query, parameters);
+}
+Answer cubic_edge_edge(const MovingEdgeEdge& query, const TestParameters& parameters) {
+  return cubic(query, parameters);
+}
+
+}  // namespace cscd

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/elementary/elementary_test.h"
+
+namespace cscd {
+
+// The classic of cloth simulation. `tolerance`: the distance, in extents of the query, at which features
+// count as touching. Never undecided.
+Answer cubic_vertex_face(const MovingVertexFace& query, const TestParameters& parameters);
+Answer cubic_edge_edge(const MovingEdgeEdge& query, const TestParameters& parameters);
+
+}  // namespace cscd

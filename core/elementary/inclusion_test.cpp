@@ -1,0 +1,106 @@
+#include "core/elementary/inclusion.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "core/elementary/exact.h"
+#include "core/elementary/extent.h"
+#include "core/elementary/test_queries.h"
+#include "core/geometry/feature_distance.h"
+
+namespace cscd {
+namespace {
+
+using test::query_of;
+using test::QueryMaker;
+
+MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
+  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
+  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
+}
+
+TEST(Inclusion, TellsTheTimeFromBelowWithinTheTolerance) {
+  for (const double tolerance : {1e-2, 1e-4, 1e-8}) {
+    const Answer answer =
+        inclusion_vertex_face(against_triangle({1, 1, 1}, {1, 1, -3}), {tolerance, 100'000});
+    ASSERT_EQ(answer.verdict, Verdict::contact);
+    EXPECT_LE(answer.time, 0.25);
+    EXPECT_GE(answer.time, 0.25 - tolerance);
+  }
+}
+
+// A vertex that passes a border askew to the axes at a distance: contact for coarse tolerances, a proof of
+// none for fine ones.
+TEST(Inclusion, FalseAlarmsAreWithinTheTolerance) {
+  const auto still = [](double x, double y) { return MovingPoint{{x, y, 0}, {x, y, 0}}; };
+  const MovingVertexFace query{{{-1.301, 1.299, 1}, {-1.301, 1.299, -1}},
+                               {still(0, 0), still(4, 4), still(-4, 4)}};
+  ASSERT_FALSE(exact::first_contact(query));
+  EXPECT_EQ(inclusion_vertex_face(query, {1e-2, 100'000}).verdict, Verdict::contact);
+  EXPECT_EQ(inclusion_vertex_face(query, {1e-5, 100'000}).verdict, Verdict::apart);
+}
+
+TEST(Inclusion, ContactsAreNear) {
+  QueryMaker make{5};
+  int contacts = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double tolerance = i % 2 ? 1e-2 : 1e-4;
+    const auto check = [&](const auto& query, const Answer& answer) {
+      if (answer.verdict != Verdict::contact) return;
+      ++contacts;
+      double nearest = distance_at(query, answer.time);
+      for (int k = 0; k <= 4096; ++k)
+        nearest = std::min(nearest, distance_at(query, answer.time + k * (1 - answer.time) / 4096));
+      // Within half a sample of the nearest place, features move relative to each other by less than this.
+      const double slack = 4 * extent(query) / 8192;
+      EXPECT_LE(nearest, std::sqrt(3.0) * tolerance * extent(query) + slack);
+    };
+    const auto vf = query_of<MovingVertexFace>(make.any());
+    const auto ee = query_of<MovingEdgeEdge>(make.any());
+    check(vf, inclusion_vertex_face(vf, {tolerance, 20'000}));
+    check(ee, inclusion_edge_edge(ee, {tolerance, 20'000}));
+  }
+  EXPECT_GT(contacts, 300);
+}
+
+// Double roots, parallel edges and what slides in its plane cost boxes without end: they are undecided, with
+// a time that is not late.
+TEST(Inclusion, StopsAtTheLimitWithoutAnAnswer) {
+  const MovingVertexFace sliding = against_triangle({-1, 1, 1e-9}, {1, 1, 1e-9});
+  ASSERT_FALSE(exact::first_contact(sliding));
+  const MovingVertexFace grazing = against_triangle({1, 1, 1}, {1, 1, -3});
+  const Answer cut = inclusion_vertex_face(grazing, {1e-12, 10});
+  EXPECT_EQ(cut.verdict, Verdict::undecided);
+  EXPECT_LE(cut.time, 0.25);
+}
+
+// Where a bound that grows with min(1, x) loses a tenth of the contacts.
+TEST(Inclusion, LosesNothingFarFromTheOrigin) {
+  QueryMaker make{6};
+  for (const double far : {1e3, 1e6, 1e12}) {
+    for (int i = 0; i < 1000; ++i) {
+      const double u = make.uniform(0.05, 0.45), v = make.uniform(0.05, 0.45), t = make.uniform(0.05, 0.95);
+      const Vec3 offset = far * make.vector();
+      const auto move = [&](test::FourMovingPoints p) {
+        for (MovingPoint& x : p) x = {x.start + offset, x.end + offset};
+        return p;
+      };
+      const auto vf = query_of<MovingVertexFace>(move(test::vertex_meets_face(make, t, u, v)));
+      const auto ee = query_of<MovingEdgeEdge>(move(test::edge_meets_edge(make, t, u, v)));
+      const auto vf_truth = exact::first_contact(vf), ee_truth = exact::first_contact(ee);
+      if (vf_truth) {
+        const Answer answer = inclusion_vertex_face(vf, {1e-6, 20'000});
+        ASSERT_NE(answer.verdict, Verdict::apart);
+        ASSERT_LE(answer.time, vf_truth->hi);
+      }
+      if (ee_truth) {
+        const Answer answer = inclusion_edge_edge(ee, {1e-6, 20'000});
+        ASSERT_NE(answer.verdict, Verdict::apart);
+        ASSERT_LE(answer.time, ee_truth->hi);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cscd
