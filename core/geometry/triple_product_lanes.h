@@ -71,8 +71,9 @@ inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
   return normal;
 }
 
-// +1 or -1 where (a x b) . c certainly has that sign for every t in [0, 1], else 0.
-inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c) {
+// +1 or -1 where (a x b) . c certainly has that sign for every t in [0, 1], else 0. The components of c may
+// be off by `c_slack`.
+inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
   const auto dot = [&](int n, int end) {
     return normal.control[n][0] * c.at[end][0] + normal.control[n][1] * c.at[end][1] +
            normal.control[n][2] * c.at[end][2];
@@ -83,7 +84,7 @@ inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c) {
   const Sign8 known = (normal.area >= kTinyProduct) & (normal.area <= kHugeProduct) &
                       (volume >= kTinyProduct) & (volume <= kHugeProduct);
   const Lane8 unknown = Lane8{} + std::numeric_limits<double>::infinity();
-  const Lane8 error = known ? kTripleProductError * volume : unknown;
+  const Lane8 error = known ? kTripleProductError * volume + 7 * normal.area * c_slack : unknown;
   // A true comparison is -1 in its lane. Coefficient by coefficient, because a minimum may forget a NaN.
   const Sign8 positive = (c0 > error) & (c1 > error) & (c2 > error) & (c3 > error);
   const Sign8 negative = (c0 < -error) & (c1 < -error) & (c2 < -error) & (c3 < -error);

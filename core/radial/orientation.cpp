@@ -32,18 +32,40 @@ Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, 
                                                between(q, corner[0]), slack)));
 }
 
+// What a triangle needs to know of a moving segment, whichever triangle it is.
+struct MovingSegment {
+  MovingPoint head, tail;
+  MovingVector way;          // from head to tail
+  double shortest, longest;  // bounds of its squared length
+  double slack;              // a viewing position is rounded in two operations on each coordinate
+
+  explicit MovingSegment(const Observer& observer)
+      : head(observer.head), tail(observer.tail), way(between(head, tail)) {
+    const double length[3] = {way.start.squaredNorm(), way.start.dot(way.end), way.end.squaredNorm()};
+    shortest = std::min({length[0], length[1], length[2]});
+    longest = std::max({length[0], length[1], length[2]});
+    const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
+    slack = 4 * kUnitRoundoff *
+            std::max({largest(head.start), largest(head.end), largest(tail.start), largest(tail.end)});
+  }
+  // Outside the range of doubles nothing is known of projections; the triple products are as strict.
+  bool projects() const { return shortest > 0 && longest <= kHugeProduct; }
+  MovingPoint at(double u) const {
+    return {(1 - u) * head.start + u * tail.start, (1 - u) * head.end + u * tail.end};
+  }
+};
+
+// A dot product of differences is off by at most 6 u times three products; 32 also covers the division.
+constexpr double kProjectionError = 32 * kUnitRoundoff;
+
 struct Range {
   double low, high;
 };
 
 // Encloses the clamped projection parameters of corners on the moving segment.
-Range viewing_range(std::span<const MovingPoint> corners, const MovingPoint& head, const MovingPoint& tail) {
-  const MovingVector d = between(head, tail);
-  const double length[3] = {d.start.squaredNorm(), d.start.dot(d.end), d.end.squaredNorm()};
-  const double shortest = std::min({length[0], length[1], length[2]});
-  const double longest = std::max({length[0], length[1], length[2]});
-  // Outside the range of doubles nothing is known; the triple products are as strict.
-  if (!(shortest > 0 && longest <= kHugeProduct)) return {0, 1};
+Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& segment) {
+  if (!segment.projects()) return {0, 1};
+  const auto& [head, tail, d, shortest, longest, unused] = segment;
   double low = std::numeric_limits<double>::infinity(), high = -low, reach = 0;
   for (const MovingPoint& p : corners) {
     const MovingVector w = between(head, p);
@@ -53,42 +75,96 @@ Range viewing_range(std::span<const MovingPoint> corners, const MovingPoint& hea
     high = std::max({high, along[0], along[1], along[2]});
     reach = std::max(reach, w.largest());
   }
-  // A dot product of differences is off by at most 6 u times three products; 32 also covers the division.
-  const double slack = 32 * kUnitRoundoff * (1 + 3 * reach * d.largest() / shortest);
+  const double slack = kProjectionError * (1 + 3 * reach * d.largest() / shortest);
   const Range range{low / (low < 0 ? shortest : longest) - slack,
                     high / (high < 0 ? longest : shortest) + slack};
   const bool known = range.low <= range.high;  // false for NaN
   return known ? Range{std::clamp(range.low, 0.0, 1.0), std::clamp(range.high, 0.0, 1.0)} : Range{0, 1};
 }
 
-Orientation towards_segment(const MovingPoint (&corner)[3], const MovingPoint& head, const MovingPoint& tail,
-                            SegmentTest test) {
-  const std::span<const MovingPoint> corners(corner);
-  const Range range =
-      viewing_range(test == SegmentTest::all_corners ? corners : corners.first(1), head, tail);
-  // q(u) is rounded in two operations on each coordinate.
-  const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
-  const double slack =
-      4 * kUnitRoundoff *
-      std::max({largest(head.start), largest(head.end), largest(tail.start), largest(tail.end)});
-  const auto at = [&](double u) -> MovingPoint {
-    return {(1 - u) * head.start + u * tail.start, (1 - u) * head.end + u * tail.end};
-  };
-  const Orientation first = towards_point(corner, at(range.low), slack);
+// As many of the corners as the test looks at.
+template <class Corner>
+std::span<const Corner> looked_at(const Corner (&corner)[3], SegmentTest test) {
+  return std::span<const Corner>(corner).first(test == SegmentTest::all_corners ? 3 : 1);
+}
+
+Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment& segment, SegmentTest test) {
+  const Range range = viewing_range(looked_at(corner, test), segment);
+  const Orientation first = towards_point(corner, segment.at(range.low), segment.slack);
   if (first == Orientation::uncertain || range.low == range.high) return first;
-  return towards_point(corner, at(range.high), slack) == first ? first : Orientation::uncertain;
+  const Orientation last = towards_point(corner, segment.at(range.high), segment.slack);
+  return last == first ? first : Orientation::uncertain;
+}
+
+// The same for eight triangles, operation for operation.
+
+VectorLanes in_all_lanes(const Vec3& start, const Vec3& end) {
+  VectorLanes out;
+  for (int i = 0; i < 3; ++i) {
+    out.at[0][i] = Lane8{} + start[i];
+    out.at[1][i] = Lane8{} + end[i];
+  }
+  return out;
+}
+
+struct RangeLanes {
+  Lane8 low, high;
+};
+
+RangeLanes viewing_range(std::span<const VectorLanes> corners, const MovingSegment& segment) {
+  const Lane8 zero = {}, one = zero + 1;
+  if (!segment.projects()) return {zero, one};
+  const auto& [head, tail, d, shortest, longest, unused] = segment;
+  const VectorLanes from = in_all_lanes(head.start, head.end);
+  const auto dot = [](const Lane8(&a)[3], const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto lesser = [](Lane8 a, Lane8 b) { return b < a ? b : a; };
+  Lane8 low = zero + std::numeric_limits<double>::infinity(), high = -low, reach = zero;
+  for (const VectorLanes& p : corners) {
+    const VectorLanes w = p - from;
+    const Lane8 along[3] = {dot(w.at[0], d.start), (dot(w.at[0], d.end) + dot(w.at[1], d.start)) / 2,
+                            dot(w.at[1], d.end)};
+    low = lesser(lesser(lesser(low, along[0]), along[1]), along[2]);
+    high = larger(larger(larger(high, along[0]), along[1]), along[2]);
+    reach = larger(reach, w.largest_component());
+  }
+  const Lane8 slack = kProjectionError * (1 + 3 * reach * d.largest() / shortest);
+  low = low / (low < 0 ? zero + shortest : zero + longest) - slack;
+  high = high / (high < 0 ? zero + longest : zero + shortest) + slack;
+  const Sign8 known = low <= high;
+  const auto clamped = [&](Lane8 u) { return u < 0 ? zero : u > 1 ? one : u; };
+  return {known ? clamped(low) : zero, known ? clamped(high) : one};
+}
+
+// Where eight triangles are seen from.
+VectorLanes viewing_positions(const MovingSegment& segment, Lane8 u) {
+  VectorLanes out;
+  for (int i = 0; i < 3; ++i) {
+    out.at[0][i] = (1 - u) * segment.head.start[i] + u * segment.tail.start[i];
+    out.at[1][i] = (1 - u) * segment.head.end[i] + u * segment.tail.end[i];
+  }
+  return out;
+}
+
+Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corner)[3],
+                            const MovingSegment& segment, SegmentTest test) {
+  const RangeLanes range = viewing_range(looked_at(corner, test), segment);
+  const auto signs = [&](Lane8 u) {
+    return certain_signs(normal, corner[0] - viewing_positions(segment, u), segment.slack);
+  };
+  const Sign8 first = signs(range.low), last = signs(range.high);
+  return first == last ? first : Sign8{};
 }
 
 }  // namespace
 
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test) {
-  if (observer.is_segment) return towards_segment(corner, observer.head, observer.tail, test);
+  if (observer.is_segment) return towards_segment(corner, MovingSegment(observer), test);
   return towards_point(corner, observer.head, 0);
 }
 
 OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
                                    SegmentTest test)
-    : mesh_(mesh), test_(test) {
+    : test_(test) {
   for (const std::vector<TriangleId>& group : groups) {
     first_block_.push_back(lanes_.size());
     for (std::size_t first = 0; first < group.size(); first += kLanes) {
@@ -113,31 +189,41 @@ void OrientationTable::update(const Motion& motion) {
   }
 }
 
+// `block_signs`: of a block's number, the signs of its eight triangles towards the observer.
+template <class Use>
+void OrientationTable::with_signs(const Observer& observer, Use use) const {
+  if (observer.is_segment) {
+    const MovingSegment segment(observer);
+    use([&](std::size_t b) {
+      const auto& [first, second, third] = lanes_[b].corner;
+      const VectorLanes corner[3] = {blocks_[b].corner, gather(*motion_, second), gather(*motion_, third)};
+      return signs_towards_segment(blocks_[b].normal, corner, segment, test_);
+    });
+  } else {
+    const VectorLanes viewed_from = in_all_lanes(observer.head.start, observer.head.end);
+    use([&](std::size_t b) { return certain_signs(blocks_[b].normal, blocks_[b].corner - viewed_from); });
+  }
+}
+
 void OrientationTable::classify(std::size_t group, const Observer& observer,
                                 std::span<Orientation> out) const {
-  if (observer.is_segment) {
-    for (std::size_t member = 0; member < out.size(); ++member)
-      out[member] = classify(group, member, observer);
-    return;
-  }
-  VectorLanes viewed_from;
-  for (int i = 0; i < 3; ++i) {
-    viewed_from.at[0][i] = Lane8{} + observer.head.start[i];
-    viewed_from.at[1][i] = Lane8{} + observer.head.end[i];
-  }
-  for (std::size_t b = first_block_[group], first = 0; first < out.size(); ++b, first += kLanes) {
-    const Sign8 signs = certain_signs(blocks_[b].normal, blocks_[b].corner - viewed_from);
-    const std::size_t count = std::min(kLanes, out.size() - first);
-    for (std::size_t l = 0; l < count; ++l) out[first + l] = from_sign(static_cast<int>(signs[l]));
-  }
+  with_signs(observer, [&](const auto& block_signs) {
+    for (std::size_t b = first_block_[group], first = 0; first < out.size(); ++b, first += kLanes) {
+      const Sign8 signs = block_signs(b);
+      const std::size_t count = std::min(kLanes, out.size() - first);
+      for (std::size_t l = 0; l < count; ++l) out[first + l] = from_sign(static_cast<int>(signs[l]));
+    }
+  });
 }
 
 Orientation OrientationTable::classify(std::size_t group, std::size_t member,
                                        const Observer& observer) const {
-  const std::size_t block = first_block_[group] + member / kLanes;
-  const Triangle& c = mesh_.corners(lanes_[block].triangle[member % kLanes]);
-  const Motion& m = *motion_;
-  return orientation({m[c[0]], m[c[1]], m[c[2]]}, observer, test_);
+  Orientation found;
+  with_signs(observer, [&](const auto& block_signs) {
+    const Sign8 signs = block_signs(first_block_[group] + member / kLanes);
+    found = from_sign(static_cast<int>(signs[member % kLanes]));
+  });
+  return found;
 }
 
 }  // namespace cscd::radial

@@ -63,7 +63,9 @@ class OrientationTable {
     NormalLanes normal;
     VectorLanes corner;  // the first one
   };
-  const TriangleMesh& mesh_;
+  template <class Use>
+  void with_signs(const Observer& observer, Use use) const;
+
   SegmentTest test_;
   std::vector<std::size_t> first_block_;  // of each group, one more at the end
   std::vector<TriangleLanes> lanes_;      // of each block; a short one repeats its last triangle

@@ -306,9 +306,10 @@ struct Soup {
 };
 
 // Expects the table and its scalar twin to say the same about every triangle. Returns how many have a sign.
-int expect_twins(const Soup& soup, const std::function<Observer(std::size_t group)>& observer_of) {
+int expect_twins(const Soup& soup, const std::function<Observer(std::size_t group)>& observer_of,
+                 SegmentTest test = SegmentTest::all_corners) {
   const TriangleMesh mesh(soup.triangles, soup.start.size());
-  OrientationTable table(mesh, soup.groups);
+  OrientationTable table(mesh, soup.groups, test);
   const Motion motion(soup.start, soup.end);
   table.update(motion);
   int differences = 0, certain = 0;
@@ -318,7 +319,7 @@ int expect_twins(const Soup& soup, const std::function<Observer(std::size_t grou
     table.classify(g, observer, classes);
     for (std::size_t member = 0; member < classes.size(); ++member) {
       const Triangle& c = mesh.corners(soup.groups[g][member]);
-      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer);
+      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test);
       differences += classes[member] != twin;
       certain += twin != Orientation::uncertain;
       EXPECT_EQ(table.classify(g, member, observer), twin);
@@ -336,9 +337,15 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
       soup.add({place(dice.moving(1, 0.3)), place(dice.moving(1, 0.3)), place(dice.moving(1, 0.3))});
     soup.group();
     expect_twins(soup, [&](std::size_t) { return Observer::point(place(dice.moving(1, 0.3))); });
-    expect_twins(soup, [&](std::size_t) {
-      return Observer::segment(place(dice.moving(1, 0.3)), place(dice.moving(1, 0.3)));
-    });
+    for (const SegmentTest test : {SegmentTest::all_corners, SegmentTest::first_corner})
+      for (const double length : {0.0, 0.01, 1.0, 4.0}) {
+        const auto observer = [&](std::size_t) {
+          const MovingPoint head = dice.moving(1, 0.3);
+          return Observer::segment(
+              place(head), place({head.start + dice.in_box(length), head.end + dice.in_box(length)}));
+        };
+        expect_twins(soup, observer, test);
+      }
   }
 }
 
@@ -363,6 +370,12 @@ TEST(OrientationTable, EqualsItsScalarTwinWhereTheErrorBoundDecides) {
     });
     EXPECT_GT(certain, 50);
     EXPECT_LT(certain, 2000);
+    // A segment beside the planes' common point is seen as one point: its nearer end.
+    const int along = expect_twins(soup, [](std::size_t) {
+      return Observer::segment({Vec3::Zero(), Vec3::Zero()}, {Vec3(1e-15, 0, 0), Vec3(1e-15, 0, 0)});
+    });
+    EXPECT_GT(along, 20);
+    EXPECT_LT(along, 2000);
   }
 }
 
