@@ -49,7 +49,7 @@ class PlainCuller : public Culler {
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override {
-    bounds_.refit(mesh_, tree_, motion);
+    bounds_.refit(motion);
     leaf_.clear();
     for (NodeIndex n = 0; n < static_cast<NodeIndex>(tree_.node_count()); ++n) {
       if (!tree_.is_leaf(n)) continue;
@@ -106,7 +106,7 @@ class ConeCuller : public Culler {
         cones_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override {
-    bounds_.refit(mesh_, tree_, motion);
+    bounds_.refit(motion);
     cones_.update(tree_, motion);
     motion_ = motion;
   }

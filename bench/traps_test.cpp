@@ -209,7 +209,7 @@ TEST(Traps, Trap05BoundsContainTheExactMotionAtBothEnds) {
     const Motion motion = random.clip.interval(0).motion;
     const Tree tree = build_tree(mesh, motion.start());
     SweptBounds bounds(mesh, tree);
-    bounds.refit(mesh, tree, motion);
+    bounds.refit(motion);
     for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
       if (!tree.is_leaf(node)) continue;
       for (const VertexId vertex : mesh.corners(tree.triangle(node)))

@@ -50,7 +50,7 @@ class McdCuller : public Culler {
         discs_(mesh_, tree_),
         cones_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+  void refit(const Motion& motion) override { bounds_.refit(motion); }
 
   bool classify(const Motion& motion, const Rig::Interval*) override {
     cones_.update(tree_, motion);

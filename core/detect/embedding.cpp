@@ -57,7 +57,7 @@ EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> ref
 
 std::optional<std::pair<TriangleId, TriangleId>> EmbeddingTest::find_intersection(
     std::span<const Vec3> positions) {
-  bounds_.refit(mesh_, tree_, Motion(positions, positions));
+  bounds_.refit(Motion(positions, positions));
   const Frame frame{mesh_, positions};
   std::optional<std::pair<TriangleId, TriangleId>> found;
   const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };

@@ -208,7 +208,7 @@ struct Nearness::Search {
 };
 
 std::optional<Nearness::Pair> Nearness::closest(std::span<const Vec3> positions) {
-  bounds_.refit(mesh_, tree_, Motion(positions, positions));
+  bounds_.refit(Motion(positions, positions));
   Search search{*this, positions, kFarthest * mean_edge_, std::nullopt};
   // What was closest in the last frame bounds this one. A little above it, so that this pair is found again
   // on the search's own way, and the answer depends on this frame alone.

@@ -15,7 +15,7 @@ class PlainCuller : public Culler {
   explicit PlainCuller(const Setup& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+  void refit(const Motion& motion) override { bounds_.refit(motion); }
 
   CullCounts cull(TrianglePairSink& sink) override {
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };

@@ -2,21 +2,33 @@
 
 namespace cscd {
 
-template <class Volume>
-SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree)
-    : vertex_(mesh.vertex_count()), node_(tree.node_count()) {}
+namespace {
+// Nodes whose bounds are made together: few enough to be in the cache when their parents ask for them.
+constexpr NodeIndex kNodesAtOnce = 1024;
+}  // namespace
 
 template <class Volume>
-void SweptVolumes<Volume>::refit(const TriangleMesh& mesh, const Tree& tree, const Motion& motion) {
+SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree)
+    : vertex_(mesh.vertex_count()), node_(tree.node_count()) {
+  for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node)
+    if (tree.is_leaf(node))
+      leaves_.push_back({node, mesh.corners(tree.triangle(node))});
+    else
+      inner_.push_back({node, tree.right(node)});
+}
+
+template <class Volume>
+void SweptVolumes<Volume>::refit(const Motion& motion) {
   swept_vertex_bounds(motion, std::span(vertex_));
-  // Children follow their parents, so one backward pass meets them first.
-  for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node) {
-    Volume& bound = node_[static_cast<std::size_t>(node)];
-    if (tree.is_leaf(node)) {
-      bound = swept_triangle<Volume>(mesh.corners(tree.triangle(node)), vertex_);
-    } else {
-      bound = united((*this)[tree.left(node)], (*this)[tree.right(node)]);
-    }
+  Volume* const node = node_.data();
+  auto leaf = leaves_.begin();
+  auto inner = inner_.begin();
+  for (auto end = static_cast<NodeIndex>(node_.size()); end > 0; end -= kNodesAtOnce) {
+    const NodeIndex begin = end - kNodesAtOnce;
+    for (; leaf != leaves_.end() && leaf->node >= begin; ++leaf)
+      node[leaf->node] = swept_triangle<Volume>(leaf->corners, vertex_);
+    for (; inner != inner_.end() && inner->node >= begin; ++inner)
+      node[inner->node] = united(node[inner->node + 1], node[inner->right]);
   }
 }
 

@@ -17,11 +17,21 @@ class SweptVolumes {
   SweptVolumes(const TriangleMesh& mesh, const Tree& tree);
 
   // Bounds of all vertices' paths, then bottom-up over the tree; O(vertices + triangles), no allocation.
-  void refit(const TriangleMesh& mesh, const Tree& tree, const Motion& motion);
+  void refit(const Motion& motion);
 
   const Volume& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
 
  private:
+  struct Leaf {
+    NodeIndex node;
+    Triangle corners;
+  };
+  struct Inner {
+    NodeIndex node, right;
+  };
+  // Backwards, so that children come first; by kind, as a branch on it would often be mispredicted.
+  std::vector<Leaf> leaves_;
+  std::vector<Inner> inner_;
   std::vector<Volume> vertex_, node_;
 };
 using SweptBounds = SweptVolumes<Kdop16>;

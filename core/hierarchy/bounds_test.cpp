@@ -133,7 +133,7 @@ TEST(SweptBounds, EveryNodeContainsThePathsBelowIt) {
   const auto bound_of = [&](NodeIndex n) -> const Kdop16& { return bounds[n]; };
   for (unsigned seed = 0; seed < 4; ++seed) {
     const Ends ends = assorted_motion(shape.positions.size(), seed);
-    bounds.refit(mesh, tree, ends.motion());
+    bounds.refit(ends.motion());
     EXPECT_TRUE(all_contained(mesh, tree, ends.motion(), bound_of));
   }
 }
@@ -147,9 +147,9 @@ TEST(SweptBounds, AreTheUnionOfWhatIsBelowWhateverCameBefore) {
   SweptBounds used(mesh, tree);
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Ends ends = assorted_motion(shape.positions.size(), seed);
-    used.refit(mesh, tree, ends.motion());
+    used.refit(ends.motion());
     SweptBounds fresh(mesh, tree);
-    fresh.refit(mesh, tree, ends.motion());
+    fresh.refit(ends.motion());
     for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node) {
       ASSERT_EQ(bits_of(used[node]), bits_of(fresh[node]));
       const auto expected = [&](std::size_t k) {
@@ -174,7 +174,7 @@ TEST(SweptBounds, OneBoundDrawnInByOneUlpIsNoticed) {
   std::mt19937_64 random(3);
   Ends ends{shape.positions, shape.positions};
   for (Vec3& p : ends.end) p += Vec3(0.1 * assorted_coordinate(random) / DBL_MAX, 0.25, 0.125);
-  bounds.refit(mesh, tree, ends.motion());
+  bounds.refit(ends.motion());
   for (NodeIndex sabotaged = 0; sabotaged < static_cast<NodeIndex>(tree.node_count()); ++sabotaged)
     for (std::size_t k = 0; k < 16; ++k) {
       Kdop16 drawn_in = bounds[sabotaged];

@@ -30,7 +30,7 @@ struct Scene {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(-motion, motion);
     for (Vec3& p : end) p += Vec3(unit(random), unit(random), unit(random));
-    bounds.refit(mesh, tree, Motion(shape.positions, end));
+    bounds.refit(Motion(shape.positions, end));
   }
   NodeIndex node_count() const { return static_cast<NodeIndex>(tree.node_count()); }
   NodeIndex behind(NodeIndex node) const {
@@ -193,7 +193,7 @@ TEST(SelfDescent, StopsAtClusterRoots) {
   for (std::size_t t = 0; t < label.size(); ++t) label[t] = static_cast<std::int32_t>(t / 20);
   const Tree tree = build_tree(mesh, shape.positions, label, 16);
   SweptBounds bounds(mesh, tree);
-  bounds.refit(mesh, tree, Motion(shape.positions, shape.positions));
+  bounds.refit(Motion(shape.positions, shape.positions));
   const std::set<NodeIndex> roots(tree.cluster_roots().begin(), tree.cluster_roots().end());
   std::multiset<std::pair<NodeIndex, NodeIndex>> emitted, expected;
   self_descent(

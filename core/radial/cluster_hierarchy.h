@@ -29,7 +29,7 @@ class ClusterHierarchy {
  public:
   ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference, const AtomicClusters& clusters);
 
-  void refit(const Motion& motion) { bounds_.refit(mesh_, tree_, motion); }
+  void refit(const Motion& motion) { bounds_.refit(motion); }
 
   // The triangles of each atomic cluster in the order in which its classes are kept.
   std::span<const std::vector<TriangleId>> groups() const { return groups_; }

@@ -341,8 +341,8 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
       for (const double length : {0.0, 0.01, 1.0, 4.0}) {
         const auto observer = [&](std::size_t) {
           const MovingPoint head = dice.moving(1, 0.3);
-          return Observer::segment(
-              place(head), place({head.start + dice.in_box(length), head.end + dice.in_box(length)}));
+          return Observer::segment(place(head),
+                                   place({head.start + dice.in_box(length), head.end + dice.in_box(length)}));
         };
         expect_twins(soup, observer, test);
       }
