@@ -5,6 +5,7 @@
 #include "core/elementary/elementary_test.h"
 #include "core/elementary/exact.h"
 #include "core/elementary/filter.h"
+#include "core/elementary/filtered_exact.h"
 #include "core/elementary/inclusion.h"
 #include "core/elementary/newton.h"
 #include "core/elementary/relative_box.h"
@@ -24,6 +25,10 @@ constexpr std::array kTests = {
     ElementaryTest{
         "newton", "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
         false, plain<MovingVertexFace, newton_vertex_face>, plain<MovingEdgeEdge, newton_edge_edge>},
+    ElementaryTest{"filtered_exact",
+                   "ours: certified signs in double precision, then in integers of fixed capacity", true,
+                   true, plain<MovingVertexFace, filtered_exact_vertex_face>,
+                   plain<MovingEdgeEdge, filtered_exact_edge_edge>},
     ElementaryTest{"exact", "the referee: exact arithmetic behind certified filters", true, true,
                    plain<MovingVertexFace, filtered_referee>, plain<MovingEdgeEdge, filtered_referee>},
     ElementaryTest{

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/geometry/feature_motion.h"
+
+// Contact decided with integers of fixed capacity: exact, without allocation, for coordinates whose bits span
+// not too many places (some 250 on each axis; those of a simulation span 60 to 120).
+namespace cscd::integer {
+
+enum class Outcome { apart, contact, gave_up };
+
+struct Result {
+  Outcome outcome;
+  double time = 0;  // of a contact: the largest double not above the earliest time
+};
+
+Result first_contact(const MovingVertexFace& query);
+Result first_contact(const MovingEdgeEdge& query);
+
+// The time alone, where the features are known to touch at the only root of the coplanarity cubic between two
+// doubles, at which the cubic is known to have opposite signs.
+Result contact_time(const MovingVertexFace& query, double low, double high);
+Result contact_time(const MovingEdgeEdge& query, double low, double high);
+
+}  // namespace cscd::integer

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "core/elementary/wide.h"
+
+// Polynomials of degree at most 3 with integer coefficients, their roots in [0, 1], and exact signs at those.
+namespace cscd::integer {
+
+struct Polynomial {
+  Wide c[4];  // by ascending power
+  int degree = -1;
+
+  void trim() {
+    degree = 3;
+    while (degree >= 0 && c[degree].sign() == 0) --degree;
+  }
+  bool is_zero() const { return degree < 0; }
+  int bits() const;  // of the longest coefficient
+};
+
+// An exact root in [0, 1]: a fraction, or the only root, of odd order, of a polynomial between two doubles.
+struct Root {
+  double low = 0, high = 0;  // around the root; after `tighten` the same or neighbours
+  // The isolated root of *polynomial, which has this sign just above `low`; null for a fraction.
+  const Polynomial* polynomial = nullptr;
+  int sign_below = 0;
+  // For a fraction numerator / denominator, denominator > 0. For an isolated root, once `deep` is set, the
+  // root lies strictly between numerator / 2^places and (numerator + 1) / 2^places.
+  Wide numerator, denominator;
+  int places = 0;
+  bool deep = false;
+};
+
+// What is asked of the roots. Numbers too long for Wide, and roots closer to each other than neighbouring
+// doubles, are given up: answers after that mean nothing.
+class RootSolver {
+ public:
+  bool gave_up() const { return gave_up_; }
+
+  // Calls visit(Root&) for the roots in [0, 1] in ascending order until it returns true. The polynomial, not
+  // zero, must outlive the roots. Roots of even order are visited once.
+  template <class Visit>
+  void for_each_root(const Polynomial& p, Visit&& visit) {
+    Root roots[3];
+    const int count = find_roots(p, roots);
+    for (int i = 0; i < count && !gave_up_; ++i)
+      if (visit(roots[i])) return;
+  }
+  // At most three. Ascending.
+  int find_roots(const Polynomial& p, Root* roots);
+  // The only root of p between two doubles at which p has opposite signs.
+  Root isolated_root(const Polynomial& p, double low, double high);
+
+  // Makes `low` the largest double that is not above the root.
+  void tighten(Root& root);
+  // The exact sign of q at the root. Quicker after `tighten`.
+  int sign_at(const Polynomial& q, Root& root);
+
+ private:
+  int sign_at_double(const Polynomial& p, double t);
+  int sign_at_fraction(const Polynomial& p, const Wide& numerator, const Wide& denominator);
+  Polynomial stretched(const Polynomial& p, double low, double high);
+  bool fits(int bits);
+  bool find_fractions(const Polynomial& p, Root* roots, int& count);
+  void search(const Polynomial& p, double low, double high, Root* roots, int& count, int depth);
+  bool shares_root(const Polynomial& q, const Root& root);
+
+  bool gave_up_ = false;
+};
+
+}  // namespace cscd::integer
