@@ -38,6 +38,16 @@ struct BernsteinCubic {
 inline constexpr double kTinyProduct = 1e-280, kHugeProduct = 1e300;
 inline constexpr double kTripleProductError = 72 * kUnitRoundoff;
 
+// a(t) x b(t): control vectors on [0, 1], the middle one twice, and the product of the largest components.
+struct MovingNormal {
+  Vec3 at[3];
+  double area;
+};
+inline MovingNormal moving_cross(const MovingVector& a, const MovingVector& b) {
+  return {{a.start.cross(b.start), a.start.cross(b.end) + a.end.cross(b.start), a.end.cross(b.end)},
+          a.largest() * b.largest()};
+}
+
 // (a x b) . c. Each component of a, b and c may carry one rounding (a difference of two doubles), and in
 // addition those of c may be off by `c_slack` in absolute terms.
 //
@@ -45,20 +55,18 @@ inline constexpr double kTripleProductError = 72 * kUnitRoundoff;
 // absolute values sum to at most 6 A B C. The longest chain has 11 roundings (3 inputs; multiply, subtract
 // and add in the crosses; multiply and two additions in the dot; one addition; one division), so the error is
 // at most gamma_11 * 6 A B C < 67 u A B C. 72 also pays for the roundings of the bound itself.
+inline BernsteinCubic triple_product(const MovingNormal& n, const MovingVector& c, double c_slack = 0) {
+  const double volume = n.area * c.largest();
+  const bool known =
+      n.area >= kTinyProduct && n.area <= kHugeProduct && volume >= kTinyProduct && volume <= kHugeProduct;
+  return {
+      {n.at[0].dot(c.start), (n.at[1].dot(c.start) + n.at[0].dot(c.end)) / 3,
+       (n.at[1].dot(c.end) + n.at[2].dot(c.start)) / 3, n.at[2].dot(c.end)},
+      known ? kTripleProductError * volume + 7 * n.area * c_slack : std::numeric_limits<double>::infinity()};
+}
 inline BernsteinCubic triple_product(const MovingVector& a, const MovingVector& b, const MovingVector& c,
                                      double c_slack = 0) {
-  const Vec3 n0 = a.start.cross(b.start);
-  const Vec3 n1 =
-      a.start.cross(b.end) + a.end.cross(b.start);  // twice the middle control vector of the normal
-  const Vec3 n2 = a.end.cross(b.end);
-  const double area = a.largest() * b.largest();
-  const double volume = area * c.largest();
-  const bool known =
-      area >= kTinyProduct && area <= kHugeProduct && volume >= kTinyProduct && volume <= kHugeProduct;
-  return {
-      {n0.dot(c.start), (n1.dot(c.start) + n0.dot(c.end)) / 3, (n1.dot(c.end) + n2.dot(c.start)) / 3,
-       n2.dot(c.end)},
-      known ? kTripleProductError * volume + 7 * area * c_slack : std::numeric_limits<double>::infinity()};
+  return triple_product(moving_cross(a, b), c, c_slack);
 }
 
 // +1: positive for every t in [0, 1]; -1: negative for every t; 0: not certain. Coefficient by coefficient,
