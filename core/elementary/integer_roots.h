@@ -52,7 +52,7 @@ class RootSolver {
 
   // Makes `low` the largest double that is not above the root.
   void tighten(Root& root);
-  // The exact sign of q at the root. Quicker after `tighten`.
+  // The exact sign of q, of degree 2 at most, at the root. Quicker after `tighten`.
   int sign_at(const Polynomial& q, Root& root);
 
  private:

@@ -1,6 +1,7 @@
-// The referee against the open query set with published truths (README of that folder). The set is found
-// through CSCD_QUERIES or as shared/queries in a folder above the current one; without it the test is
-// skipped.
+// The referee and `filtered_exact` against the open query set with published truths (README of that folder).
+// The set is found through CSCD_QUERIES or as shared/queries in a folder above the current one; without it
+// the test is skipped.
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "core/elementary/exact.h"
+#include "core/elementary/filtered_exact.h"
 #include "core/elementary/query_file.h"
 
 namespace cscd {
@@ -69,9 +71,22 @@ std::map<std::size_t, exact::TimeEnclosure> read_times(const std::filesystem::pa
 
 struct Tally {
   int queries = 0, contacts = 0, wrong = 0, wrong_time = 0, same_time = 0;
+  std::array<int, 4> stages{};  // of filtered_exact
 };
 
-TEST(QuerySet, TheRefereeAgreesWithEveryPublishedTruth) {
+// Above all: the same verdict and the same double.
+template <class Query>
+void expect_filtered_exact_agrees(const Query& query, Answer (&test)(const Query&),
+                                  const std::optional<exact::TimeEnclosure>& referee, Tally& tally) {
+  const Answer answer = test(query);
+  ++tally.stages[static_cast<std::size_t>(filtered_exact_stage(query))];
+  EXPECT_EQ(answer.verdict, referee ? Verdict::contact : Verdict::apart);
+  if (referee) {
+    EXPECT_EQ(answer.time, referee->lo);
+  }
+}
+
+TEST(QuerySet, EveryPublishedTruthIsMet) {
   const auto set = find_query_set();
   if (!set) GTEST_SKIP() << "no query set: set CSCD_QUERIES to its folder";
   std::map<std::string, std::vector<Query>> queries;
@@ -89,6 +104,10 @@ TEST(QuerySet, TheRefereeAgreesWithEveryPublishedTruth) {
     Tally& tally = tallies[entry.group + " " + entry.kind];
     ++tally.queries;
     tally.contacts += entry.collides;
+    if (entry.kind == "vf")
+      expect_filtered_exact_agrees(as_vertex_face(query), filtered_exact_vertex_face, answer, tally);
+    else
+      expect_filtered_exact_agrees(as_edge_edge(query), filtered_exact_edge_edge, answer, tally);
     if (query.truth) {
       EXPECT_EQ(*query.truth, entry.collides) << "the set contradicts itself";
     }
@@ -108,7 +127,9 @@ TEST(QuerySet, TheRefereeAgreesWithEveryPublishedTruth) {
   for (const auto& [name, tally] : tallies)
     std::cout << name << ": " << tally.queries << " queries, " << tally.contacts << " contacts, "
               << tally.wrong << " wrong answers, " << tally.wrong_time << " wrong times, " << tally.same_time
-              << " times with the published bounds exactly\n";
+              << " times with the published bounds exactly; filtered_exact decided " << tally.stages[0]
+              << " by filters, " << tally.stages[1] << " in doubles, " << tally.stages[2] << " in integers, "
+              << tally.stages[3] << " by the referee\n";
 }
 
 }  // namespace
