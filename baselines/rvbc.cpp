@@ -52,7 +52,7 @@ class RvbcCuller : public Culler {
     return counts;
   }
 
-  std::vector<std::int32_t> clusters() const override { return clusters_.of_triangle; }
+  RadialView radial_view() const override { return hierarchy_.view(unmerged_); }
 
  private:
   radial::AtomicClusters clusters_;

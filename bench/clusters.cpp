@@ -36,6 +36,8 @@ void clusters(const ClusterOptions& options) {
   ContactSet ignored;
   prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, ignored);
 
+  const RadialView view = prepared.detector->radial_view();
+
   nlohmann::json positions = nlohmann::json::array(), triangles = nlohmann::json::array();
   for (const Vec3& x : interval.motion.start()) positions.push_back({x.x(), x.y(), x.z()});
   for (const Triangle& corner : input.mesh.triangles())
@@ -46,7 +48,8 @@ void clusters(const ClusterOptions& options) {
                                    {"strategy", strategy->name},
                                    {"frame", options.frame},
                                    {"triangle_cluster", prepared.preparation.atomic_cluster},
-                                   {"mega_cluster", prepared.detector->clusters()},
+                                   {"mega_cluster", view.cluster},
+                                   {"positive", view.positive},
                                    {"positions", std::move(positions)},
                                    {"triangles", std::move(triangles)}};
   output.commit(document.dump() + "\n");
@@ -56,8 +59,10 @@ void clusters(const ClusterOptions& options) {
 
 void add_clusters(CLI::App& app) {
   auto options = std::make_shared<ClusterOptions>();
-  CLI::App* command = app.add_subcommand(
-      "clusters", "Write the surface at one frame with the cluster of every triangle, for a picture.");
+  CLI::App* command = app.add_subcommand("clusters",
+                                         "Write the surface at one frame with the cluster of every triangle "
+                                         "and whether its observer saw it as positive "
+                                         "throughout the interval, for a picture.");
   command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--frame", options->frame, "where the interval starts")->capture_default_str();
   command->add_option("--strategy", options->strategy,

@@ -114,7 +114,7 @@ class ComposedDetector : public Detector {
     report.ms.elementary = clock_.milliseconds(Stage::elementary);
     return report;
   }
-  std::vector<std::int32_t> clusters() const override { return culler_->clusters(); }
+  RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:
   StageClock clock_;

@@ -24,7 +24,7 @@ class ListCuller : public Culler {
     for (const TrianglePair& pair : pairs_) sink.add(pair.a, pair.b);
     return {};
   }
-  std::vector<std::int32_t> clusters() const override { return {7}; }
+  RadialView radial_view() const override { return {{7}, {true}}; }
 
  private:
   std::vector<TrianglePair> pairs_;
@@ -291,7 +291,7 @@ TEST(Compose, StagesThatDoNotExistAreAbsent) {
     EXPECT_EQ(report.ms.rv_update.has_value(), classifies);
     EXPECT_FALSE(report.cull.radial.has_value());
     EXPECT_GT(report.ms.elementary, 0);
-    EXPECT_EQ(detector->clusters(), std::vector<std::int32_t>{7});
+    EXPECT_EQ(detector->radial_view().cluster, std::vector<std::int32_t>{7});
   }
 }
 

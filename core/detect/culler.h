@@ -5,6 +5,7 @@
 
 #include "core/base/ids.h"
 #include "core/detect/counts.h"
+#include "core/detect/radial_view.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/rig.h"
 
@@ -55,8 +56,7 @@ class Culler {
   virtual bool classify(const Motion& /*motion*/, const Rig::Interval* /*bones*/) { return false; }
   // Passes every pair that is not proven apart to the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
-  // For pictures: the cluster of each triangle in the last interval; empty where there are none.
-  virtual std::vector<std::int32_t> clusters() const { return {}; }
+  virtual RadialView radial_view() const { return {}; }
 };
 
 }  // namespace cscd

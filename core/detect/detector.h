@@ -4,6 +4,7 @@
 
 #include "core/detect/contact.h"
 #include "core/detect/counts.h"
+#include "core/detect/radial_view.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/rig.h"
 
@@ -30,8 +31,7 @@ class Detector {
  public:
   virtual ~Detector() = default;
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
-  // For pictures: the cluster of each triangle in the last interval; empty where there are none.
-  virtual std::vector<std::int32_t> clusters() const { return {}; }
+  virtual RadialView radial_view() const { return {}; }
 };
 
 }  // namespace cscd

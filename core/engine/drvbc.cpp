@@ -48,11 +48,7 @@ class DrvbcCuller : public Culler {
     return counts;
   }
 
-  std::vector<std::int32_t> clusters() const override {
-    std::vector<std::int32_t> of_triangle = clusters_.of_triangle;
-    for (std::int32_t& label : of_triangle) label = mega_.labels()[static_cast<std::size_t>(label)];
-    return of_triangle;
-  }
+  RadialView radial_view() const override { return hierarchy_.view(mega_.labels()); }
 
  private:
   radial::AtomicClusters clusters_;

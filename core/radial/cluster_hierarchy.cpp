@@ -76,4 +76,16 @@ CullCounts ClusterHierarchy::cull(std::span<const std::int32_t> merged, Triangle
   return counts;
 }
 
+RadialView ClusterHierarchy::view(std::span<const std::int32_t> merged) const {
+  RadialView view{std::vector<std::int32_t>(mesh_.triangle_count()),
+                  std::vector<bool>(mesh_.triangle_count())};
+  for (std::size_t c = 0; c < groups_.size(); ++c)
+    for (std::size_t i = 0; i < groups_[c].size(); ++i) {
+      const auto triangle = static_cast<std::size_t>(groups_[c][i]);
+      view.cluster[triangle] = merged[c];
+      view.positive[triangle] = class_of_leaf_[first_leaf_[c] + i] == Orientation::positive;
+    }
+  return view;
+}
+
 }  // namespace cscd::radial

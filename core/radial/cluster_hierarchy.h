@@ -42,6 +42,8 @@ class ClusterHierarchy {
 
   // Pairs to look at when atomic clusters with the same label act as one. Returns the overlap tests.
   CullCounts cull(std::span<const std::int32_t> merged, TrianglePairSink& sink) const;
+  // The same clusters and the classes, by triangle.
+  RadialView view(std::span<const std::int32_t> merged) const;
 
  private:
   const TriangleMesh& mesh_;

@@ -106,6 +106,18 @@ TEST(ClusterHierarchy, GroupsAreTheClusters) {
   }
 }
 
+TEST(ClusterHierarchy, ShowsTheClassAndTheLabelOfEveryTriangle) {
+  Scene scene(test::torus(), 2, 5);
+  scene.set_classes(30, 20);
+  const std::vector<std::int32_t> merged = scene.random_labels(3);
+  const RadialView view = scene.hierarchy.view(merged);
+  ASSERT_EQ(view.cluster.size(), scene.mesh.triangle_count());
+  for (std::size_t t = 0; t < view.cluster.size(); ++t) {
+    EXPECT_EQ(view.cluster[t], merged[static_cast<std::size_t>(scene.clusters.of_triangle[t])]);
+    EXPECT_EQ(view.positive[t], scene.class_of[t] == Orientation::positive);
+  }
+}
+
 TEST(ClusterHierarchy, CullsExactlyTheSameSignPairsOfOneLabelAndNoOther) {
   const test::Shape shapes[] = {
       test::icosphere(2), test::torus(),
