@@ -4,6 +4,7 @@
 
 #include "bench/catalogue.h"
 #include "bench/input.h"
+#include "bench/kernels/elementary.h"
 #include "core/hierarchy/bounds.h"
 #include "core/hierarchy/descent.h"
 #include "core/radial/orientation.h"
@@ -123,6 +124,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
+    cscd::bench::register_elementary();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "cscd_kernels: %s\n", error.what());

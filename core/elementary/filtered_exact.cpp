@@ -2,15 +2,16 @@
 //
 // Four stages, each of which leaves what it cannot prove to the next:
 //   filter    the four points are coplanar at no time, or the relative boxes are apart (as for `exact`);
-//   doubles   certain signs in double precision (doubles_stage.h);
-//   integers  exact integers of fixed capacity (integer_contact.h); they also give the time of a contact that
-//             is already certain;
+//   doubles   certain signs in double precision (doubles_stage.h); the time of a contact then takes pairs of
+//             doubles (contact_time.h);
+//   integers  exact integers of fixed capacity (integer_contact.h);
 //   referee   for coordinates whose bits span more than those can hold.
 // Nothing allocates before the last.
 #include "core/elementary/filtered_exact.h"
 
 #include <cmath>
 
+#include "core/elementary/contact_time.h"
 #include "core/elementary/doubles_stage.h"
 #include "core/elementary/exact.h"
 #include "core/elementary/integer_contact.h"
@@ -48,6 +49,8 @@ Decision decide(const Query& query) {
   const DoublesResult found = decide_in_doubles<Query>(v, f);
   if (found.kind == DoublesResult::apart) return {kApart, ExactStage::doubles};
   if (found.kind == DoublesResult::unclear) return by_integers(query);
+  if (const auto time = time_in_pairs(query, v, f, found.low, found.high))
+    return {{Verdict::contact, *time}, ExactStage::doubles};
   const integer::Result exact = integer::contact_time(query, found.low, found.high);
   if (exact.outcome == integer::Outcome::gave_up) return by_referee(query);
   return {{Verdict::contact, exact.time}, ExactStage::doubles};
