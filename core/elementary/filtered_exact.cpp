@@ -16,6 +16,7 @@
 #include "core/elementary/exact.h"
 #include "core/elementary/integer_contact.h"
 #include "core/elementary/relative_box.h"
+#include "core/elementary/unit_scale.h"
 
 namespace cscd {
 namespace {
@@ -41,19 +42,37 @@ Decision by_integers(const Query& query) {
 }
 
 template <class Query>
+Decision time_by_integers(const Query& query, const DoublesResult& contact) {
+  const integer::Result result = integer::contact_time(query, contact.low, contact.high);
+  if (result.outcome == integer::Outcome::gave_up) return by_referee(query);
+  return {{Verdict::contact, result.time}, ExactStage::doubles};
+}
+
+// Where products of coordinates may underflow or overflow.
+template <class Query>
+Decision decide_beyond_range(const Query& query) {
+  const Query scaled = axes_scaled_to_unit(query);
+  const Triple v = triple(scaled);
+  const BernsteinCubic f = triple_product(v.p, v.q, v.r);
+  if (certain_sign(f) != 0) return {kApart, ExactStage::filter};
+  if (!std::isfinite(f.error)) return by_integers(query);
+  const DoublesResult found = decide_in_doubles<Query>(v, f);
+  if (found.kind == DoublesResult::apart) return {kApart, ExactStage::doubles};
+  return found.kind == DoublesResult::contact ? time_by_integers(query, found) : by_integers(query);
+}
+
+template <class Query>
 Decision decide(const Query& query) {
   const Triple v = triple(query);
   const BernsteinCubic f = triple_product(v.p, v.q, v.r);
   if (certain_sign(f) != 0 || relative_boxes_apart(query)) return {kApart, ExactStage::filter};
-  if (!std::isfinite(f.error)) return by_integers(query);
+  if (!std::isfinite(f.error)) return decide_beyond_range(query);
   const DoublesResult found = decide_in_doubles<Query>(v, f);
   if (found.kind == DoublesResult::apart) return {kApart, ExactStage::doubles};
   if (found.kind == DoublesResult::unclear) return by_integers(query);
   if (const auto time = time_in_pairs(query, v, f, found.low, found.high))
     return {{Verdict::contact, *time}, ExactStage::doubles};
-  const integer::Result exact = integer::contact_time(query, found.low, found.high);
-  if (exact.outcome == integer::Outcome::gave_up) return by_referee(query);
-  return {{Verdict::contact, exact.time}, ExactStage::doubles};
+  return time_by_integers(query, found);
 }
 
 }  // namespace
