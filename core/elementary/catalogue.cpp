@@ -25,6 +25,9 @@ constexpr std::array kTests = {
     ElementaryTest{
         "newton", "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
         false, plain<MovingVertexFace, newton_vertex_face>, plain<MovingEdgeEdge, newton_edge_edge>},
+    ElementaryTest{"newton_float", "the same in single precision, coordinates rounded to floats", false,
+                   false, plain<MovingVertexFace, newton_float_vertex_face>,
+                   plain<MovingEdgeEdge, newton_float_edge_edge>},
     ElementaryTest{"filtered_exact",
                    "ours: certified signs in double precision, then in integers of fixed capacity", true,
                    true, plain<MovingVertexFace, filtered_exact_vertex_face>,

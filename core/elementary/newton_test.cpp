@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "core/elementary/exact.h"
 #include "core/elementary/filter.h"
@@ -286,18 +287,68 @@ TEST_F(Newton, CollapsedFeatures) {
             Verdict::apart);
 }
 
-// Far too large or small for the error bound: nothing is known, and nothing is claimed.
-TEST_F(Newton, BeyondTheRangeIsUndecidedOrRight) {
+// Where products of coordinates underflow or overflow, the answers are those at the size of 1.
+TEST_F(Newton, ScalesWhatIsBeyondTheRange) {
+  for (const double scale : {0x1p-1000, 0x1p-660, 0x1p-370, 0x1p330, 0x1p365, 0x1p530, 0x1p1019}) {
+    int contacts = 0;
+    for (int i = 0; i < 200; ++i) {
+      // With a last bit that survives the smallest scale.
+      FourMovingPoints p = test::vertex_meets_face(make_, 0.5, make_.uniform(-0.2, 0.4), 0.25);
+      FourMovingPoints beyond = p;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const auto shortened = [](const Vec3& x) { return Vec3((x * 0x1p20).array().round() * 0x1p-20); };
+        p[k] = {shortened(p[k].start), shortened(p[k].end)};
+        beyond[k] = {scale * p[k].start, scale * p[k].end};
+      }
+      const auto expect_same = [&](const Answer& here, const Answer& there) {
+        ASSERT_EQ(here.verdict, there.verdict) << scale;
+        if (here.verdict != Verdict::apart) {
+          ASSERT_EQ(here.time, there.time) << scale;
+        }
+        contacts += here.verdict == Verdict::contact;
+      };
+      expect_same(newton(query_of<MovingVertexFace>(p)), newton(query_of<MovingVertexFace>(beyond)));
+      expect_same(newton(query_of<MovingEdgeEdge>(p)), newton(query_of<MovingEdgeEdge>(beyond)));
+      expect_same(newton_float_vertex_face(query_of<MovingVertexFace>(p)),
+                  newton_float_vertex_face(query_of<MovingVertexFace>(beyond)));
+    }
+    EXPECT_GT(contacts, 100);
+  }
+}
+
+// Scales too far apart for products in double precision: nothing is known, and nothing is claimed.
+TEST_F(Newton, MixedScalesAreUndecidedOrRight) {
   for (const double scale : {1e-320, 1e-200, 1e-110, 1e110, 1e160, 1e307}) {
     for (int i = 0; i < 200; ++i) {
       FourMovingPoints p = test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
-      for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
+      for (std::size_t k = 0; k < 4; ++k)
+        if (i % 3 != 0 || k % 2 == 0) p[k] = {scale * p[k].start, scale * p[k].end};
       const auto query = query_of<MovingVertexFace>(p);
       if (exact::first_contact(query)) {
         ASSERT_NE(newton(query).verdict, Verdict::apart) << scale;
       }
     }
   }
+}
+
+// Single precision is right where it need not be better.
+TEST_F(Newton, FloatsAgreeWithTheRefereeWhereFeaturesCross) {
+  int contacts = 0, wrong = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = make_.uniform(0.05, 0.95), u = make_.uniform(-0.3, 0.45), v = make_.uniform(0.05, 0.45);
+    const auto vf = query_of<MovingVertexFace>(test::vertex_meets_face(make_, t, u, v));
+    const auto ee = query_of<MovingEdgeEdge>(test::edge_meets_edge(make_, t, 2 * u, 2 * v));
+    for (const auto& [answer, truth] : {std::pair(newton_float_vertex_face(vf), exact::first_contact(vf)),
+                                        std::pair(newton_float_edge_edge(ee), exact::first_contact(ee))}) {
+      contacts += truth.has_value();
+      wrong += (answer.verdict == Verdict::contact) != truth.has_value();
+      if (truth && answer.verdict == Verdict::contact) {
+        EXPECT_NEAR(answer.time, truth->lo, 1e-3);
+      }
+    }
+  }
+  EXPECT_GT(contacts, 3000);
+  EXPECT_LT(wrong, 20);
 }
 
 // Cubics that are almost zero leave nothing to cut. Generous: a thousandth of a second each on a slow machine
