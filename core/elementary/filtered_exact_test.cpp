@@ -255,15 +255,18 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
   }
 }
 
-// Subnormal against huge: more bits than the integers hold.
+// A vertex that passes the tilted plane z = x by the smallest of doubles: more bits than the integers hold.
 TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
-  const double tiny = 0x1p-1074, huge = 1e150;
+  constexpr double tiny = 0x1p-1074;
   const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
-  const MovingPoint a = still(-huge, -huge, 0), b = still(huge, -huge, 1), c = still(0, huge, -1);
-  const MovingVertexFace query{{{0, 0, tiny}, {0, 1, -tiny}}, {a, b, c}};
-  EXPECT_EQ(filtered_exact_stage(query), ExactStage::referee);
-  const auto truth = exact::first_contact(query);
-  EXPECT_EQ(ask(query).verdict, truth ? Verdict::contact : Verdict::apart);
+  const MovingPoint a = still(-1, -1, -1), b = still(1, -1, 1), c = still(0, 1, 0);
+  const MovingVertexFace crosses{{{0, 0, tiny}, {0, 0, -tiny}}, {a, b, c}},
+      stays{{{0, 0, 2 * tiny}, {0, 0, tiny}}, {a, b, c}};
+  for (const MovingVertexFace& query : {crosses, stays})
+    EXPECT_EQ(filtered_exact_stage(query), ExactStage::referee);
+  EXPECT_EQ(ask(crosses).verdict, Verdict::contact);
+  EXPECT_EQ(ask(crosses).time, 0.5);
+  EXPECT_EQ(ask(stays).verdict, Verdict::apart);
 }
 
 // The tests of the tests: with one bound gone, the stage in double precision claims what is not so, and the
