@@ -46,8 +46,8 @@ double approach(const MovingEdgeEdge& q) {
 
 template <class Query>
 Answer additive(const Query& given, const TestParameters& parameters) {
-  const Query query = in_range(given);
-  if (never_coplanar(query)) return {Verdict::apart, 0};
+  if (never_coplanar(given)) return {Verdict::apart, 0};
+  const Query query = relative(in_range(given));
   double distance = distance_at(query, 0);
   if (distance == 0) return {Verdict::contact, 0};
   const double speed = approach(query), near = parameters.tolerance * distance;

@@ -59,9 +59,10 @@ double root_between(const BernsteinCubic& f, double low, double high) {
 
 template <class Query>
 Answer cubic(const Query& given, const TestParameters& parameters) {
-  const Query query = in_range(given);
-  const BernsteinCubic f = coplanarity(query);
+  const Query scaled = in_range(given);
+  const BernsteinCubic f = coplanarity(scaled);
   if (certain_sign(f) != 0) return {Verdict::apart, 0};
+  const Query query = relative(scaled);
   const double near = parameters.tolerance * extent(query);
   const auto touch = [&](double t) { return distance_at(query, t) <= near; };
 

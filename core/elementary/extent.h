@@ -30,7 +30,22 @@ Vec3 largest_coordinates(const Query& query) {
   return largest;
 }
 
-// The longest side of the box of all points at both ends: the length that tolerances are shares of.
+// Seen from its first corner, or its first edge's first end, in motion: whether and when features touch does
+// not change, nor how far apart they are. Every coordinate is one rounded difference.
+inline MovingPoint seen_from(const MovingPoint& from, const MovingPoint& p) {
+  return {p.start - from.start, p.end - from.end};
+}
+inline MovingVertexFace relative(const MovingVertexFace& q) {
+  const auto part = [&](const MovingPoint& p) { return seen_from(q.corner[0], p); };
+  return {part(q.vertex), {part(q.corner[0]), part(q.corner[1]), part(q.corner[2])}};
+}
+inline MovingEdgeEdge relative(const MovingEdgeEdge& q) {
+  const auto part = [&](const MovingPoint& p) { return seen_from(q.first[0], p); };
+  return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
+}
+
+// The longest side of the box of all points at both ends. Of a relative query: the length that tolerances are
+// shares of.
 template <class Query>
 double extent(const Query& query) {
   Vec3 low, high;

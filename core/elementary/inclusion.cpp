@@ -18,9 +18,10 @@
 // half along the argument that moves F most, until the hull is smaller than the tolerance along every axis.
 //
 // Differences to Wang et al.: depth first with the earlier half in front and everything dropped that begins
-// after a contact already found (no queue, no allocation); the rounding error grows with the coordinates
-// themselves, axis by axis, instead of with min(1, x), whose bound misses contacts far from the origin; the
-// tolerance is relative to the query and never below what rounding can tell apart; a certified
+// after a contact already found (no queue, no allocation); everything is seen from one of the points in
+// motion, so that the rounding error grows with the size of the query and its relative motion, not with its
+// distance from the origin (theirs grows with min(1, x) where max(1, x) is needed, and misses contacts
+// there); the tolerance is relative to the query and never below what rounding can tell apart; a certified
 // non-penetration filter stands in front.
 //
 // A "no" is a proof. A "contact" bounds the distance, not the error in time: features that are slow are
@@ -29,11 +30,12 @@ namespace cscd {
 namespace {
 
 // Arguments are dyadic numbers with at most 52 binary places, so they, their differences from 1 and u + v are
-// exact. With u the unit roundoff and M the largest coordinate along the axis: a point at time t is off by 2
-// u M; weights of a vertex-face query sum to at most 3, which gives (6 + 9) u M for the point of the face and
-// 2 u M for the vertex; the last subtraction rounds 4 M. 21 u M in all, less for two edges. 24 also pays for
-// terms of second order; the constant for products that underflow and for coordinates moved by in_range.
-constexpr double kRelativeError = 24 * kUnitRoundoff, kUnderflow = 0x1p-1060;
+// exact. With u the unit roundoff and M the largest relative coordinate along the axis: coordinates are off
+// by u M; a point at time t by 2 u M more; weights of a vertex-face query sum to at most 3, which gives (3 +
+// 6 + 9) u M for the point of the face and 3 u M for the vertex; the last subtraction rounds 4 M. 25 u M in
+// all, less for two edges. 28 also pays for terms of second order; the constant for products that underflow
+// and for coordinates moved by in_range.
+constexpr double kRelativeError = 28 * kUnitRoundoff, kUnderflow = 0x1p-1060;
 // No hull is asked to be smaller than this many rounding errors; it is reached before 52 halvings.
 constexpr double kResolution = 64;
 
@@ -140,7 +142,7 @@ class Waiting {
 template <class Query>
 Answer inclusion(const Query& given, const TestParameters& parameters) {
   if (never_coplanar(given)) return {Verdict::apart, 0};
-  const Query query = in_range(given);
+  const Query query = relative(in_range(given));
   const Vec3 error = kRelativeError * largest_coordinates(query) + Vec3::Constant(kUnderflow);
   const double small = std::max(parameters.tolerance * extent(query), kResolution * error.maxCoeff());
 

@@ -53,7 +53,7 @@ TEST(Inclusion, ContactsAreNear) {
         nearest = std::min(nearest, distance_at(query, answer.time + k * (1 - answer.time) / 4096));
       // Within half a sample of the nearest place, features move relative to each other by less than this.
       const double slack = 4 * extent(query) / 8192;
-      EXPECT_LE(nearest, std::sqrt(3.0) * tolerance * extent(query) + slack);
+      EXPECT_LE(nearest, std::sqrt(3.0) * tolerance * extent(relative(query)) + slack);
     };
     const auto vf = query_of<MovingVertexFace>(make.any());
     const auto ee = query_of<MovingEdgeEdge>(make.any());
