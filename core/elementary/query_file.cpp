@@ -137,4 +137,20 @@ std::vector<Query> read_queries(const std::filesystem::path& file) {
   return queries;
 }
 
+std::string query_text(std::span<const Query> queries) {
+  std::string text;
+  for (const Query& query : queries)
+    for (const bool end : {false, true})
+      for (const MovingPoint& point : query.points) {
+        const Vec3& p = end ? point.end : point.start;
+        for (int axis = 0; axis < 3; ++axis) {
+          const mpq_class value(p[axis]);
+          text += (axis ? "," : "") + value.get_num().get_str() + "," + value.get_den().get_str();
+        }
+        if (query.truth) text += *query.truth ? ",1" : ",0";
+        text += '\n';
+      }
+  return text;
+}
+
 }  // namespace cscd

@@ -3,8 +3,10 @@
 #include <fstream>
 #include <gmpxx.h>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -153,6 +155,28 @@ TEST(QueryFile, SurvivesDamage) {
     }
   }
   EXPECT_GT(refused, 100) << "seed " << seed;
+}
+
+TEST(QueryFile, WhatIsWrittenIsReadBackBitForBit) {
+  std::mt19937_64 random(3);
+  const double values[] = {0, -1, 0.1, 1e-300, -0x1p-1074, 1e150, 0x1.fffffffffffffp1023, 1.0 / 3};
+  std::vector<Query> queries(20);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    queries[i].truth = i % 3 == 0;
+    for (MovingPoint& p : queries[i].points)
+      for (Vec3* x : {&p.start, &p.end})
+        for (int axis = 0; axis < 3; ++axis) (*x)[axis] = values[random() % std::size(values)];
+  }
+  const ScratchFile file(query_text(queries));
+  const std::vector<Query> read = read_queries(file.path());
+  ASSERT_EQ(read.size(), queries.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].truth, queries[i].truth);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(read[i].points[k].start, queries[i].points[k].start);
+      EXPECT_EQ(read[i].points[k].end, queries[i].points[k].end);
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,208 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/elementary/brute_referee.h"
+#include "core/elementary/elementary_test.h"
+#include "core/elementary/exact.h"
+#include "scenes/hard/disturbance.h"
+#include "scenes/hard/family.h"
+
+namespace cscd::scenes::hard {
+namespace {
+
+constexpr std::uint64_t kSeed = 5;
+constexpr Kind kKinds[] = {Kind::vertex_face, Kind::edge_edge};
+
+std::string text(const Query& query) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const MovingPoint& p : query.points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
+  return out.str();
+}
+Answer ask(const ElementaryTest& row, const Query& query, Kind kind) {
+  return kind == Kind::vertex_face ? row.vertex_face(as_vertex_face(query))
+                                   : row.edge_edge(as_edge_edge(query));
+}
+std::optional<exact::TimeEnclosure> truth_of(const Query& query, Kind kind) {
+  return kind == Kind::vertex_face ? exact::first_contact(as_vertex_face(query))
+                                   : exact::first_contact(as_edge_edge(query));
+}
+
+// Calls with every family, kind and number.
+template <class Check>
+void for_each_case(std::size_t count, const Check& check) {
+  for (const Family& family : families())
+    for (const Kind kind : kKinds)
+      for (std::size_t i = 0; i < count; ++i) {
+        SCOPED_TRACE(std::string(family.name) + (kind == Kind::vertex_face ? " vf " : " ee ") +
+                     std::to_string(i));
+        check(family, kind, i);
+        if (testing::Test::HasFailure()) return;
+      }
+}
+
+TEST(HardCases, EveryFamilyHasContactsAndNone) {
+  for (const Family& family : families()) {
+    EXPECT_FALSE(family.story.empty());
+    for (const Kind kind : kKinds) {
+      int contacts = 0, off_lattice = 0;
+      constexpr int count = 400;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Query query = suite_query(family, kind, i, kSeed);
+        for (const MovingPoint& p : query.points) {
+          ASSERT_TRUE(p.start.allFinite()) << family.name;
+          ASSERT_TRUE(p.end.allFinite()) << family.name;
+        }
+        contacts += in_contact(query, kind);
+        off_lattice += in_contact(random_query(family, kind, 1e-9, i, kSeed), kind);
+      }
+      EXPECT_GT(contacts, count / 50) << family.name << static_cast<int>(kind);
+      EXPECT_LT(contacts, count * 49 / 50) << family.name << static_cast<int>(kind);
+      EXPECT_GT(off_lattice, 0) << family.name << static_cast<int>(kind);
+      EXPECT_LT(off_lattice, count) << family.name << static_cast<int>(kind);
+    }
+  }
+}
+
+TEST(HardCases, DependOnTheSeedAlone) {
+  for_each_case(3, [](const Family& family, Kind kind, std::size_t i) {
+    EXPECT_EQ(text(suite_query(family, kind, i, kSeed)), text(suite_query(family, kind, i, kSeed)));
+    EXPECT_EQ(text(random_query(family, kind, 1e-3, i, kSeed)),
+              text(random_query(family, kind, 1e-3, i, kSeed)));
+  });
+}
+
+// The truth has a second proof that shares no algorithm with the first.
+TEST(HardCases, ASecondRefereeAgreesOnTheLattice) {
+  for_each_case(6, [](const Family& family, Kind kind, std::size_t i) {
+    Random random(kSeed + i);
+    const Query query = family.make(kind, random);
+    const brute::Four points{brute::moving(query.points[0]), brute::moving(query.points[1]),
+                             brute::moving(query.points[2]), brute::moving(query.points[3])};
+    const auto brute =
+        brute::first_contact(points, kind == Kind::vertex_face ? brute::kVertexTriangle : brute::kEdgeEdge);
+    EXPECT_EQ(brute.has_value(), in_contact(query, kind)) << text(query);
+  });
+}
+
+TEST(HardCases, ProofsHoldOnTheSuite) {
+  for_each_case(240, [](const Family& family, Kind kind, std::size_t i) {
+    const Query query = suite_query(family, kind, i, kSeed);
+    const auto truth = truth_of(query, kind);
+    for (const ElementaryTest& row : elementary_tests()) {
+      if (!row.apart_is_proof && !row.contact_is_proof) continue;
+      const Answer answer = ask(row, query, kind);
+      if (row.apart_is_proof && truth) {
+        EXPECT_NE(answer.verdict, Verdict::apart) << row.name << "\n" << text(query);
+        EXPECT_LE(answer.time, truth->hi) << row.name << "\n" << text(query);
+      }
+      if (row.contact_is_proof && !truth) {
+        EXPECT_NE(answer.verdict, Verdict::contact) << row.name << "\n" << text(query);
+      }
+    }
+  });
+}
+
+TEST(HardCases, ProofsHoldAtEveryHardness) {
+  for (double hardness = 0.1; hardness > 1e-17; hardness /= 100)
+    for_each_case(24, [&](const Family& family, Kind kind, std::size_t i) {
+      const Query query = random_query(family, kind, hardness, i, kSeed);
+      const bool contact = in_contact(query, kind);
+      for (const ElementaryTest& row : elementary_tests()) {
+        if (row.apart_is_proof && contact) {
+          EXPECT_NE(ask(row, query, kind).verdict, Verdict::apart) << row.name << "\n" << text(query);
+        }
+        if (row.contact_is_proof && !contact) {
+          EXPECT_NE(ask(row, query, kind).verdict, Verdict::contact) << row.name << "\n" << text(query);
+        }
+      }
+    });
+}
+
+template <class Map>
+Query mapped(Query query, const Map& map) {
+  for (MovingPoint& p : query.points) p = {map(p.start), map(p.end)};
+  return query;
+}
+Query swapped(Query query, std::size_t a, std::size_t b) {
+  std::swap(query.points[a], query.points[b]);
+  return query;
+}
+
+// Nothing where a coordinate would lose digits or overflow.
+std::optional<Query> scaled_exactly(const Query& query, int exponent) {
+  bool exact = true;
+  const Query there = mapped(query, [&](const Vec3& p) {
+    Vec3 q;
+    for (int axis = 0; axis < 3; ++axis) {
+      q[axis] = std::ldexp(p[axis], exponent);
+      exact = exact && std::ldexp(q[axis], -exponent) == p[axis];
+    }
+    return q;
+  });
+  return exact ? std::optional(there) : std::nullopt;
+}
+
+// Rows that are exact both ways must not be moved by what leaves the truth alone.
+TEST(HardCases, ExactAnswersKeepUnderSymmetries) {
+  for_each_case(48, [](const Family& family, Kind kind, std::size_t i) {
+    const Query query = suite_query(family, kind, i, kSeed);
+    std::vector<Query> same = {mapped(query, [](const Vec3& p) { return Vec3(-p); }),
+                               mapped(query, [](const Vec3& p) { return Vec3(p.z(), p.x(), p.y()); })};
+    if (kind == Kind::vertex_face) {
+      same.push_back(swapped(query, 1, 2));
+      same.push_back(swapped(query, 2, 3));
+    } else {
+      same.push_back(swapped(query, 0, 1));
+      same.push_back(swapped(query, 2, 3));
+      same.push_back(swapped(swapped(query, 0, 2), 1, 3));
+    }
+    for (const int exponent : {-200, 150})
+      if (const auto there = scaled_exactly(query, exponent)) same.push_back(*there);
+    Query reversed = query;
+    for (MovingPoint& p : reversed.points) std::swap(p.start, p.end);
+    for (const ElementaryTest& row : elementary_tests()) {
+      if (!row.apart_is_proof || !row.contact_is_proof) continue;
+      const Answer answer = ask(row, query, kind);
+      for (std::size_t k = 0; k < same.size(); ++k) {
+        const Answer again = ask(row, same[k], kind);
+        EXPECT_EQ(again.verdict, answer.verdict) << row.name << ", symmetry " << k << "\n" << text(query);
+        if (answer.verdict == Verdict::contact) {
+          EXPECT_EQ(again.time, answer.time) << row.name << ", symmetry " << k << "\n" << text(query);
+        }
+      }
+      EXPECT_EQ(ask(row, reversed, kind).verdict, answer.verdict) << row.name << "\n" << text(query);
+    }
+  });
+}
+
+// Translation by an amount that every coordinate can be moved by without rounding.
+TEST(HardCases, ExactAnswersKeepUnderExactTranslation) {
+  for (const Family& family : families()) {
+    if (family.name == "extreme_scale" || family.name == "grazing") continue;  // no room in the digits
+    for (const Kind kind : kKinds)
+      for (int i = 0; i < 24; ++i) {
+        Random random(kSeed + static_cast<std::uint64_t>(i));
+        const Query query = family.make(kind, random);
+        const Vec3 by(1 << 20, -12345, 1 << 18);
+        const Query there = mapped(query, [&](const Vec3& p) { return Vec3(p + by); });
+        for (const ElementaryTest& row : elementary_tests()) {
+          if (!row.apart_is_proof || !row.contact_is_proof) continue;
+          const Answer a = ask(row, query, kind), b = ask(row, there, kind);
+          EXPECT_EQ(a.verdict, b.verdict) << row.name << " " << family.name << "\n" << text(query);
+          if (a.verdict == Verdict::contact) {
+            EXPECT_EQ(a.time, b.time) << row.name << " " << family.name;
+          }
+        }
+      }
+  }
+}
+
+}  // namespace
+}  // namespace cscd::scenes::hard
