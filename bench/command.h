@@ -24,5 +24,7 @@ void add_list(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_clusters(CLI::App& app);
 void add_nearness(CLI::App& app);
+void add_hardcases(CLI::App& app);
+void add_accuracy(CLI::App& app);
 
 }  // namespace cscd::bench

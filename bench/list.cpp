@@ -7,6 +7,7 @@
 #include "bench/output.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/effects/effect.h"
+#include "scenes/hard/family.h"
 
 namespace cscd::bench {
 namespace {
@@ -59,6 +60,13 @@ json effects_json() {
   return rows;
 }
 
+json families_json() {
+  json rows = json::array();
+  for (const scenes::hard::Family& family : scenes::hard::families())
+    rows.push_back({{"name", family.name}, {"story", family.story}});
+  return rows;
+}
+
 struct Section {
   const char* name;
   json (*rows)();
@@ -66,7 +74,8 @@ struct Section {
 constexpr Section kSections[] = {{"scenes", scenes_json},
                                  {"strategies", strategies_json},
                                  {"tests", tests_json},
-                                 {"effects", effects_json}};
+                                 {"effects", effects_json},
+                                 {"families", families_json}};
 
 std::string text(const json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -100,10 +109,11 @@ void list(const std::string& only, bool as_json) {
 void add_list(CLI::App& app) {
   auto only = std::make_shared<std::string>();
   auto as_json = std::make_shared<bool>(false);
-  CLI::App* command =
-      app.add_subcommand("list", "Show the scenes, strategies, elementary tests and effects there are.");
-  command->add_option("what", *only, "one of scenes, strategies, tests, effects; default all")
-      ->check(CLI::IsMember({"scenes", "strategies", "tests", "effects"}));
+  CLI::App* command = app.add_subcommand(
+      "list",
+      "Show the scenes, strategies, elementary tests, effects and families of hard queries there are.");
+  command->add_option("what", *only, "one of scenes, strategies, tests, effects, families; default all")
+      ->check(CLI::IsMember({"scenes", "strategies", "tests", "effects", "families"}));
   command->add_flag("--json", *as_json, "for a machine to read");
   command->callback([only, as_json] { list(*only, *as_json); });
 }
