@@ -7,6 +7,7 @@
 #include "bench/command.h"
 #include "bench/environment.h"
 #include "bench/json_text.h"
+#include "bench/knobs.h"
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/schema.h"
@@ -23,10 +24,12 @@ using nlohmann::ordered_json;
 
 struct AccuracyOptions {
   std::vector<std::string> scenes;
+  std::vector<std::string> knob_scenes;
   std::string set, elementary = "all", sweep, output;
   std::vector<double> hardnesses;
   std::size_t every = 1, scene_queries = 0, open_queries = 0, hard_queries = 0, random_queries = 0,
               sweep_queries = 0;
+  KnobStudy knobs;
   int passes = 3;
   std::uint64_t seed = 1;
   bool smoke = false, force = false;
@@ -38,7 +41,7 @@ void choose_size(AccuracyOptions& options) {
   const auto number = [&](std::size_t& value, std::size_t small, std::size_t large) {
     if (value == 0) value = smoke ? small : large;
   };
-  number(options.scene_queries, 2000, 10'000'000);
+  number(options.scene_queries, 1000, 10'000'000);
   number(options.open_queries, 200, 10'000'000);
   number(options.hard_queries, 60, 20'000);
   number(options.random_queries, 20, 2000);
@@ -73,6 +76,12 @@ std::vector<std::string> command_line(const AccuracyOptions& o) {
   add("--hard-queries", std::to_string(o.hard_queries));
   add("--random-queries", std::to_string(o.random_queries));
   add("--hardness", joined(o.hardnesses));
+  add("--knobs", joined(o.knob_scenes));
+  if (!o.knob_scenes.empty()) {
+    add("--knob-every", std::to_string(o.knobs.every));
+    add("--knob-repetitions", std::to_string(o.knobs.repetitions));
+    add("--knob-elementary", o.knobs.elementary);
+  }
   add("--passes", std::to_string(o.passes));
   add("--seed", std::to_string(o.seed));
   return words;
@@ -224,7 +233,9 @@ void run_accuracy(AccuracyOptions options) {
     workload.next = nullptr;  // what it held
     progress.advance();
   }
-  const ordered_json record = study.json();
+  ordered_json record = study.json();
+  for (const std::string& scene : options.knob_scenes)
+    record["knobs"].push_back(study_knobs(scene, options.knobs));
   if (const std::string violation = schema_violation(record, "accuracy.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
   if (output) output->commit(json_text(record));
@@ -269,6 +280,19 @@ void add_accuracy(CLI::App& app) {
                    "shares of a query's size by which it is off its lattice")
       ->delimiter(',')
       ->check(CLI::Range(1e-18, 1.0));
+  command
+      ->add_option("--knobs", options->knob_scenes,
+                   "scenes on which the choices beyond the elementary test are varied")
+      ->delimiter(',');
+  command->add_option("--knob-every", options->knobs.every, "of their intervals, each K-th")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--knob-repetitions", options->knobs.repetitions, "of each interval's timing")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--knob-elementary", options->knobs.elementary, "the elementary test behind them in time")
+      ->capture_default_str();
   command->add_option("--passes", options->passes, "how often every test is asked the same block")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));

@@ -63,7 +63,16 @@ class PairTester : public TrianglePairSink {
   void test(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
-    filter(mesh_, *motion_, pairs, left_);
+    switch (options_.filter) {
+      case PairFilter::certain_sign:
+        filter(mesh_, *motion_, pairs, left_);
+        break;
+      case PairFilter::plain_sign:
+        filter_by_plain_sign(mesh_, *motion_, pairs, left_);
+        break;
+      case PairFilter::none:
+        left_.assign(pairs.begin(), pairs.end());
+    }
     for (const FeaturePair& pair : left_)
       if (met_.insert(pair)) test(pair);
   }

@@ -9,8 +9,13 @@
 
 namespace cscd {
 
+// Which feature pairs the coplanarity cubic drops: those of certain sign. The others are there to measure
+// what that certainty costs and saves; a plain sign, without its error bound, loses contacts.
+enum class PairFilter { certain_sign, plain_sign, none };
+
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
+  PairFilter filter = PairFilter::certain_sign;
   // What triangle pairs are tested for; null: all that they carry. Comes without relative boxes.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
 };

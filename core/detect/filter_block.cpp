@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/elementary/filter.h"
 #include "core/geometry/triple_product_lanes.h"
 
 namespace cscd {
@@ -47,6 +48,17 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
     const Sign8 signs = cubics.signs(motion);
     for (std::size_t l = 0; l < count; ++l)
       if (signs[l] == 0) left.push_back(pairs[first + l]);
+  }
+}
+
+void filter_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
+                          std::vector<FeaturePair>& left) {
+  for (const FeaturePair& pair : pairs) {
+    BernsteinCubic f = pair.kind == FeaturePair::Kind::vertex_face
+                           ? coplanarity(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
+                           : coplanarity(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+    f.error = 0;
+    if (certain_sign(f) == 0) left.push_back(pair);
   }
 }
 

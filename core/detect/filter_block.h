@@ -12,4 +12,9 @@ namespace cscd {
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 
+// The same with signs of rounded coefficients, as published (Tang et al. 2010): an ablation that may drop
+// features that touch. Pair by pair.
+void filter_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
+                          std::vector<FeaturePair>& left);
+
 }  // namespace cscd

@@ -50,5 +50,22 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
   }
 }
 
+// Without the error bound the sign of a rounding decides: features that touch are dropped.
+TEST(FilterBlock, ThePlainSignDropsNoLessAndLosesContacts) {
+  const TriangleMesh mesh = test::icosphere(1).mesh();
+  std::mt19937_64 random(11);
+  std::vector<Vec3> start = scattered(mesh.vertex_count(), random);
+  for (Vec3& x : start) x.z() = 0.1 * x.x() + 0.3 * x.y();  // all in one plane, but for rounding
+  const Motion motion(start, start);
+  std::vector<FeaturePair> pairs, certain, plain;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t)
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(mesh.vertex_count()); ++i)
+      pairs.push_back(FeaturePair::of(VertexId{i}, TriangleId{t}));
+  filter(mesh, motion, pairs, certain);
+  filter_by_plain_sign(mesh, motion, pairs, plain);
+  EXPECT_EQ(certain.size(), pairs.size());
+  EXPECT_LT(plain.size(), pairs.size());
+}
+
 }  // namespace
 }  // namespace cscd

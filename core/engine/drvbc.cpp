@@ -85,7 +85,8 @@ Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
-  return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};
+  PairOptions pairs{options.relative_boxes, options.filter};
+  return {compose(std::move(culler), setup.mesh, setup.elementary, std::move(pairs)), preparation};
 }
 
 }  // namespace cscd

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "core/detect/compose.h"
 #include "core/detect/strategy.h"
 #include "core/radial/orientation.h"
 
@@ -20,6 +21,7 @@ struct DrvbcOptions {
   bool refinement = true;           // of the atomic clusters by orientation (section 4)
   bool cache = true;                // of triangles that were not positive (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
+  PairFilter filter = PairFilter::certain_sign;
 };
 
 // Dynamic radial view based culling, the paper's method. Needs a closed, consistently oriented mesh and a
