@@ -69,7 +69,7 @@ struct Subject {
   Setting setting;
   std::unique_ptr<Detector> judged, timed;
   std::uint64_t contacts = 0, invented = 0, lost_first = 0;
-  std::vector<std::vector<double>> ms;  // by repetition
+  std::vector<double> ms;  // of each interval, the median over repetitions
 };
 
 std::set<FeaturePair> pairs_of(const ContactSet& found) {
@@ -91,7 +91,6 @@ nlohmann::ordered_json study_knobs(const std::string& scene, const KnobStudy& st
     const ElementaryTest& in_time = setting.elementary ? *setting.elementary : timed;
     subject.judged = setting.make(input.setup(in_truth)).detector;
     subject.timed = setting.make(input.setup(in_time)).detector;
-    subject.ms.resize(static_cast<std::size_t>(study.repetitions));
     subject.setting = std::move(setting);
   }
   const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(exact)).detector;
@@ -122,21 +121,19 @@ nlohmann::ordered_json study_knobs(const std::string& scene, const KnobStudy& st
       });
       subject.lost_first += embedded && !expected.empty() && !has_first;
     }
+    std::vector<std::vector<double>> samples(subjects.size());
     for (int repetition = 0; repetition < study.repetitions; ++repetition) {
       for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
-      for (const std::size_t k : order) {
-        const Report report = subjects[k].timed->detect(interval.motion, bones, answer);
-        subjects[k].ms[static_cast<std::size_t>(repetition)].push_back(report.ms.total());
-      }
+      for (const std::size_t k : order)
+        samples[k].push_back(subjects[k].timed->detect(interval.motion, bones, answer).ms.total());
     }
+    for (std::size_t k = 0; k < subjects.size(); ++k) subjects[k].ms.push_back(median(samples[k]));
   }
 
   ordered_json rows = ordered_json::array();
   double default_ms = 0;
   for (const Subject& subject : subjects) {
-    std::vector<double> means;
-    for (const std::vector<double>& repetition : subject.ms) means.push_back(mean(repetition));
-    const double ms = median(means);
+    const double ms = mean(subject.ms);
     if (&subject == &subjects.front()) {
       default_ms = ms;
       continue;
