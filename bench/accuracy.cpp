@@ -80,7 +80,7 @@ std::vector<std::string> command_line(const AccuracyOptions& o) {
   if (!o.knob_scenes.empty()) {
     add("--knob-every", std::to_string(o.knobs.every));
     add("--knob-repetitions", std::to_string(o.knobs.repetitions));
-    add("--knob-elementary", o.knobs.elementary);
+    add("--knob-colliding", std::to_string(o.knobs.colliding));
   }
   add("--passes", std::to_string(o.passes));
   add("--seed", std::to_string(o.seed));
@@ -290,8 +290,7 @@ void add_accuracy(CLI::App& app) {
   command->add_option("--knob-repetitions", options->knobs.repetitions, "of each interval's timing")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--knob-elementary", options->knobs.elementary, "the elementary test behind them in time")
+  command->add_option("--knob-colliding", options->knobs.colliding, "and so many of those with contacts")
       ->capture_default_str();
   command->add_option("--passes", options->passes, "how often every test is asked the same block")
       ->capture_default_str()
