@@ -17,6 +17,7 @@
 #include "baselines/selfccd.h"
 #include "core/base/error.h"
 #include "core/engine/drvbc.h"
+#include "core/engine/drvbc_fast.h"
 
 namespace cscd::bench {
 namespace {
@@ -42,6 +43,8 @@ constexpr std::array kStrategies = {
              [](const Setup& setup) { return make_rvbc(setup); }},
     Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup); }},
+    Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
+             true, [](const Setup& setup) { return make_drvbc_fast(setup); }},
 #ifdef CSCD_BASELINES_FCL
     Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
              Guarantee::heuristic, false, make_fcl, "checker", true},
@@ -69,6 +72,18 @@ constexpr std::array kStrategies = {
     Strategy{"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
              Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
+             kAblation},
+    Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone", Guarantee::first_contact,
+             true,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .second_cover = false});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
+             true,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
+             },
              kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
              Guarantee::heuristic, true,

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+struct DrvbcFastOptions {
+  std::string_view name = "drvbc_fast";  // begins error texts
+  // For the ablation.
+  bool second_cover = true;
+  bool time_linear = true;
+};
+
+// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh and a rig.
+Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
+
+}  // namespace cscd

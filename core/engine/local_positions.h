@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/motion.h"
+
+namespace cscd::fast {
+
+// The positions of one interval in float: shifted by the first vertex, scaled by a power of two that makes the
+// reference pose about one unit large. So coordinates far from the origin lose nothing, and neither very small
+// nor very large units underflow or overflow.
+class LocalPositions {
+ public:
+  // One vertex: x, y, z at the start, nothing, x, y, z at the end, nothing.
+  struct alignas(32) Record {
+    float at[8];
+  };
+
+  explicit LocalPositions(std::span<const Vec3> reference);
+
+  void update(const Motion& motion);
+
+  std::span<const Record> records() const { return records_; }
+  // Every coordinate is off by at most this much.
+  float error() const { return error_; }
+  // False where the motion leaves the range in which errors are known: nothing may be concluded then.
+  bool known() const { return known_; }
+
+ private:
+  double scale_;
+  std::vector<Record> records_;
+  float error_ = 0;
+  bool known_ = false;
+};
+
+}  // namespace cscd::fast

@@ -1,0 +1,188 @@
+#include "core/engine/patch_lanes.h"
+
+// Rounding. u = 2^-24; every coordinate is off by at most d = `error`, which is at least u times the largest.
+//
+// Bounds: a sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack from it
+// rounds by at most as much again and a little. So 7 d is enough for all directions.
+//
+// Orientation: (e1 x e2) . c with edges e1, e2 of the triangle and c from the viewpoint to a corner. A difference of
+// coordinates is off by 2 d and rounds by u of itself. Let A, B, C be the largest computed components of the three
+// and A' = A + 2 d, and so on. Every coefficient is a sum of products whose absolute values sum to 6 A B C (18 for the
+// middle two, which are three times the Bernstein coefficients). Errors of the factors change it by at most
+//   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C',
+// the eight roundings behind them by at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound
+// itself. Below kTiny products might underflow; nothing is certain then.
+namespace cscd::fast {
+namespace {
+
+constexpr float kTiny = 1e-30F;
+
+using Rows = Float16[kLanes16];
+using Float8 = float __attribute__((vector_size(32)));
+
+Float16 broadcast(float x) {
+  return Float16{} + x;
+}
+
+void directions(const Float16 (&p)[3], Float16* out) {
+  out[0] = p[0], out[1] = p[1], out[2] = p[2];
+  out[3] = p[0] + p[1], out[4] = p[0] + p[2], out[5] = p[1] + p[2];
+  out[6] = p[0] - p[1], out[7] = p[0] - p[2];
+}
+
+Float16 largest_component(const PatchLanes& v) {
+  const auto largest = [&](int end) {
+    return larger(larger(absolute(v.at[end][0]), absolute(v.at[end][1])), absolute(v.at[end][2]));
+  };
+  return larger(largest(0), largest(1));
+}
+
+PatchLanes corner_of(const PatchLanes& lanes, const Places16& place) {
+  PatchLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = permuted(lanes.at[end][i], place);
+  return out;
+}
+
+PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
+  PatchLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
+  return out;
+}
+
+}  // namespace
+
+PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& patch) {
+  // Two records a row: eight numbers of one vertex, eight of the fourth behind it. Four rows are transposed within
+  // their quarters, after which quarters of starts and of ends alternate.
+  Float16 half[2][3];
+  for (std::size_t h = 0; h < 2; ++h) {
+    Float16 row[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      Float8 record[2];
+      for (std::size_t k = 0; k < 2; ++k)
+        std::memcpy(&record[k], records[static_cast<std::size_t>(patch.vertex[8 * h + 4 * k + i])].at,
+                    sizeof record[k]);
+      row[i] = __builtin_shufflevector(record[0], record[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+                                       14, 15);
+    }
+    const auto first_two = [](Float16 a, Float16 b) {
+      return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+    };
+    const auto third = [](Float16 a, Float16 b) {
+      return __builtin_shufflevector(a, b, 2, 18, 2, 18, 6, 22, 6, 22, 10, 26, 10, 26, 14, 30, 14, 30);
+    };
+    const auto even_pairs = [](Float16 a, Float16 b) {
+      return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+    };
+    const auto odd_pairs = [](Float16 a, Float16 b) {
+      return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    };
+    const Float16 low01 = first_two(row[0], row[1]), low23 = first_two(row[2], row[3]);
+    half[h][0] = even_pairs(low01, low23);
+    half[h][1] = odd_pairs(low01, low23);
+    half[h][2] = even_pairs(third(row[0], row[1]), third(row[2], row[3]));
+  }
+  PatchLanes out;
+  for (int i = 0; i < 3; ++i) {
+    out.at[0][i] = __builtin_shufflevector(half[0][i], half[1][i], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19,
+                                           24, 25, 26, 27);
+    out.at[1][i] = __builtin_shufflevector(half[0][i], half[1][i], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22,
+                                           23, 28, 29, 30, 31);
+  }
+  return out;
+}
+
+MovingBounds bounds_of(const PatchLanes& lanes, float error) {
+  MovingBounds bounds;
+  for (int end = 0; end < 2; ++end) {
+    Rows rows;
+    directions(lanes.at[end], rows);
+    for (std::size_t k = 0; k < kDirections; ++k) rows[kDirections + k] = -rows[k];
+    bounds.at[end] = smallest_of_rows(rows) - broadcast(7 * error);
+  }
+  return bounds;
+}
+
+TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error) {
+  TriangleBounds bounds;
+  const Float16 slack = broadcast(7 * error);
+  for (int end = 0; end < 2; ++end) {
+    Float16 along[kDirections];
+    directions(lanes.at[end], along);
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      const Float16 a = permuted(along[k], patch.corner[0]), b = permuted(along[k], patch.corner[1]),
+                    c = permuted(along[k], patch.corner[2]);
+      bounds.low[k][end] = smaller(smaller(a, b), c) - slack;
+      bounds.high[k][end] = larger(larger(a, b), c) + slack;
+    }
+  }
+  return bounds;
+}
+
+Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other) {
+  for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
+    const auto low = [&](int end) { return broadcast(other.at[end][k]); };
+    const auto high = [&](int end) { return broadcast(-other.at[end][kDirections + k]); };
+    const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
+    const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
+    mask = static_cast<Mask16>(mask & ~(over | under));
+  }
+  return mask;
+}
+
+Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane) {
+  for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
+    const auto low = [&](int end) { return broadcast(others.low[k][end][lane]); };
+    const auto high = [&](int end) { return broadcast(others.high[k][end][lane]); };
+    const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
+    const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
+    mask = static_cast<Mask16>(mask & ~(over | under));
+  }
+  return mask;
+}
+
+PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch) {
+  PatchNormals out;
+  out.corner = corner_of(lanes, patch.corner[0]);
+  const PatchLanes a = corner_of(lanes, patch.corner[1]) - out.corner,
+                   b = corner_of(lanes, patch.corner[2]) - out.corner;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    out.control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
+    out.control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) +
+                        (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
+    out.control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
+  }
+  out.longest[0] = largest_component(a);
+  out.longest[1] = largest_component(b);
+  return out;
+}
+
+Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error) {
+  PatchLanes c;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) c.at[end][i] = normals.corner.at[end][i] - broadcast(viewpoint.at[end][i]);
+  const auto dot = [&](int n, int end) {
+    return normals.control[n][0] * c.at[end][0] + normals.control[n][1] * c.at[end][1] +
+           normals.control[n][2] * c.at[end][2];
+  };
+  const Float16 slack = broadcast(2 * error);
+  const Float16 a = normals.longest[0] + slack, b = normals.longest[1] + slack,
+                reach = largest_component(c) + slack;
+  const Float16 area = a * b, volume = area * reach;
+  const Float16 bound =
+      broadcast(12.1F * error) * (area + (a + b) * reach) + broadcast(68 * 0x1p-24F) * volume;
+  const Float16 bound3 = 3 * bound;
+
+  const Float16 c0 = dot(0, 0), c1 = dot(1, 0) + dot(0, 1), c2 = dot(1, 1) + dot(2, 0), c3 = dot(2, 1);
+  const unsigned known = above(area, broadcast(kTiny)) & above(volume, broadcast(kTiny));
+  const unsigned positive =
+      above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
+  const unsigned negative =
+      above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
+  return {static_cast<Mask16>(positive & known), static_cast<Mask16>(negative & known)};
+}
+
+}  // namespace cscd::fast

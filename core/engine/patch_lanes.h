@@ -1,0 +1,67 @@
+#pragma once
+
+#include <span>
+
+#include "core/engine/local_positions.h"
+#include "core/engine/patches.h"
+#include "core/geometry/lanes16.h"
+
+// What is computed of one patch at a time, all of its vertices and triangles side by side.
+namespace cscd::fast {
+
+// The vertices of a patch: [end][axis].
+struct PatchLanes {
+  Float16 at[2][3];
+};
+PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& patch);
+
+// Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
+inline constexpr std::size_t kDirections = 8;
+
+// Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): for each
+// end, the least projection along every direction, then the least along its negative.
+struct MovingBounds {
+  Float16 at[2];
+};
+// `error`: of every coordinate.
+MovingBounds bounds_of(const PatchLanes& lanes, float error);
+
+inline MovingBounds united(const MovingBounds& a, const MovingBounds& b) {
+  return {{smaller(a.at[0], b.at[0]), smaller(a.at[1], b.at[1])}};
+}
+
+// True is a proof: along one direction one lies on the same side of the other at both ends, therefore always.
+inline bool apart(const MovingBounds& a, const MovingBounds& b) {
+  return (above(a.at[0], -swapped(b.at[0])) & above(a.at[1], -swapped(b.at[1]))) != 0;
+}
+
+// Bounds of the triangles of a patch: [direction][end].
+struct TriangleBounds {
+  Float16 low[kDirections][2], high[kDirections][2];
+};
+TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error);
+
+// Which of the triangles in `mask` are not proven apart from the bounds, or from triangle `lane` of another patch.
+Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
+Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane);
+
+// A viewpoint that moves in a straight line; [end][axis]. These numbers are the observer: it has no error.
+struct Viewpoint {
+  float at[2][3];
+};
+
+// Triangles that certainly are positive, and that certainly are negative, at every t.
+struct Signs {
+  Mask16 positive, negative;
+};
+
+// Control vectors of the normals, one corner, and what bounds their rounding.
+struct PatchNormals {
+  Float16 control[3][3];
+  PatchLanes corner;
+  Float16 longest[2];  // largest component of the two edges
+};
+PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch);
+Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error);
+
+}  // namespace cscd::fast

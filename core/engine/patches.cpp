@@ -1,0 +1,246 @@
+#include "core/engine/patches.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <numeric>
+
+namespace cscd::fast {
+namespace {
+
+// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are inside
+// it, in each cover.
+struct Cell {
+  std::array<std::int32_t, kCovers> cluster;
+  std::array<bool, kCovers> inside;
+  auto operator<=>(const Cell&) const = default;
+};
+
+std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
+  std::vector<Cell> cells(mesh.triangle_count());
+  for (std::size_t c = 0; c < kCovers; ++c) {
+    const std::vector<std::int32_t>& cluster_of = covers[c].cluster_of;
+    for (std::size_t t = 0; t < cells.size(); ++t) {
+      cells[t].cluster[c] = cluster_of[t];
+      cells[t].inside[c] = true;
+      for (const VertexId v : mesh.triangles()[t])
+        for (const TriangleId other : mesh.triangles_at(v))
+          if (cluster_of[+other] != cluster_of[t]) cells[t].inside[c] = false;
+    }
+  }
+  return cells;
+}
+
+// Cuts a cell into patches: each grows from a triangle with few free neighbours, next the triangle that needs the
+// fewest new vertices and lies nearest to the others.
+class Cutter {
+ public:
+  Cutter(const TriangleMesh& mesh, std::span<const Vec3> centroid)
+      : mesh_(mesh), centroid_(centroid), free_(mesh.triangle_count(), false) {}
+
+  std::vector<std::vector<TriangleId>> cut(std::span<const TriangleId> cell) {
+    for (const TriangleId t : cell) free_[+t] = true;
+    std::vector<std::vector<TriangleId>> patches;
+    std::vector<TriangleId> queue;  // neighbours of patches, to begin the next beside them
+    std::size_t next = 0, in_queue = 0;
+    while (true) {
+      while (in_queue < queue.size() && !free_[+queue[in_queue]]) ++in_queue;
+      TriangleId seed;
+      if (in_queue < queue.size()) {
+        seed = queue[in_queue];
+      } else {
+        while (next < cell.size() && !free_[+cell[next]]) ++next;
+        if (next == cell.size()) break;
+        seed = cell[next];
+      }
+      patches.push_back(grow(seed));
+      for (const TriangleId t : patches.back())
+        for (const EdgeId e : mesh_.edges_of(t))
+          for (const TriangleId other : mesh_.triangles_at(e))
+            if (free_[+other]) queue.push_back(other);
+    }
+    return patches;
+  }
+
+ private:
+  std::vector<TriangleId> grow(TriangleId seed) {
+    std::vector<TriangleId> patch = {seed}, front;
+    std::vector<VertexId> vertices(mesh_.corners(seed).begin(), mesh_.corners(seed).end());
+    Vec3 sum = centroid_[+seed];
+    free_[+seed] = false;
+    const auto new_vertices = [&](TriangleId t) {
+      return std::count_if(mesh_.corners(t).begin(), mesh_.corners(t).end(), [&](VertexId v) {
+        return std::find(vertices.begin(), vertices.end(), v) == vertices.end();
+      });
+    };
+    while (patch.size() < kLanes16) {
+      front.clear();
+      for (const TriangleId t : patch)
+        for (const EdgeId e : mesh_.edges_of(t))
+          for (const TriangleId other : mesh_.triangles_at(e))
+            if (free_[+other]) front.push_back(other);
+      const Vec3 middle = sum / static_cast<double>(patch.size());
+      TriangleId best{-1};
+      std::pair<std::ptrdiff_t, double> least;
+      for (const TriangleId t : front) {
+        const std::pair cost{new_vertices(t), (centroid_[+t] - middle).squaredNorm()};
+        if (static_cast<std::size_t>(cost.first) + vertices.size() > kLanes16) continue;
+        if (best == TriangleId{-1} || cost < least) {
+          best = t;
+          least = cost;
+        }
+      }
+      if (best == TriangleId{-1}) break;
+      free_[+best] = false;
+      patch.push_back(best);
+      sum += centroid_[+best];
+      for (const VertexId v : mesh_.corners(best))
+        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+    }
+    return patch;
+  }
+
+  const TriangleMesh& mesh_;
+  std::span<const Vec3> centroid_;
+  std::vector<bool> free_;
+};
+
+Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles, const Cell& cell) {
+  Patch patch{};
+  std::vector<VertexId> vertices;
+  for (std::size_t l = 0; l < kLanes16; ++l) {
+    patch.triangle[l] = triangles[std::min(l, triangles.size() - 1)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId v = mesh.corners(patch.triangle[l])[k];
+      auto place = std::find(vertices.begin(), vertices.end(), v);
+      if (place == vertices.end()) place = vertices.insert(vertices.end(), v);
+      patch.corner[k][l] = static_cast<std::uint8_t>(place - vertices.begin());
+    }
+  }
+  for (std::size_t l = 0; l < kLanes16; ++l)
+    patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
+  patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
+  patch.cluster = cell.cluster;
+  for (std::size_t c = 0; c < kCovers; ++c) patch.inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
+  return patch;
+}
+
+// The patches of one or several cells with their centre.
+struct Item {
+  std::vector<std::size_t> patches;
+  Vec3 centre = Vec3::Zero();
+};
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const std::vector<Patch>& patches, const std::vector<Vec3>& centre, PatchTree& tree)
+      : patches_(patches), centre_(centre), tree_(tree) {}
+
+  // Over clusters of the first cover, below over the cells of each, below over patches.
+  void build(std::size_t count, const std::vector<std::int32_t>& cluster,
+             const std::vector<std::int32_t>& cell) {
+    std::vector<std::size_t> all(count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    split(grouped(all, cluster), [&](const Item& in_cluster) {
+      split(grouped(in_cluster.patches, cell), [&](const Item& in_cell) {
+        std::vector<Item> single;
+        for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
+        split(single, [&](const Item& patch) {
+          tree_.nodes.push_back({~static_cast<std::int32_t>(tree_.patches.size())});
+          tree_.patches.push_back(patches_[patch.patches[0]]);
+        });
+      });
+    });
+  }
+
+ private:
+  std::vector<Item> grouped(const std::vector<std::size_t>& patches,
+                            const std::vector<std::int32_t>& key) const {
+    std::map<std::int32_t, Item> groups;
+    for (const std::size_t p : patches) groups[key[p]].patches.push_back(p);
+    std::vector<Item> items;
+    for (auto& [k, item] : groups) {
+      for (const std::size_t p : item.patches)
+        item.centre += centre_[p] / static_cast<double>(item.patches.size());
+      items.push_back(std::move(item));
+    }
+    return items;
+  }
+
+  // Halves items at the median along the longest axis of the box of their centres.
+  void split(std::span<Item> items, const std::function<void(const Item&)>& leaf) {
+    if (items.size() == 1) return leaf(items[0]);
+    Eigen::AlignedBox3d box;
+    for (const Item& item : items) box.extend(item.centre);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::stable_sort(items.begin(), items.end(),
+                     [&](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
+    const std::size_t node = tree_.nodes.size(), half = items.size() / 2;
+    tree_.nodes.push_back({0});
+    split(items.first(half), leaf);
+    tree_.nodes[node].right = static_cast<std::int32_t>(tree_.nodes.size());
+    split(items.subspan(half), leaf);
+  }
+  void split(std::vector<Item> items, const std::function<void(const Item&)>& leaf) {
+    split(std::span(items), leaf);
+  }
+
+  const std::vector<Patch>& patches_;
+  const std::vector<Vec3>& centre_;
+  PatchTree& tree_;
+};
+
+void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
+  std::vector<Lane> lane_of(mesh.triangle_count());
+  for (std::size_t p = 0; p < tree.patches.size(); ++p)
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      if (tree.patches[p].lanes >> l & 1)
+        lane_of[+tree.patches[p].triangle[l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
+  std::vector<TriangleId> around;
+  tree.ring_offset.push_back(0);
+  for (const Triangle& corners : mesh.triangles()) {
+    around.clear();
+    for (const VertexId v : corners)
+      around.insert(around.end(), mesh.triangles_at(v).begin(), mesh.triangles_at(v).end());
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (const TriangleId t : around) tree.ring.push_back(lane_of[+t]);
+    tree.ring_offset.push_back(static_cast<std::int32_t>(tree.ring.size()));
+  }
+}
+
+}  // namespace
+
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers) {
+  std::vector<Vec3> centroid;
+  for (const Triangle& c : mesh.triangles())
+    centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
+  const std::vector<Cell> cell_of = cells_of(mesh, covers);
+  std::map<Cell, std::vector<TriangleId>> members;
+  for (std::size_t t = 0; t < cell_of.size(); ++t)
+    members[cell_of[t]].push_back(TriangleId{static_cast<std::int32_t>(t)});
+
+  std::vector<Patch> patches;
+  std::vector<Vec3> centre;
+  std::vector<std::int32_t> cluster, cell_number;
+  Cutter cutter(mesh, centroid);
+  std::int32_t number = 0;
+  for (const auto& [cell, triangles] : members) {
+    for (const std::vector<TriangleId>& patch : cutter.cut(triangles)) {
+      patches.push_back(make_patch(mesh, patch, cell));
+      Vec3 sum = Vec3::Zero();
+      for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
+      centre.push_back(sum);
+      cluster.push_back(cell.cluster[0]);
+      cell_number.push_back(number);
+    }
+    ++number;
+  }
+  PatchTree tree;
+  TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
+  find_rings(mesh, tree);
+  return tree;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/engine/covers.h"
+#include "core/geometry/lanes16.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::fast {
+
+// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers. All
+// belong to one cluster in each cover.
+struct Patch {
+  std::array<std::int32_t, kLanes16> vertex;      // a short one repeats its last
+  std::array<Places16, 3> corner;                 // of each triangle: places in `vertex`
+  std::array<TriangleId, kLanes16> triangle;      // a short one repeats its last
+  std::array<std::int32_t, kCovers> cluster;      // in each cover
+  std::array<Mask16, kCovers> inside;  // triangles whose corners' triangles all belong to that cluster
+  Mask16 lanes;                        // those that are triangles
+};
+
+// A triangle's place among the patches.
+struct Lane {
+  std::int32_t patch;
+  std::int32_t lane;
+};
+
+// The surface cut into patches, and a binary tree over them, built once in the reference pose. Nodes stand in
+// depth-first order: the left child of node n is n + 1, so children follow their parents, and the patches below a
+// node are a range.
+struct PatchTree {
+  struct Node {
+    std::int32_t right;  // inner node: its right child; leaf: ~patch
+    bool is_leaf() const { return right < 0; }
+    std::size_t patch() const { return static_cast<std::size_t>(~right); }
+  };
+  std::vector<Node> nodes;
+  std::vector<Patch> patches;
+
+  // Lanes of the triangles that share a vertex with a triangle, itself among them, in compressed rows.
+  std::vector<std::int32_t> ring_offset;
+  std::vector<Lane> ring;
+  std::span<const Lane> ring_of(TriangleId triangle) const {
+    const auto first = static_cast<std::size_t>(ring_offset[+triangle]);
+    return std::span(ring).subspan(first, static_cast<std::size_t>(ring_offset[+triangle + 1]) - first);
+  }
+};
+
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers);
+
+}  // namespace cscd::fast
