@@ -1,6 +1,9 @@
 #include "core/engine/covers.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <queue>
 #include <random>
@@ -8,116 +11,307 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kViewedFrom = 16;  // vertices at most
+constexpr std::size_t kFollowed = 16;   // vertices at most that an observer follows
+constexpr std::int32_t kThin = 4;       // clusters without a triangle so many rings from its seams are merged
+constexpr std::int32_t kReach = 6;      // rings round a seam
+constexpr std::int32_t kSurround = 6;   // rings round what no other cover certifies
+constexpr int kDescentSteps = 400;
 
-Vec3 centroid(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId triangle) {
+// ---- Observers
+
+struct Face {
+  Vec3 centre, normal;  // of unit length, or zero
+};
+
+Face face(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId triangle) {
   const Triangle& c = mesh.corners(triangle);
-  return positions[+c[0]] / 3 + positions[+c[1]] / 3 + positions[+c[2]] / 3;
+  const Vec3 normal = (positions[+c[1]] - positions[+c[0]]).cross(positions[+c[2]] - positions[+c[0]]);
+  const double length = normal.norm();
+  return {positions[+c[0]] / 3 + positions[+c[1]] / 3 + positions[+c[2]] / 3,
+          length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
 }
 
-Vec3 mean(std::span<const Vec3> positions, std::span<const VertexId> vertices) {
-  Vec3 sum = Vec3::Zero();
-  for (const VertexId v : vertices) sum += positions[+v] / static_cast<double>(vertices.size());
-  return sum;
-}
-
-// Few of the vertices whose mean is near that of all: the best of some draws.
-std::vector<VertexId> thinned(std::vector<VertexId> vertices, std::span<const Vec3> positions) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  if (vertices.size() <= kViewedFrom) return vertices;
-  const Vec3 wanted = mean(positions, vertices);
-  std::mt19937 random(20140314);
-  std::vector<VertexId> best;
-  double nearest = 0;
-  for (int draw = 0; draw < 200; ++draw) {
-    for (std::size_t i = 0; i < kViewedFrom; ++i)
-      std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
-    const std::span<const VertexId> chosen = std::span(vertices).first(kViewedFrom);
-    const double distance = (mean(positions, chosen) - wanted).norm();
-    if (best.empty() || distance < nearest) {
-      best.assign(chosen.begin(), chosen.end());
-      nearest = distance;
+// A point behind as many faces as possible, with room to spare. How far each lacks from that, summed, is convex in
+// the point: subgradient descent, from a point inside.
+Vec3 best_viewpoint(std::span<const Face> faces) {
+  Vec3 q = Vec3::Zero();
+  for (const Face& f : faces) q += f.centre / static_cast<double>(faces.size());
+  double size = 0;
+  for (const Face& f : faces) size += (f.centre - q).norm() / static_cast<double>(faces.size());
+  const double room = 0.4 * size;
+  Vec3 best = q;
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kDescentSteps; ++step) {
+    double lack = 0;
+    Vec3 away = Vec3::Zero();
+    for (const Face& f : faces) {
+      const double depth = f.normal.dot(f.centre - q);
+      if (depth >= room) continue;
+      lack += room - depth;
+      away += f.normal;
     }
+    if (lack < least) {
+      least = lack;
+      best = q;
+    }
+    const double length = away.norm();
+    if (!(length > 0)) break;
+    q -= away * (0.3 * size / (length * std::sqrt(1.0 + step)));
   }
   return best;
 }
 
-// Every triangle goes to the seed from which the way over centroids of neighbouring triangles is shortest.
-std::vector<std::int32_t> nearest_seed(const TriangleMesh& mesh, std::span<const Vec3> positions,
-                                       const std::vector<std::vector<TriangleId>>& seeds) {
-  struct Reached {
-    double distance;
-    std::int32_t seed;
-    TriangleId triangle;
-    bool operator<(const Reached& other) const {  // the top of a queue is its largest
-      return std::tie(other.distance, other.seed, other.triangle) < std::tie(distance, seed, triangle);
+// Vertices of the triangles, few, with weights that make them the wanted point in the reference pose.
+FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                         std::span<const TriangleId> triangles, const Vec3& wanted) {
+  std::vector<VertexId> vertices;
+  for (const TriangleId t : triangles)
+    vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const std::size_t count = std::min(kFollowed, vertices.size());
+  std::mt19937 random(20140314);
+  FollowingPoint best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int draw = 0; draw < 50; ++draw) {
+    for (std::size_t i = 0; i < count; ++i)
+      std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
+    const double n = static_cast<double>(count);
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) mean += positions[+vertices[i]] / n;
+    // The smallest change of equal weights that moves their mean to the wanted point.
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 x = positions[+vertices[i]] - mean;
+      spread += x * x.transpose();
     }
-  };
-  std::priority_queue<Reached> front;
-  for (std::size_t s = 0; s < seeds.size(); ++s)
-    for (const TriangleId t : seeds[s]) front.push({0, static_cast<std::int32_t>(s), t});
-  std::vector<std::int32_t> seed_of(mesh.triangle_count(), kNone);
-  while (!front.empty()) {
-    const auto [distance, seed, triangle] = front.top();
-    front.pop();
-    if (seed_of[+triangle] != kNone) continue;
-    seed_of[+triangle] = seed;
-    const Vec3 here = centroid(mesh, positions, triangle);
-    for (const EdgeId e : mesh.edges_of(triangle))
-      for (const TriangleId next : mesh.triangles_at(e))
-        if (seed_of[+next] == kNone)
-          front.push({distance + (centroid(mesh, positions, next) - here).norm(), seed, next});
+    const double extent = spread.trace();
+    spread += 1e-3 * extent * Eigen::Matrix3d::Identity();
+    const Vec3 slope = spread.inverse() * (wanted - mean);
+    if (!slope.allFinite()) continue;
+    FollowingPoint point;
+    Vec3 got = Vec3::Zero();
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double weight = 1 / n + slope.dot(positions[+vertices[i]] - mean);
+      point.vertices.push_back(vertices[i]);
+      point.weights.push_back(static_cast<float>(weight));
+      got += weight * positions[+vertices[i]];
+      largest = std::max(largest, n * std::abs(weight));
+    }
+    const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
+    if (!(cost < least)) continue;
+    least = cost;
+    best = std::move(point);
   }
-  return seed_of;
+  if (best.vertices.empty())  // a cluster of no extent
+    best = {{vertices.front()}, {1}};
+  return best;
+}
+
+void place_observers(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t clusters,
+                     Cover& cover) {
+  std::vector<std::vector<TriangleId>> members(clusters);
+  for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
+    if (cover.cluster_of[t] != kNone)
+      members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
+          TriangleId{static_cast<std::int32_t>(t)});
+  for (const std::vector<TriangleId>& triangles : members) {
+    std::vector<Face> faces;
+    for (const TriangleId t : triangles) faces.push_back(face(mesh, positions, t));
+    cover.observers.push_back(following(mesh, positions, triangles, best_viewpoint(faces)));
+  }
+}
+
+// ---- Clusters
+
+template <class Take>
+void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Take& take) {
+  for (const VertexId v : mesh.corners(triangle))
+    for (const TriangleId other : mesh.triangles_at(v))
+      if (other != triangle) take(other);
+}
+
+// Rings from the seeds, breadth first, at most `reach`; the seed that came first. kNone where none came.
+struct Rings {
+  std::vector<std::int32_t> seed, distance;
+};
+Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds,
+                 std::int32_t reach = std::numeric_limits<std::int32_t>::max()) {
+  Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
+              std::vector<std::int32_t>(mesh.triangle_count(), kNone)};
+  std::vector<TriangleId> queue;
+  for (std::size_t s = 0; s < seeds.size(); ++s)
+    for (const TriangleId t : seeds[s]) {
+      if (rings.seed[+t] != kNone) continue;
+      rings.seed[+t] = static_cast<std::int32_t>(s);
+      rings.distance[+t] = 0;
+      queue.push_back(t);
+    }
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const TriangleId t = queue[next];
+    if (rings.distance[+t] == reach) continue;
+    for_each_neighbour(mesh, t, [&](TriangleId other) {
+      if (rings.seed[+other] != kNone) return;
+      rings.seed[+other] = rings.seed[+t];
+      rings.distance[+other] = rings.distance[+t] + 1;
+      queue.push_back(other);
+    });
+  }
+  return rings;
+}
+
+// Triangles on either side of the seam between each two clusters.
+using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
+Seams seams_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluster_of) {
+  Seams seams;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const std::span<const TriangleId> sides = mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)});
+    const std::int32_t a = cluster_of[+sides.front()], b = cluster_of[+sides.back()];
+    if (a == b) continue;
+    std::vector<TriangleId>& seam = seams[std::minmax(a, b)];
+    seam.insert(seam.end(), {sides.front(), sides.back()});
+  }
+  return seams;
+}
+
+// Joins clusters that are too thin for their middle to lie well inside with the neighbour along the longest seam,
+// the thinnest first. Only ends and links of a chain: what has more than two neighbours is no limb.
+void merge_thin(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of) {
+  while (true) {
+    const Seams seams = seams_of(mesh, cluster_of);
+    std::vector<std::vector<TriangleId>> all(1);
+    std::map<std::int32_t, int> neighbours;
+    for (const auto& [clusters, triangles] : seams) {
+      all[0].insert(all[0].end(), triangles.begin(), triangles.end());
+      ++neighbours[clusters.first], ++neighbours[clusters.second];
+    }
+    const Rings rings = rings_from(mesh, all);
+    std::map<std::int32_t, std::int32_t> depth;
+    for (std::size_t t = 0; t < cluster_of.size(); ++t)
+      if (rings.distance[t] != kNone)
+        depth[cluster_of[t]] = std::max(depth[cluster_of[t]], rings.distance[t] + 1);
+    struct Merge {
+      std::int32_t depth = kThin;
+      std::size_t length = 0;
+      std::int32_t from = kNone, into = kNone;
+    } best;
+    for (const auto& [clusters, triangles] : seams) {
+      const auto [fewer, more] = std::minmax(neighbours[clusters.first], neighbours[clusters.second]);
+      if (fewer > 1 && more > 2) continue;
+      const std::int32_t thinner = std::min(depth[clusters.first], depth[clusters.second]);
+      if (std::pair(thinner, best.length) < std::pair(best.depth, triangles.size()))
+        best = {thinner, triangles.size(), clusters.second, clusters.first};
+    }
+    if (best.from == kNone) return;
+    std::replace(cluster_of.begin(), cluster_of.end(), best.from, best.into);
+  }
+}
+
+// Numbers clusters from 0 and returns how many there are.
+std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
+  std::map<std::int32_t, std::int32_t> number;
+  for (std::int32_t& c : cluster_of)
+    if (c != kNone) c = number.try_emplace(c, static_cast<std::int32_t>(number.size())).first->second;
+  return number.size();
+}
+
+// Which covers certify a triangle with all around it in the reference pose, one bit each.
+std::vector<unsigned> certified_by(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                                   std::span<const Cover> covers) {
+  std::vector<unsigned> by(mesh.triangle_count(), 0);
+  for (std::size_t c = 0; c < covers.size(); ++c) {
+    std::vector<std::int32_t> positive = covers[c].cluster_of;  // those that are not belong to no cluster
+    for (std::size_t t = 0; t < positive.size(); ++t) {
+      if (positive[t] == kNone) continue;
+      const FollowingPoint& from = covers[c].observers[static_cast<std::size_t>(positive[t])];
+      Vec3 q = Vec3::Zero();
+      for (std::size_t i = 0; i < from.vertices.size(); ++i)
+        q += static_cast<double>(from.weights[i]) * reference[+from.vertices[i]];
+      const Face f = face(mesh, reference, TriangleId{static_cast<std::int32_t>(t)});
+      if (!(f.normal.dot(f.centre - q) > 0)) positive[t] = kNone;
+    }
+    const std::vector<bool> good = inside(mesh, positive);
+    for (std::size_t t = 0; t < good.size(); ++t) by[t] |= static_cast<unsigned>(good[t]) << c;
+  }
+  return by;
+}
+
+// Places where a triangle and a neighbour are certified by no cover together: connected groups, long ones in parts.
+std::vector<std::vector<TriangleId>> places_left(const TriangleMesh& mesh, const std::vector<unsigned>& by) {
+  std::vector<bool> left(mesh.triangle_count());
+  for (std::size_t t = 0; t < left.size(); ++t)
+    for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
+      if ((by[t] & by[+other]) == 0) left[t] = true;
+    });
+  std::vector<std::vector<TriangleId>> places;
+  std::vector<std::int32_t> rings(mesh.triangle_count(), 0);
+  for (std::size_t t = 0; t < left.size(); ++t) {
+    if (!left[t]) continue;
+    std::vector<TriangleId>& place = places.emplace_back(1, TriangleId{static_cast<std::int32_t>(t)});
+    left[t] = false;
+    rings[t] = 0;
+    for (std::size_t next = 0; next < place.size(); ++next) {
+      const TriangleId here = place[next];
+      if (rings[+here] == kSurround) continue;  // what goes on from here is a place of its own
+      for_each_neighbour(mesh, here, [&](TriangleId other) {
+        if (!left[+other]) return;
+        left[+other] = false;
+        rings[+other] = rings[+here] + 1;
+        place.push_back(other);
+      });
+    }
+  }
+  return places;
 }
 
 }  // namespace
 
-Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                   const radial::AtomicClusters& atomic) {
-  Covers covers;
-  Cover& bones = covers[0];
-  bones.cluster_of = atomic.of_triangle;
-  for (const radial::AtomicClusters::Cluster& cluster : atomic.clusters) {
-    std::vector<VertexId> vertices;
-    for (const TriangleId t : cluster.triangles)
-      vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
-    bones.viewed_from.push_back(thinned(std::move(vertices), reference));
+std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
+  std::vector<bool> all(cluster_of.size());
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    all[t] = cluster_of[t] != kNone;
+    for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
+      if (cluster_of[+other] != cluster_of[t]) all[t] = false;
+    });
   }
+  return all;
+}
 
-  struct Seam {
-    std::vector<VertexId> vertices;
-    std::vector<TriangleId> triangles;
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, Seam> seams;  // of each two clusters
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-    const EdgeId edge{static_cast<std::int32_t>(e)};
-    const std::span<const TriangleId> sides = mesh.triangles_at(edge);
-    const std::int32_t a = bones.cluster_of[+sides.front()], b = bones.cluster_of[+sides.back()];
-    if (a == b) continue;
-    Seam& seam = seams[std::minmax(a, b)];
-    seam.vertices.insert(seam.vertices.end(), mesh.ends(edge).begin(), mesh.ends(edge).end());
-    seam.triangles.insert(seam.triangles.end(), {sides.front(), sides.back()});
-  }
-  Cover& joints = covers[1];
+std::array<Cover, kWholeCovers> make_whole_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                                                  const radial::AtomicClusters& atomic) {
+  std::array<Cover, kWholeCovers> covers;
+  auto& [bones, seams] = covers;
+  bones.cluster_of = atomic.of_triangle;
+  merge_thin(mesh, bones.cluster_of);
+  place_observers(mesh, reference, renumbered(bones.cluster_of), bones);
+
   std::vector<std::vector<TriangleId>> seeds;
-  for (auto& [clusters, seam] : seams) {
-    joints.viewed_from.push_back(thinned(std::move(seam.vertices), reference));
-    seeds.push_back(std::move(seam.triangles));
-  }
-  joints.cluster_of = nearest_seed(mesh, reference, seeds);
-  // A component without a seam is one cluster in both.
-  std::map<std::int32_t, std::int32_t> whole;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (joints.cluster_of[t] != kNone) continue;
-    const std::int32_t cluster = bones.cluster_of[t];
-    const auto [entry, fresh] =
-        whole.try_emplace(cluster, static_cast<std::int32_t>(joints.viewed_from.size()));
-    if (fresh) joints.viewed_from.push_back(bones.viewed_from[static_cast<std::size_t>(cluster)]);
-    joints.cluster_of[t] = entry->second;
-  }
+  for (auto& [clusters, triangles] : seams_of(mesh, bones.cluster_of)) seeds.push_back(triangles);
+  seams.cluster_of = rings_from(mesh, seeds, kReach).seed;
+  place_observers(mesh, reference, renumbered(seams.cluster_of), seams);
   return covers;
+}
+
+Cover make_local_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                       std::span<const Cover> before, std::span<const std::int32_t> piece_of) {
+  const Rings rings =
+      rings_from(mesh, places_left(mesh, certified_by(mesh, reference, before)), kSurround);
+  // A piece goes to the place that is nearest to any of its triangles.
+  std::map<std::int32_t, std::pair<std::int32_t, std::int32_t>> of_piece;  // distance, place
+  for (std::size_t t = 0; t < rings.seed.size(); ++t) {
+    if (rings.seed[t] == kNone) continue;
+    const std::pair reached{rings.distance[t], rings.seed[t]};
+    const auto [entry, fresh] = of_piece.try_emplace(piece_of[t], reached);
+    entry->second = std::min(entry->second, reached);
+  }
+  Cover cover;
+  cover.cluster_of.assign(mesh.triangle_count(), kNone);
+  for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
+    if (const auto entry = of_piece.find(piece_of[t]); entry != of_piece.end())
+      cover.cluster_of[t] = entry->second.second;
+  place_observers(mesh, reference, renumbered(cover.cluster_of), cover);
+  return cover;
 }
 
 }  // namespace cscd::fast

@@ -12,19 +12,33 @@ namespace cscd::fast {
 
 inline constexpr std::int32_t kNone = -1;
 
-// One partition of the triangles into clusters, each seen from the mean of some vertices of the mesh. No cluster
-// spans two components (trap 3).
-struct Cover {
-  std::vector<std::int32_t> cluster_of;           // of each triangle
-  std::vector<std::vector<VertexId>> viewed_from;  // of each cluster
+// What a cluster is seen from: a point that follows the surface, an affine combination of some vertices.
+struct FollowingPoint {
+  std::vector<VertexId> vertices;
+  std::vector<float> weights;  // sum to about 1: what they sum to exactly is the observer
 };
 
-// Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another.
-inline constexpr std::size_t kCovers = 2;
-using Covers = std::array<Cover, kCovers>;
+// Disjoint clusters of triangles, each with its observer. No cluster spans two components (trap 3).
+struct Cover {
+  std::vector<std::int32_t> cluster_of;  // of each triangle; kNone where the cover has none
+  std::vector<FollowingPoint> observers;
+};
 
-// The first cover: the atomic clusters. The second: every triangle with the nearest seam between two of them.
-Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                   const radial::AtomicClusters& atomic);
+// Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another:
+//   0  the atomic clusters, thin ones merged
+//   1  every triangle with the nearest seam between two of them
+//   2, 3  what surrounds the places that those before do not certify in the reference pose
+inline constexpr std::size_t kWholeCovers = 2, kCovers = 4;
+
+// The first two.
+std::array<Cover, kWholeCovers> make_whole_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                                                  const radial::AtomicClusters& atomic);
+
+// The next one, out of all before it. Its clusters are made of whole pieces: `piece_of` of each triangle.
+Cover make_local_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                       std::span<const Cover> before, std::span<const std::int32_t> piece_of);
+
+// Triangles all around whose corners belong to their own cluster.
+std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of);
 
 }  // namespace cscd::fast

@@ -1,5 +1,6 @@
 #include "core/engine/drvbc_fast.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numbers>
@@ -7,6 +8,8 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/engine/patch_lanes.h"
+#include "core/engine/stars.h"
+#include "core/mesh/adjacency.h"
 #include "core/radial/distance_field.h"
 #include "core/radial/observer.h"
 #include "core/radial/refinement.h"
@@ -19,17 +22,20 @@ namespace {
 
 class FastCuller : public Culler {
  public:
-  FastCuller(const Setup& setup, Covers covers, const DrvbcFastOptions& options)
-      : covers_(std::move(covers)),
+  FastCuller(const Setup& setup, std::vector<Cover> covers, PatchTree tree, const DrvbcFastOptions& options)
+      : mesh_(setup.mesh),
+        covers_(std::move(covers)),
         options_(options),
         positions_(setup.reference),
-        tree_(make_patches(setup.mesh, setup.reference, covers_)),
+        tree_(std::move(tree)),
+        stars_(setup.mesh),
         lanes_(tree_.patches.size()),
         bounds_(tree_.nodes.size()),
         label_(tree_.nodes.size()),
         certified_(tree_.patches.size()),
+        negative_(tree_.patches.size()),
         triangle_bounds_of_(tree_.patches.size(), kNone) {
-    for (std::size_t c = 0; c < kCovers; ++c) viewpoint_[c].resize(covers_[c].viewed_from.size());
+    for (std::size_t c = 0; c < kCovers; ++c) viewpoint_[c].resize(covers_[c].observers.size());
   }
 
   void refit(const Motion& motion) override {
@@ -52,25 +58,38 @@ class FastCuller : public Culler {
   bool classify(const Motion&, const Rig::Interval*) override {
     place_viewpoints();
     counts_ = {};
-    counts_.clusters = viewpoint_[0].size() + viewpoint_[1].size();
-    for (std::size_t p = 0; p < tree_.patches.size(); ++p) certified_[p] = tree_.patches[p].inside;
-    const std::size_t covers = options_.second_cover ? 2 : 1;
+    const std::size_t covers = options_.second_cover ? kCovers : 1;
+    for (std::size_t c = 0; c < covers; ++c) counts_.clusters += viewpoint_[c].size();
+    for (std::size_t p = 0; p < tree_.patches.size(); ++p) {
+      const Patch& patch = tree_.patches[p];
+      for (std::size_t c = 0; c < kCovers; ++c)
+        certified_[p][c] = {c < covers ? patch.inside[c] : Mask16{0}, Mask16{0}};
+    }
     for (std::size_t p = 0; p < tree_.patches.size(); ++p) {
       const Patch& patch = tree_.patches[p];
       const PatchNormals normals = normals_of(lanes_[p], patch);
       for (std::size_t c = 0; c < covers; ++c) {
+        if (patch.cluster[c] == kNone) continue;
         const Viewpoint& from = viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
         const Signs signs = orientation(normals, from, positions_.error());
-        if (c == 0) {
-          counts_.positive += static_cast<unsigned>(std::popcount(static_cast<Mask16>(signs.positive & patch.lanes)));
-          counts_.negative += static_cast<unsigned>(std::popcount(static_cast<Mask16>(signs.negative & patch.lanes)));
-        }
+        negative_[p][c] = signs.negative & patch.lanes;
         for (unsigned rest = patch.lanes & ~signs.positive; rest != 0; rest &= rest - 1)
           for (const Lane& near : tree_.ring_of(patch.triangle[static_cast<std::size_t>(std::countr_zero(rest))]))
-            certified_[static_cast<std::size_t>(near.patch)][c] &= static_cast<Mask16>(~(1U << near.lane));
+            certified_[static_cast<std::size_t>(near.patch)][c].positive &= static_cast<Mask16>(~(1U << near.lane));
       }
-      if (covers == 1) certified_[p][1] = 0;
     }
+    for (std::size_t p = 0; p < tree_.patches.size(); ++p)
+      for (std::size_t c = 0; c < covers; ++c) {
+        const Patch& patch = tree_.patches[p];
+        for (unsigned rest = negative_[p][c] & patch.inside[c]; rest != 0; rest &= rest - 1) {
+          const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+          const std::span<const Lane> ring = tree_.ring_of(patch.triangle[lane]);
+          const bool all = std::all_of(ring.begin(), ring.end(), [&](const Lane& near) {
+            return negative_[static_cast<std::size_t>(near.patch)][c] >> near.lane & 1;
+          });
+          certified_[p][c].negative |= static_cast<Mask16>(all << lane);
+        }
+      }
     if (!positions_.known())
       for (auto& masks : certified_) masks = {};
     std::size_t p = tree_.patches.size();
@@ -78,18 +97,23 @@ class FastCuller : public Culler {
       const PatchTree::Node& node = tree_.nodes[n];
       if (node.is_leaf()) {
         --p;
-        for (std::size_t c = 0; c < kCovers; ++c)
-          label_[n][c] = certified_[p][c] == tree_.patches[p].lanes ? tree_.patches[p].cluster[c] : kNone;
+        const Patch& patch = tree_.patches[p];
+        Mask16 some = 0;
+        for (std::size_t c = 0; c < kCovers; ++c) {
+          const Signs& signs = certified_[p][c];
+          label_[n][c] = signs.positive == patch.lanes   ? 2 * patch.cluster[c]
+                         : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
+                                                         : kNone;
+          some |= signs.positive | signs.negative;
+        }
+        counts_.positive += static_cast<unsigned>(std::popcount(certified_[p][0].positive));
+        counts_.negative += static_cast<unsigned>(std::popcount(certified_[p][0].negative));
+        counts_.uncertain += static_cast<unsigned>(std::popcount(static_cast<Mask16>(patch.lanes & ~some)));
       } else {
         const auto &left = label_[n + 1], &right = label_[static_cast<std::size_t>(node.right)];
         for (std::size_t c = 0; c < kCovers; ++c) label_[n][c] = left[c] == right[c] ? left[c] : kNone;
       }
     }
-    std::uint64_t uncertain = 0;
-    for (std::size_t q = 0; q < tree_.patches.size(); ++q)
-      uncertain += static_cast<unsigned>(std::popcount(
-          static_cast<Mask16>(tree_.patches[q].lanes & ~certified_[q][0] & ~certified_[q][1])));
-    counts_.uncertain = uncertain;
     return true;
   }
 
@@ -97,6 +121,7 @@ class FastCuller : public Culler {
     sink_ = &sink;
     tests_ = 0;
     used_ = 0;
+    stars_.start_interval(positions_);
     std::fill(triangle_bounds_of_.begin(), triangle_bounds_of_.end(), kNone);
     self(0);
     CullCounts counts;
@@ -109,7 +134,9 @@ class FastCuller : public Culler {
 
  private:
   static bool same(const std::array<std::int32_t, kCovers>& a, const std::array<std::int32_t, kCovers>& b) {
-    return (a[0] == b[0] && a[0] != kNone) || (a[1] == b[1] && a[1] != kNone);
+    bool one = false;
+    for (std::size_t c = 0; c < kCovers; ++c) one |= a[c] == b[c] && a[c] != kNone;
+    return one;
   }
 
   void overlap_everything() {
@@ -120,19 +147,18 @@ class FastCuller : public Culler {
   void place_viewpoints() {
     for (std::size_t c = 0; c < kCovers; ++c)
       for (std::size_t i = 0; i < viewpoint_[c].size(); ++i) {
-        const std::vector<VertexId>& from = covers_[c].viewed_from[i];
+        const FollowingPoint& from = covers_[c].observers[i];
         float sum[8] = {};
-        for (const VertexId v : from)
-          for (std::size_t k = 0; k < 8; ++k) sum[k] += positions_.records()[+v].at[k];
-        const float count = static_cast<float>(from.size());
+        for (std::size_t v = 0; v < from.vertices.size(); ++v)
+          for (std::size_t k = 0; k < 8; ++k)
+            sum[k] += from.weights[v] * positions_.records()[+from.vertices[v]].at[k];
         for (std::size_t end = 0; end < 2; ++end)
-          for (std::size_t k = 0; k < 3; ++k) viewpoint_[c][i].at[end][k] = sum[4 * end + k] / count;
+          for (std::size_t k = 0; k < 3; ++k) viewpoint_[c][i].at[end][k] = sum[4 * end + k];
       }
   }
 
   void self(std::size_t n) {
-    const auto& label = label_[n];
-    if (label[0] != kNone || label[1] != kNone) return;
+    if (same(label_[n], label_[n])) return;
     const PatchTree::Node& node = tree_.nodes[n];
     if (node.is_leaf()) return inside(n);
     const auto right = static_cast<std::size_t>(node.right);
@@ -166,8 +192,10 @@ class FastCuller : public Culler {
   Mask16 needed(std::size_t p, std::size_t lane, std::size_t q) const {
     unsigned dropped = 0;
     for (std::size_t c = 0; c < kCovers; ++c)
-      if (tree_.patches[p].cluster[c] == tree_.patches[q].cluster[c] && (certified_[p][c] >> lane & 1))
-        dropped |= certified_[q][c];
+      if (tree_.patches[p].cluster[c] == tree_.patches[q].cluster[c]) {
+        if (certified_[p][c].positive >> lane & 1) dropped |= certified_[q][c].positive;
+        if (certified_[p][c].negative >> lane & 1) dropped |= certified_[q][c].negative;
+      }
     return static_cast<Mask16>(tree_.patches[q].lanes & ~dropped);
   }
 
@@ -192,12 +220,34 @@ class FastCuller : public Culler {
                  tree_.patches[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))]);
   }
 
+  bool in_flat_star(TriangleId t, TriangleId u) {
+    const Triangle &a = mesh_.corners(t), &b = mesh_.corners(u);
+    return std::any_of(a.begin(), a.end(), [&](VertexId v) { return contains(b, v) && stars_.flat(v); });
+  }
+
+  // Takes the lanes of patch q that are adjacent to a triangle of patch p out of `wanted`: passed on without a
+  // test of bounds, which always overlap, unless a flat star holds both.
+  Mask16 without_adjacent(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted) {
+    const TriangleId t = tree_.patches[p].triangle[lane];
+    unsigned adjacent = 0;
+    for (const Lane& near : tree_.ring_of(t))
+      if (static_cast<std::size_t>(near.patch) == q) adjacent |= 1U << near.lane;
+    adjacent &= wanted;
+    for (unsigned rest = adjacent; rest != 0; rest &= rest - 1) {
+      const TriangleId u = tree_.patches[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))];
+      if (!options_.stars || !in_flat_star(t, u)) sink_->add(t, u);
+    }
+    return static_cast<Mask16>(wanted & ~adjacent);
+  }
+
   void inside(std::size_t n) {
     const std::size_t p = tree_.nodes[n].patch();
     const TriangleBounds* bounds = nullptr;
     for (std::size_t lane = 0; lane + 1 < kLanes16; ++lane) {
-      const auto later = static_cast<Mask16>(needed(p, lane, p) & ~((2U << lane) - 1));
+      auto later = static_cast<Mask16>(needed(p, lane, p) & ~((2U << lane) - 1));
       if (!(tree_.patches[p].lanes >> lane & 1) || later == 0) continue;
+      later = without_adjacent(p, lane, p, later);
+      if (later == 0) continue;
       if (bounds == nullptr) bounds = &bounds_of_triangles(p);
       tests_ += static_cast<unsigned>(std::popcount(later));
       emit(p, lane, p, positions_.known() ? near(*bounds, later, *bounds, lane) : later);
@@ -227,20 +277,26 @@ class FastCuller : public Culler {
     columns = near(second, columns, bounds_[a]);
     for (unsigned rest = rows; rest != 0 && columns != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-      const auto wanted = static_cast<Mask16>(need[lane] & columns);
+      auto wanted = static_cast<Mask16>(need[lane] & columns);
+      if (wanted == 0) continue;
+      wanted = without_adjacent(p, lane, q, wanted);
+      if (wanted == 0) continue;
       tests_ += static_cast<unsigned>(std::popcount(wanted));
       emit(p, lane, q, near(second, wanted, first, lane));
     }
   }
 
-  Covers covers_;
+  const TriangleMesh& mesh_;
+  std::vector<Cover> covers_;
   DrvbcFastOptions options_;
   LocalPositions positions_;
   PatchTree tree_;
+  Stars stars_;
   std::vector<PatchLanes> lanes_;
   std::vector<MovingBounds> bounds_;                         // of each node
   std::vector<std::array<std::int32_t, kCovers>> label_;     // of each node: the cluster that certifies all below
-  std::vector<std::array<Mask16, kCovers>> certified_;       // of each patch
+  std::vector<std::array<Signs, kCovers>> certified_;        // of each patch
+  std::vector<std::array<Mask16, kCovers>> negative_;        // of each patch
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::int32_t> triangle_bounds_of_;             // where in the pool
   std::vector<TriangleBounds> pool_;
@@ -267,12 +323,19 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
       radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
   bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
   clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-  fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, clusters);
+  const auto whole = fast::make_whole_covers(setup.mesh, setup.reference, clusters);
+  std::vector<fast::Cover> covers(whole.begin(), whole.end());
+  fast::PatchTree tree = fast::make_patches(setup.mesh, setup.reference, whole);
+  const std::vector<std::int32_t> patch_of = fast::patch_of(setup.mesh, tree);
+  while (covers.size() < fast::kCovers) {
+    covers.push_back(fast::make_local_cover(setup.mesh, setup.reference, covers, patch_of));
+    fast::add_cover(setup.mesh, covers.back(), covers.size() - 1, tree);
+  }
   clock.stop();
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
-  auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
+  auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), std::move(tree), options);
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }
 

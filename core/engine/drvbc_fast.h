@@ -11,6 +11,7 @@ struct DrvbcFastOptions {
   // For the ablation.
   bool second_cover = true;
   bool time_linear = true;
+  bool stars = true;
 };
 
 // Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh and a rig.

@@ -1,0 +1,104 @@
+#include "core/engine/stars.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/lanes16.h"
+
+// Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is a sum of
+// two products (four for the middle one, which is twice the control vector) of edges not longer than A and B, hence
+// off by 4 d (A' + B') + 10 u A' B'; its dot product with the direction, which is exact by definition and has
+// components up to D, by D (12 d (A' + B') + 48 u A' B'). 12.2 and 50 also pay for the bound's own roundings.
+namespace cscd::fast {
+namespace {
+
+constexpr float kTiny = 1e-30F;
+
+Float16 largest_component(const Float16 (&a)[2][3]) {
+  Float16 most = absolute(a[0][0]);
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) most = larger(most, absolute(a[end][i]));
+  return most;
+}
+
+float sum(Float16 v, std::size_t count) {
+  float total = 0;
+  for (std::size_t l = 0; l < count; ++l) total += v[l];
+  return total;
+}
+
+}  // namespace
+
+Stars::Stars(const TriangleMesh& mesh) : state_(mesh.vertex_count()) {
+  offset_.push_back(0);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    const VertexId vertex{static_cast<std::int32_t>(v)};
+    for (const TriangleId t : mesh.triangles_at(vertex)) {
+      const Triangle& c = mesh.corners(t);
+      const std::size_t k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
+      ends_.push_back({static_cast<std::int32_t>(c[(k + 1) % 3]), static_cast<std::int32_t>(c[(k + 2) % 3])});
+    }
+    offset_.push_back(static_cast<std::int32_t>(ends_.size()));
+  }
+}
+
+void Stars::start_interval(const LocalPositions& positions) {
+  positions_ = &positions;
+  std::fill(state_.begin(), state_.end(), State::unknown);
+}
+
+bool Stars::is_flat(VertexId vertex) const {
+  const auto first = static_cast<std::size_t>(offset_[+vertex]);
+  const std::size_t count = static_cast<std::size_t>(offset_[+vertex + 1]) - first;
+  if (count == 0 || count > kLanes16 || !positions_->known()) return false;
+  const std::span<const LocalPositions::Record> records = positions_->records();
+  const LocalPositions::Record& here = records[+vertex];
+
+  Float16 a[2][3], b[2][3];
+  for (std::size_t l = 0; l < kLanes16; ++l) {
+    const Ends& ends = ends_[first + std::min(l, count - 1)];
+    const float* second = records[static_cast<std::size_t>(ends.second)].at;
+    const float* third = records[static_cast<std::size_t>(ends.third)].at;
+    for (std::size_t end = 0; end < 2; ++end)
+      for (std::size_t i = 0; i < 3; ++i) {
+        a[end][i][l] = second[4 * end + i];
+        b[end][i][l] = third[4 * end + i];
+      }
+  }
+  for (std::size_t end = 0; end < 2; ++end)
+    for (std::size_t i = 0; i < 3; ++i) {
+      a[end][i] -= here.at[4 * end + i];
+      b[end][i] -= here.at[4 * end + i];
+    }
+  Float16 control[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    control[0][i] = a[0][j] * b[0][k] - a[0][k] * b[0][j];
+    control[1][i] = (a[0][j] * b[1][k] - a[0][k] * b[1][j]) + (a[1][j] * b[0][k] - a[1][k] * b[0][j]);
+    control[2][i] = a[1][j] * b[1][k] - a[1][k] * b[1][j];
+  }
+  // The direction: the mean of the normals about the middle of the interval.
+  Float16 middle[3], length = {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    middle[i] = control[0][i] + control[1][i] + control[2][i];
+    length += middle[i] * middle[i];
+  }
+  for (std::size_t l = 0; l < kLanes16; ++l) length[l] = std::sqrt(length[l]) + kTiny;
+  float direction[3];
+  for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length, count);
+
+  const Float16 slack = Float16{} + 2 * positions_->error();
+  const Float16 longest_a = largest_component(a) + slack, longest_b = largest_component(b) + slack;
+  const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
+  const Float16 area = longest_a * longest_b;
+  const Float16 bound = largest * (12.2F * positions_->error() * (longest_a + longest_b) + 50 * 0x1p-24F * area);
+  const auto along = [&](int n) {
+    return control[n][0] * direction[0] + control[n][1] * direction[1] + control[n][2] * direction[2];
+  };
+  const unsigned positive = above(along(0), bound) & above(along(1), 2 * bound) & above(along(2), bound) &
+                            above(area, Float16{} + kTiny);
+  return largest > 1e-6F && positive == 0xffffU;
+}
+
+}  // namespace cscd::fast
