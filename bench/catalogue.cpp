@@ -85,6 +85,11 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
              },
              kAblation},
+    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact, true,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
+             },
+             kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
              Guarantee::heuristic, true,
              [](const Setup& setup) {

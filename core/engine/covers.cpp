@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t kFollowed = 16;   // vertices at most that an observer follows
 constexpr std::int32_t kThin = 4;       // clusters without a triangle so many rings from its seams are merged
-constexpr std::int32_t kReach = 6;      // rings round a seam
-constexpr std::int32_t kSurround = 6;   // rings round what no other cover certifies
 constexpr int kDescentSteps = 400;
 
 // ---- Observers
@@ -132,12 +130,11 @@ void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Tak
       if (other != triangle) take(other);
 }
 
-// Rings from the seeds, breadth first, at most `reach`; the seed that came first. kNone where none came.
+// Rings from the seeds, breadth first, and the seed that came first. kNone where none came.
 struct Rings {
   std::vector<std::int32_t> seed, distance;
 };
-Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds,
-                 std::int32_t reach = std::numeric_limits<std::int32_t>::max()) {
+Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds) {
   Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
               std::vector<std::int32_t>(mesh.triangle_count(), kNone)};
   std::vector<TriangleId> queue;
@@ -150,7 +147,6 @@ Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<Triangl
     }
   for (std::size_t next = 0; next < queue.size(); ++next) {
     const TriangleId t = queue[next];
-    if (rings.distance[+t] == reach) continue;
     for_each_neighbour(mesh, t, [&](TriangleId other) {
       if (rings.seed[+other] != kNone) return;
       rings.seed[+other] = rings.seed[+t];
@@ -216,55 +212,6 @@ std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
   return number.size();
 }
 
-// Which covers certify a triangle with all around it in the reference pose, one bit each.
-std::vector<unsigned> certified_by(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                                   std::span<const Cover> covers) {
-  std::vector<unsigned> by(mesh.triangle_count(), 0);
-  for (std::size_t c = 0; c < covers.size(); ++c) {
-    std::vector<std::int32_t> positive = covers[c].cluster_of;  // those that are not belong to no cluster
-    for (std::size_t t = 0; t < positive.size(); ++t) {
-      if (positive[t] == kNone) continue;
-      const FollowingPoint& from = covers[c].observers[static_cast<std::size_t>(positive[t])];
-      Vec3 q = Vec3::Zero();
-      for (std::size_t i = 0; i < from.vertices.size(); ++i)
-        q += static_cast<double>(from.weights[i]) * reference[+from.vertices[i]];
-      const Face f = face(mesh, reference, TriangleId{static_cast<std::int32_t>(t)});
-      if (!(f.normal.dot(f.centre - q) > 0)) positive[t] = kNone;
-    }
-    const std::vector<bool> good = inside(mesh, positive);
-    for (std::size_t t = 0; t < good.size(); ++t) by[t] |= static_cast<unsigned>(good[t]) << c;
-  }
-  return by;
-}
-
-// Places where a triangle and a neighbour are certified by no cover together: connected groups, long ones in parts.
-std::vector<std::vector<TriangleId>> places_left(const TriangleMesh& mesh, const std::vector<unsigned>& by) {
-  std::vector<bool> left(mesh.triangle_count());
-  for (std::size_t t = 0; t < left.size(); ++t)
-    for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
-      if ((by[t] & by[+other]) == 0) left[t] = true;
-    });
-  std::vector<std::vector<TriangleId>> places;
-  std::vector<std::int32_t> rings(mesh.triangle_count(), 0);
-  for (std::size_t t = 0; t < left.size(); ++t) {
-    if (!left[t]) continue;
-    std::vector<TriangleId>& place = places.emplace_back(1, TriangleId{static_cast<std::int32_t>(t)});
-    left[t] = false;
-    rings[t] = 0;
-    for (std::size_t next = 0; next < place.size(); ++next) {
-      const TriangleId here = place[next];
-      if (rings[+here] == kSurround) continue;  // what goes on from here is a place of its own
-      for_each_neighbour(mesh, here, [&](TriangleId other) {
-        if (!left[+other]) return;
-        left[+other] = false;
-        rings[+other] = rings[+here] + 1;
-        place.push_back(other);
-      });
-    }
-  }
-  return places;
-}
-
 }  // namespace
 
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
@@ -278,9 +225,9 @@ std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t>
   return all;
 }
 
-std::array<Cover, kWholeCovers> make_whole_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                                                  const radial::AtomicClusters& atomic) {
-  std::array<Cover, kWholeCovers> covers;
+Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                   const radial::AtomicClusters& atomic) {
+  Covers covers;
   auto& [bones, seams] = covers;
   bones.cluster_of = atomic.of_triangle;
   merge_thin(mesh, bones.cluster_of);
@@ -288,30 +235,9 @@ std::array<Cover, kWholeCovers> make_whole_covers(const TriangleMesh& mesh, std:
 
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, bones.cluster_of)) seeds.push_back(triangles);
-  seams.cluster_of = rings_from(mesh, seeds, kReach).seed;
+  seams.cluster_of = rings_from(mesh, seeds).seed;
   place_observers(mesh, reference, renumbered(seams.cluster_of), seams);
   return covers;
-}
-
-Cover make_local_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       std::span<const Cover> before, std::span<const std::int32_t> piece_of) {
-  const Rings rings =
-      rings_from(mesh, places_left(mesh, certified_by(mesh, reference, before)), kSurround);
-  // A piece goes to the place that is nearest to any of its triangles.
-  std::map<std::int32_t, std::pair<std::int32_t, std::int32_t>> of_piece;  // distance, place
-  for (std::size_t t = 0; t < rings.seed.size(); ++t) {
-    if (rings.seed[t] == kNone) continue;
-    const std::pair reached{rings.distance[t], rings.seed[t]};
-    const auto [entry, fresh] = of_piece.try_emplace(piece_of[t], reached);
-    entry->second = std::min(entry->second, reached);
-  }
-  Cover cover;
-  cover.cluster_of.assign(mesh.triangle_count(), kNone);
-  for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
-    if (const auto entry = of_piece.find(piece_of[t]); entry != of_piece.end())
-      cover.cluster_of[t] = entry->second.second;
-  place_observers(mesh, reference, renumbered(cover.cluster_of), cover);
-  return cover;
 }
 
 }  // namespace cscd::fast

@@ -24,19 +24,13 @@ struct Cover {
   std::vector<FollowingPoint> observers;
 };
 
-// Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another:
+// Two covers that overlap, so that what lies at a seam of one lies well inside a cluster of the other:
 //   0  the atomic clusters, thin ones merged
 //   1  every triangle with the nearest seam between two of them
-//   2, 3  what surrounds the places that those before do not certify in the reference pose
-inline constexpr std::size_t kWholeCovers = 2, kCovers = 4;
-
-// The first two.
-std::array<Cover, kWholeCovers> make_whole_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                                                  const radial::AtomicClusters& atomic);
-
-// The next one, out of all before it. Its clusters are made of whole pieces: `piece_of` of each triangle.
-Cover make_local_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       std::span<const Cover> before, std::span<const std::int32_t> piece_of);
+inline constexpr std::size_t kCovers = 2;
+using Covers = std::array<Cover, kCovers>;
+Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                   const radial::AtomicClusters& atomic);
 
 // Triangles all around whose corners belong to their own cluster.
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of);

@@ -22,12 +22,12 @@ namespace {
 
 class FastCuller : public Culler {
  public:
-  FastCuller(const Setup& setup, std::vector<Cover> covers, PatchTree tree, const DrvbcFastOptions& options)
+  FastCuller(const Setup& setup, Covers covers, const DrvbcFastOptions& options)
       : mesh_(setup.mesh),
         covers_(std::move(covers)),
         options_(options),
         positions_(setup.reference),
-        tree_(std::move(tree)),
+        tree_(make_patches(setup.mesh, setup.reference, covers_)),
         stars_(setup.mesh),
         lanes_(tree_.patches.size()),
         bounds_(tree_.nodes.size()),
@@ -287,7 +287,7 @@ class FastCuller : public Culler {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<Cover> covers_;
+  Covers covers_;
   DrvbcFastOptions options_;
   LocalPositions positions_;
   PatchTree tree_;
@@ -323,19 +323,12 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
       radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
   bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
   clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-  const auto whole = fast::make_whole_covers(setup.mesh, setup.reference, clusters);
-  std::vector<fast::Cover> covers(whole.begin(), whole.end());
-  fast::PatchTree tree = fast::make_patches(setup.mesh, setup.reference, whole);
-  const std::vector<std::int32_t> patch_of = fast::patch_of(setup.mesh, tree);
-  while (covers.size() < fast::kCovers) {
-    covers.push_back(fast::make_local_cover(setup.mesh, setup.reference, covers, patch_of));
-    fast::add_cover(setup.mesh, covers.back(), covers.size() - 1, tree);
-  }
+  fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, clusters);
   clock.stop();
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
-  auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), std::move(tree), options);
+  auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }
 

@@ -11,14 +11,14 @@ namespace {
 // Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are inside
 // it, in each cover.
 struct Cell {
-  std::array<std::int32_t, kWholeCovers> cluster;
-  std::array<bool, kWholeCovers> inside;
+  std::array<std::int32_t, kCovers> cluster;
+  std::array<bool, kCovers> inside;
   auto operator<=>(const Cell&) const = default;
 };
 
-std::vector<Cell> cells_of(const TriangleMesh& mesh, std::span<const Cover, kWholeCovers> covers) {
+std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
   std::vector<Cell> cells(mesh.triangle_count());
-  for (std::size_t c = 0; c < kWholeCovers; ++c) {
+  for (std::size_t c = 0; c < kCovers; ++c) {
     const std::vector<bool> all = inside(mesh, covers[c].cluster_of);
     for (std::size_t t = 0; t < cells.size(); ++t) {
       cells[t].cluster[c] = covers[c].cluster_of[t];
@@ -117,8 +117,7 @@ Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles
   for (std::size_t l = 0; l < kLanes16; ++l)
     patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
   patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
-  patch.cluster.fill(kNone);
-  for (std::size_t c = 0; c < kWholeCovers; ++c) {
+  for (std::size_t c = 0; c < kCovers; ++c) {
     patch.cluster[c] = cell.cluster[c];
     patch.inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
   }
@@ -212,8 +211,7 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
 
 }  // namespace
 
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       std::span<const Cover, kWholeCovers> covers) {
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
@@ -242,24 +240,6 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
   find_rings(mesh, tree);
   return tree;
-}
-
-void add_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree) {
-  const std::vector<bool> all = inside(mesh, cover.cluster_of);
-  for (Patch& patch : tree.patches) {
-    patch.cluster[number] = cover.cluster_of[+patch.triangle[0]];
-    patch.inside[number] = 0;
-    for (std::size_t l = 0; l < kLanes16; ++l)
-      if (patch.lanes >> l & 1 && all[+patch.triangle[l]])
-        patch.inside[number] |= static_cast<Mask16>(1U << l);
-  }
-}
-
-std::vector<std::int32_t> patch_of(const TriangleMesh& mesh, const PatchTree& tree) {
-  std::vector<std::int32_t> of(mesh.triangle_count());
-  for (std::size_t p = 0; p < tree.patches.size(); ++p)
-    for (const TriangleId t : tree.patches[p].triangle) of[+t] = static_cast<std::int32_t>(p);
-  return of;
 }
 
 }  // namespace cscd::fast

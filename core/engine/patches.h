@@ -49,14 +49,6 @@ struct PatchTree {
   }
 };
 
-// Patches that belong to one cluster in each of the covers; they belong to none of later ones.
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       std::span<const Cover, kWholeCovers> covers);
-
-// Enters a cover that was made of whole patches.
-void add_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree);
-
-// The patch of each triangle.
-std::vector<std::int32_t> patch_of(const TriangleMesh& mesh, const PatchTree& tree);
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers);
 
 }  // namespace cscd::fast
