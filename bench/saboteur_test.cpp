@@ -130,5 +130,18 @@ TEST(Saboteurs, RadialStrategiesThatLoseFirstContactsAreCaughtWithSegments) {
   expect_radial_saboteurs_are_caught<radial::ObserverKind::bone_segment>(400);
 }
 
+// Trap 14: several observers may each certify pairs, but one must certify all triangles round both of a pair.
+TEST(Saboteurs, Trap14OverlappingCoversThatCertifyTooLittleAreCaught) {
+  const Strategy strategies[] = {
+      first_contact("sound", test::make_many_covers<Flaw::none>),
+      first_contact("covers_mixed", test::make_many_covers<Flaw::covers_mixed>),
+      first_contact("certified_by_triangle", test::make_many_covers<Flaw::certified_by_triangle>),
+  };
+  const auto failed = failures(strategies, 400);
+  EXPECT_EQ(failed.at("sound"), 0u);
+  EXPECT_GT(failed.at("covers_mixed"), 0u);
+  EXPECT_GT(failed.at("certified_by_triangle"), 0u);
+}
+
 }  // namespace
 }  // namespace cscd::bench

@@ -11,6 +11,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <random>
 
 #include "baselines/mcd/contour.h"
 #include "baselines/mcd/discs.h"
@@ -39,6 +40,8 @@ enum class Flaw {
   clusters_span_components,
   observers_mixed,
   contours_not_tested,
+  covers_mixed,
+  certified_by_triangle,
 };
 
 // All pairs of triangles whose swept bounds overlap, through a descent.
@@ -191,6 +194,80 @@ class RadialCuller : public Culler {
   std::vector<std::int32_t> labels_;
   RadialCounts radial_;
 };
+
+// Many covers, each of one cluster a component that is seen from a vertex or a point between two; a pair is dropped
+// where one of them certifies all triangles round both.
+template <Flaw flaw>
+class ManyCoversCuller : public Culler {
+ public:
+  explicit ManyCoversCuller(const Setup& setup)
+      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+
+  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+  bool classify(const Motion& motion, const Rig::Interval*) override {
+    by_.assign(mesh_.triangle_count(), {});
+    std::mt19937 random(14);
+    for (int cover = 0; cover < kManyCovers; ++cover) {
+      const auto vertex = [&] {
+        return motion[VertexId{static_cast<std::int32_t>(random() % mesh_.vertex_count())}];
+      };
+      const MovingPoint a = vertex(), b = vertex();
+      const auto q = radial::Observer::point({(a.start + b.start) / 2, (a.end + b.end) / 2});
+      std::vector<radial::Orientation> found;
+      for (const Triangle& c : mesh_.triangles()) {
+        const MovingPoint corner[3] = {motion[c[0]], motion[c[1]], motion[c[2]]};
+        found.push_back(orientation(corner, q));
+      }
+      for (const radial::Orientation sign : {radial::Orientation::positive, radial::Orientation::negative})
+        for (std::size_t t = 0; t < found.size(); ++t) {
+          bool all = found[t] == sign;
+          if (flaw != Flaw::certified_by_triangle)
+            for (const VertexId v : mesh_.triangles()[t])
+              for (const TriangleId other : mesh_.triangles_at(v)) all = all && found[+other] == sign;
+          by_[t].push_back(all);
+        }
+    }
+    return true;
+  }
+  CullCounts cull(TrianglePairSink& sink) override {
+    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+    const auto emit = [&](NodeIndex a, NodeIndex b) {
+      if (!dropped(tree_.triangle(a), tree_.triangle(b))) sink.add(tree_.triangle(a), tree_.triangle(b));
+    };
+    CullCounts counts;
+    counts.bvot = self_descent(
+        tree_, bounds_, 0, is_leaf, [](NodeIndex, NodeIndex) { return false; }, emit);
+    return counts;
+  }
+
+ private:
+  static constexpr int kManyCovers = 40;
+
+  bool dropped(TriangleId a, TriangleId b) const {
+    if (mesh_.component(a) != mesh_.component(b)) return false;
+    const std::vector<bool>&one = by_[+a], &other = by_[+b];
+    if (flaw == Flaw::covers_mixed)  // one sign, but each for a field of its own
+      for (std::size_t sign = 0; sign < 2; ++sign) {
+        bool any[2] = {};
+        for (std::size_t i = sign; i < one.size(); i += 2) any[0] |= one[i], any[1] |= other[i];
+        if (any[0] && any[1]) return true;
+      }
+    for (std::size_t i = 0; i < one.size(); ++i)
+      if (one[i] && other[i]) return true;
+    return false;
+  }
+
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+  std::vector<std::vector<bool>> by_;  // of each triangle: positive and negative for each cover
+};
+
+template <Flaw flaw>
+Prepared make_many_covers(const Setup& setup) {
+  radial::require_radial_setup(setup, "a saboteur");
+  return {compose(std::make_unique<ManyCoversCuller<flaw>>(setup), setup.mesh, setup.elementary), {}};
+}
 
 // Every vertex and edge belongs to the first triangle at it, and is tested with that triangle alone.
 class RepresentativeDetector : public Detector {

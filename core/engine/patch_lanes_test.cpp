@@ -1,0 +1,244 @@
+#include "core/engine/patch_lanes.h"
+
+#include <gtest/gtest.h>
+
+#include "core/engine/test_body.h"
+#include "core/radial/exact_orientation.h"
+
+namespace cscd::fast {
+namespace {
+
+// An interval in patches. The origin and the unit keep viewpoints of few bits exact in world coordinates.
+struct Scene : test::Body {
+  Vec3 shift;
+  double unit;  // of local lengths in the world
+  Covers covers;
+  PatchTree tree;
+  LocalPositions local;
+
+  Scene(double noise, double bend, const Vec3& origin, double scale, int seed)
+      : test::Body(noise, bend, origin, scale, seed),
+        covers(make_covers(mesh, shape.positions, atomic)),
+        tree(make_patches(mesh, shape.positions, covers)),
+        local(start) {
+    local.update(motion());
+    shift = start[0];
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : start) box.extend(p);
+    unit = std::ldexp(1.0, std::ilogb(box.sizes().maxCoeff()));
+  }
+  // In local units, exactly, times 1.
+  test::Exact3 exact_local(const Vec3& p) const {
+    const test::Exact3 at = test::exact(p), from = test::exact(shift);
+    test::Exact3 out;
+    for (std::size_t i = 0; i < 3; ++i) out[i] = (at[i] - from[i]) / mpq_class(unit);
+    return out;
+  }
+};
+
+constexpr struct {
+  double noise, bend, origin, scale;
+} kScenes[] = {{0.02, 1, 0, 1}, {0.1, 2, 1e6, 1}, {0.05, 3, 1e9, 1e-3}, {0.1, 1, 0.5, 1e-15}};
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  int seed = 0;
+  for (const auto& s : kScenes) all.emplace_back(s.noise, s.bend, Vec3(s.origin, -s.origin / 2, s.origin / 4), s.scale, ++seed);
+  return all;
+}
+
+TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
+  const Scene scene(0.1, 1, {0, 0, 0}, 1, 1);
+  for (const Patch& patch : scene.tree.patches) {
+    const PatchLanes lanes = load(scene.local.records(), patch);
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const float* at = scene.local.records()[static_cast<std::size_t>(patch.vertex[l])].at;
+        EXPECT_EQ(lanes.at[0][i][l], at[i]);
+        EXPECT_EQ(lanes.at[1][i][l], at[4 + i]);
+      }
+  }
+}
+
+constexpr int kDirection[8][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
+                                  {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
+
+// Mutations: bounds without their slack; the slack of one end alone.
+TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
+  for (const Scene& scene : scenes())
+    for (std::size_t p = 0; p < scene.tree.patches.size(); p += 5) {
+      const Patch& patch = scene.tree.patches[p];
+      const PatchLanes lanes = load(scene.local.records(), patch);
+      const MovingBounds bounds = bounds_of(lanes, scene.local.error());
+      const TriangleBounds triangles = triangle_bounds(lanes, patch, scene.local.error());
+      for (std::size_t l = 0; l < kLanes16; ++l)
+        for (const VertexId v : scene.mesh.corners(patch.triangle[l]))
+          for (std::size_t end = 0; end < 2; ++end) {
+            const test::Exact3 x = scene.exact_local((end == 0 ? scene.start : scene.end)[+v]);
+            for (std::size_t k = 0; k < kDirections; ++k) {
+              mpq_class along = 0;
+              for (std::size_t i = 0; i < 3; ++i) along += kDirection[k][i] * x[i];
+              EXPECT_LE(mpq_class(bounds.at[end][k]), along);
+              EXPECT_LE(mpq_class(bounds.at[end][kDirections + k]), -along);
+              EXPECT_LE(mpq_class(triangles.low[k][end][l]), along);
+              EXPECT_GE(mpq_class(triangles.high[k][end][l]), along);
+            }
+          }
+    }
+}
+
+MovingBounds bounds_of_point(const Vec3& start, const Vec3& end) {
+  MovingBounds bounds;
+  for (int e = 0; e < 2; ++e)
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      const Vec3& p = e == 0 ? start : end;
+      const float along =
+          static_cast<float>(kDirection[k][0] * p.x() + kDirection[k][1] * p.y() + kDirection[k][2] * p.z());
+      bounds.at[e][k] = along;
+      bounds.at[e][kDirections + k] = -along;
+    }
+  return bounds;
+}
+
+// Points that rush by together stay apart, points that change places do not; touching is not apart.
+// Mutation: `apart` joins both ends by "or".
+TEST(PatchLanes, ApartMeansOnOneSideAllTheTime) {
+  const MovingBounds a = bounds_of_point({0, 0, 0}, {100, 0, 0});
+  EXPECT_TRUE(apart(a, bounds_of_point({1, 0, 0}, {101, 0, 0})));
+  EXPECT_TRUE(apart(bounds_of_point({1, 0, 0}, {101, 0, 0}), a));
+  EXPECT_FALSE(apart(a, bounds_of_point({1, 0, 0}, {99, 0, 0})));
+  EXPECT_FALSE(apart(bounds_of_point({1, 0, 0}, {99, 0, 0}), a));
+  EXPECT_FALSE(apart(a, bounds_of_point({1, 0, 0}, {100, 0, 0})));
+  EXPECT_FALSE(apart(a, a));
+}
+
+// `near` says of every triangle what `apart` says of its bounds. Mutation: one of the two sides left out.
+TEST(PatchLanes, NearIsApartLaneByLane) {
+  const Scene scene(0.3, 2, {0, 0, 0}, 1, 3);
+  const auto bounds_of_lane = [](const TriangleBounds& b, std::size_t l) {
+    MovingBounds one;
+    for (int end = 0; end < 2; ++end)
+      for (std::size_t k = 0; k < kDirections; ++k) {
+        one.at[end][k] = b.low[k][end][l];
+        one.at[end][kDirections + k] = -b.high[k][end][l];
+      }
+    return one;
+  };
+  std::size_t outcomes[2] = {};
+  for (std::size_t p = 0; p + 1 < scene.tree.patches.size(); ++p) {
+    const Patch &patch = scene.tree.patches[p], &other = scene.tree.patches[p + 1];
+    const auto of = [&](const Patch& x) {
+      return triangle_bounds(load(scene.local.records(), x), x, scene.local.error());
+    };
+    const TriangleBounds first = of(patch), second = of(other);
+    const MovingBounds whole = bounds_of(load(scene.local.records(), other), scene.local.error());
+    const Mask16 to_whole = near(first, 0xffff, whole), to_lane = near(first, 0xffff, second, 5);
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      EXPECT_EQ(to_whole >> l & 1, !apart(bounds_of_lane(first, l), whole));
+      EXPECT_EQ(to_lane >> l & 1, !apart(bounds_of_lane(first, l), bounds_of_lane(second, 5)));
+      ++outcomes[to_lane >> l & 1];
+    }
+  }
+  EXPECT_GT(outcomes[0], 100u);
+  EXPECT_GT(outcomes[1], 100u);
+}
+
+// Every certified sign is the exact one, far from the origin and in any unit; and nearly all are certified.
+// Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle coefficients
+// not looked at.
+TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
+  std::size_t certified = 0, all = 0, negative = 0;
+  int turn = 0;
+  for (const Scene& scene : scenes())
+    for (std::size_t p = 0; p < scene.tree.patches.size(); p += 11) {
+      const Patch& patch = scene.tree.patches[p];
+      const PatchLanes lanes = load(scene.local.records(), patch);
+      // From inside, from the surface itself, and from outside.
+      Viewpoint from;
+      MovingPoint q;
+      for (std::size_t end = 0; end < 2; ++end)
+        for (std::size_t i = 0; i < 3; ++i) {
+          const float vertex = lanes.at[end][i][0];
+          const float offset[3] = {0, i == 0 ? 0.0F : -0.05F, 0.7F};
+          from.at[end][i] = std::round((vertex + offset[turn % 3]) * 0x1p12F) * 0x1p-12F;
+          const double world = scene.shift[static_cast<Eigen::Index>(i)] +
+                               scene.unit * static_cast<double>(from.at[end][i]);
+          (end == 0 ? q.start : q.end)[static_cast<Eigen::Index>(i)] = world;
+          // Else the exact test would judge another point.
+          if (mpq_class(world) != mpq_class(scene.shift[static_cast<Eigen::Index>(i)]) +
+                                      mpq_class(scene.unit) * mpq_class(from.at[end][i]))
+            from.at[end][i] = std::numeric_limits<float>::quiet_NaN();
+        }
+      ++turn;
+      const Signs signs = orientation(normals_of(lanes, patch), from, scene.local.error());
+      for (std::size_t l = 0; l < kLanes16; ++l) {
+        const Triangle& c = scene.mesh.corners(patch.triangle[l]);
+        const Motion motion = scene.motion();
+        const MovingPoint corner[3] = {motion[c[0]], motion[c[1]], motion[c[2]]};
+        const radial::Orientation truth = test::exact_class(corner, q);
+        EXPECT_TRUE(!(signs.positive >> l & 1) || truth == radial::Orientation::positive);
+        EXPECT_TRUE(!(signs.negative >> l & 1) || truth == radial::Orientation::negative);
+        certified += (signs.positive | signs.negative) >> l & 1;
+        negative += signs.negative >> l & 1;
+        all += truth != radial::Orientation::uncertain;
+      }
+    }
+  EXPECT_GT(negative, 50u);
+  EXPECT_GT(certified, all / 2);
+}
+
+// One lane as plain scalar code.
+int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
+  float a[2][3], b[2][3], c[2][3], n[3][3], most[3] = {};
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) {
+      a[end][i] = x[1][end][i] - x[0][end][i];
+      b[end][i] = x[2][end][i] - x[0][end][i];
+      c[end][i] = x[0][end][i] - from.at[end][i];
+      most[0] = std::max(most[0], std::abs(a[end][i]));
+      most[1] = std::max(most[1], std::abs(b[end][i]));
+      most[2] = std::max(most[2], std::abs(c[end][i]));
+    }
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    n[0][i] = a[0][j] * b[0][k] - a[0][k] * b[0][j];
+    n[1][i] = (a[0][j] * b[1][k] - a[0][k] * b[1][j]) + (a[1][j] * b[0][k] - a[1][k] * b[0][j]);
+    n[2][i] = a[1][j] * b[1][k] - a[1][k] * b[1][j];
+  }
+  const auto dot = [&](int m, int end) {
+    return n[m][0] * c[end][0] + n[m][1] * c[end][1] + n[m][2] * c[end][2];
+  };
+  for (float& m : most) m += 2 * error;
+  const float area = most[0] * most[1], volume = area * most[2];
+  const float bound = 12.1F * error * (area + (most[0] + most[1]) * most[2]) + 68 * 0x1p-24F * volume;
+  const float value[4] = {dot(0, 0), dot(1, 0) + dot(0, 1), dot(1, 1) + dot(2, 0), dot(2, 1)};
+  if (!(area > 1e-30F && volume > 1e-30F)) return 0;
+  bool above = true, below = true;
+  for (int k = 0; k < 4; ++k) {
+    const float limit = k == 0 || k == 3 ? bound : 3 * bound;
+    above = above && value[k] > limit;
+    below = below && value[k] < -limit;
+  }
+  return above ? 1 : below ? -1 : 0;
+}
+
+TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
+  for (const Scene& scene : scenes())
+    for (const Patch& patch : scene.tree.patches) {
+      const PatchLanes lanes = load(scene.local.records(), patch);
+      const Viewpoint from = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
+      const Signs signs = orientation(normals_of(lanes, patch), from, scene.local.error());
+      for (std::size_t l = 0; l < kLanes16; ++l) {
+        float x[3][2][3];
+        for (std::size_t k = 0; k < 3; ++k)
+          for (int end = 0; end < 2; ++end)
+            for (int i = 0; i < 3; ++i) x[k][end][i] = lanes.at[end][i][patch.corner[k][l]];
+        const int sign = scalar_sign(x, from, scene.local.error());
+        EXPECT_EQ(signs.positive >> l & 1, sign > 0);
+        EXPECT_EQ(signs.negative >> l & 1, sign < 0);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace cscd::fast

@@ -1,0 +1,87 @@
+#include "core/engine/patches.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "core/engine/test_body.h"
+#include "core/mesh/adjacency.h"
+
+namespace cscd::fast {
+namespace {
+
+struct Cut : test::Body {
+  Covers covers = make_covers(mesh, shape.positions, atomic);
+  PatchTree tree = make_patches(mesh, shape.positions, covers);
+  Cut() : test::Body(0.01, 0) {}
+};
+
+TEST(Patches, EveryTriangleLiesInOneLane) {
+  const Cut cut;
+  std::vector<int> times(cut.mesh.triangle_count(), 0);
+  for (const Patch& patch : cut.tree.patches)
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      const Triangle& corners = cut.mesh.corners(patch.triangle[l]);
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(patch.vertex[patch.corner[k][l]], static_cast<std::int32_t>(corners[k]));
+      if (!(patch.lanes >> l & 1)) continue;
+      ++times[+patch.triangle[l]];
+      for (std::size_t c = 0; c < kCovers; ++c)
+        EXPECT_EQ(patch.cluster[c], cut.covers[c].cluster_of[+patch.triangle[l]]);
+    }
+  EXPECT_EQ(times, std::vector<int>(times.size(), 1));
+  EXPECT_LT(cut.tree.patches.size(), cut.mesh.triangle_count() / 7) << "patches are filled";
+}
+
+// Mutation: cells_of looks at neighbours over edges only.
+TEST(Patches, InsideMeansAllAroundEveryCorner) {
+  const Cut cut;
+  std::size_t not_inside = 0;
+  for (const Patch& patch : cut.tree.patches)
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      for (std::size_t c = 0; c < kCovers; ++c) {
+        if (!(patch.lanes >> l & 1)) {
+          EXPECT_FALSE(patch.inside[c] >> l & 1);
+          continue;
+        }
+        bool all = true;
+        for (std::size_t t = 0; t < cut.mesh.triangle_count(); ++t)
+          if (share_vertex(cut.mesh.triangles()[t], cut.mesh.corners(patch.triangle[l])))
+            all = all && cut.covers[c].cluster_of[t] == patch.cluster[c];
+        EXPECT_EQ(patch.inside[c] >> l & 1, all);
+        not_inside += !all;
+      }
+  EXPECT_GT(not_inside, 0u);
+}
+
+TEST(Patches, RingsHoldAllTrianglesWithACommonVertex) {
+  const Cut cut;
+  for (std::size_t t = 0; t < cut.mesh.triangle_count(); t += 7) {
+    std::vector<TriangleId> ring, expected;
+    const TriangleId triangle{static_cast<std::int32_t>(t)};
+    for (const Lane& lane : cut.tree.ring_of(triangle))
+      ring.push_back(cut.tree.patches[static_cast<std::size_t>(lane.patch)]
+                         .triangle[static_cast<std::size_t>(lane.lane)]);
+    std::sort(ring.begin(), ring.end());
+    for (std::size_t u = 0; u < cut.mesh.triangle_count(); ++u)
+      if (share_vertex(cut.mesh.triangles()[u], cut.mesh.triangles()[t]))
+        expected.push_back(TriangleId{static_cast<std::int32_t>(u)});
+    EXPECT_EQ(ring, expected);
+  }
+}
+
+TEST(Patches, TheTreeHoldsThePatchesInOrder) {
+  const Cut cut;
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < cut.tree.nodes.size(); ++n) {
+    const PatchTree::Node& node = cut.tree.nodes[n];
+    if (node.is_leaf())
+      EXPECT_EQ(node.patch(), next++);
+    else
+      EXPECT_GT(static_cast<std::size_t>(node.right), n + 1);
+  }
+  EXPECT_EQ(next, cut.tree.patches.size());
+  EXPECT_EQ(cut.tree.nodes.size(), 2 * next - 1);
+}
+
+}  // namespace
+}  // namespace cscd::fast

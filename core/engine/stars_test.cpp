@@ -1,0 +1,89 @@
+#include "core/engine/stars.h"
+
+#include <gtest/gtest.h>
+
+#include "core/detect/carried_pairs.h"
+#include "core/detect/embedding.h"
+#include "core/elementary/elementary_test.h"
+#include "core/engine/test_body.h"
+#include "core/mesh/adjacency.h"
+
+namespace cscd::fast {
+namespace {
+
+const ElementaryTest& exact() {
+  return *find_elementary_test("exact");
+}
+
+// Contacts of triangles at the vertex among each other.
+std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, VertexId vertex) {
+  std::size_t contacts = 0;
+  const std::span<const TriangleId> star = mesh.triangles_at(vertex);
+  for (std::size_t i = 0; i < star.size(); ++i)
+    for (std::size_t j = i + 1; j < star.size(); ++j)
+      for_each_carried(mesh, {star[i], star[j]}, true, [&](const FeaturePair& pair) {
+        contacts += ask(exact(), mesh, motion, pair).verdict != Verdict::apart;
+      });
+  return contacts;
+}
+
+// Noise up to where neighbours run into each other. Mutations: the bound zero on flat surfaces; the direction's
+// sign; the middle control vector not looked at; the end not looked at.
+TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
+  std::size_t flat = 0, others_with_contacts = 0, embedded = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const double noise = 0.02 * seed;
+    test::Body body(0, 1);
+    const test::Body noisy(noise, 1, {100, -50, 25}, 1, seed);
+    for (std::size_t v = 0; v < body.start.size(); ++v) body.start[v] += Vec3(100, -50, 25);
+    body.end = noisy.end;
+    embedded += EmbeddingTest(body.mesh, body.start).embedded(body.start);
+    LocalPositions local(body.start);
+    local.update(body.motion());
+    Stars stars(body.mesh);
+    stars.start_interval(local);
+    for (std::size_t v = 0; v < body.mesh.vertex_count(); v += 3) {
+      const VertexId vertex{static_cast<std::int32_t>(v)};
+      const std::size_t contacts = contacts_in_star(body.mesh, body.motion(), vertex);
+      if (stars.flat(vertex)) {
+        ++flat;
+        EXPECT_EQ(contacts, 0u) << "seed " << seed << ", vertex " << v;
+      } else {
+        others_with_contacts += contacts > 0;
+      }
+    }
+  }
+  EXPECT_EQ(embedded, 12u);
+  EXPECT_GT(flat, 500u);
+  EXPECT_GT(others_with_contacts, 20u);
+}
+
+// A tip that is turned inside out is no graph all the time. Mutation: only the ends are looked at.
+TEST(Stars, ATipThatTurnsOverIsNotFlat) {
+  test::Shape shape = test::octahedron();
+  std::vector<Vec3> end = shape.positions;
+  end[4] = {0, 0, -0.5};
+  const TriangleMesh mesh = shape.mesh();
+  LocalPositions local(shape.positions);
+  local.update(Motion(shape.positions, end));
+  Stars stars(mesh);
+  stars.start_interval(local);
+  EXPECT_TRUE(stars.flat(VertexId{4})) << "it stays a graph over its base";
+  EXPECT_FALSE(stars.flat(VertexId{0}));
+}
+
+// Triangles of no area prove nothing.
+TEST(Stars, DegenerateTrianglesAreNotFlat) {
+  test::Shape shape = test::octahedron();
+  shape.positions[4] = shape.positions[0];
+  const TriangleMesh mesh = shape.mesh();
+  LocalPositions local(shape.positions);
+  local.update(Motion(shape.positions, shape.positions));
+  Stars stars(mesh);
+  stars.start_interval(local);
+  for (const int v : {0, 2, 3, 4}) EXPECT_FALSE(stars.flat(VertexId{v}));
+  EXPECT_TRUE(stars.flat(VertexId{1}));
+}
+
+}  // namespace
+}  // namespace cscd::fast
