@@ -73,8 +73,8 @@ constexpr std::array kStrategies = {
              Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
              kAblation},
-    Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone", Guarantee::first_contact,
-             true,
+    Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
+             Guarantee::first_contact, true,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .second_cover = false});
              },

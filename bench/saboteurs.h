@@ -195,8 +195,8 @@ class RadialCuller : public Culler {
   RadialCounts radial_;
 };
 
-// Many covers, each of one cluster a component that is seen from a vertex or a point between two; a pair is dropped
-// where one of them certifies all triangles round both.
+// Many covers, each of one cluster a component that is seen from a vertex or a point between two; a pair is
+// dropped where one of them certifies all triangles round both.
 template <Flaw flaw>
 class ManyCoversCuller : public Culler {
  public:

@@ -11,8 +11,8 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kFollowed = 16;   // vertices at most that an observer follows
-constexpr std::int32_t kThin = 4;       // clusters without a triangle so many rings from its seams are merged
+constexpr std::size_t kFollowed = 16;  // vertices at most that an observer follows
+constexpr std::int32_t kThin = 4;      // clusters without a triangle so many rings from its seams are merged
 constexpr int kDescentSteps = 400;
 
 // ---- Observers
@@ -29,8 +29,8 @@ Face face(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId 
           length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
 }
 
-// A point behind as many faces as possible, with room to spare. How far each lacks from that, summed, is convex in
-// the point: subgradient descent, from a point inside.
+// A point behind as many faces as possible, with room to spare. How far each lacks from that, summed, is
+// convex in the point: subgradient descent, from a point inside.
 Vec3 best_viewpoint(std::span<const Face> faces) {
   Vec3 q = Vec3::Zero();
   for (const Face& f : faces) q += f.centre / static_cast<double>(faces.size());
@@ -171,8 +171,8 @@ Seams seams_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluste
   return seams;
 }
 
-// Joins clusters that are too thin for their middle to lie well inside with the neighbour along the longest seam,
-// the thinnest first. Only ends and links of a chain: what has more than two neighbours is no limb.
+// Joins clusters that are too thin for their middle to lie well inside with the neighbour along the longest
+// seam, the thinnest first. Only ends and links of a chain: what has more than two neighbours is no limb.
 void merge_thin(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of) {
   while (true) {
     const Seams seams = seams_of(mesh, cluster_of);

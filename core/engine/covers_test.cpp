@@ -38,8 +38,7 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
   const TriangleMesh mesh = two.mesh();
   std::vector<BoneId> bone_of;
   for (const Triangle& t : mesh.triangles()) bone_of.push_back(BoneId{two.positions[+t[0]].x() < 5 ? 0 : 1});
-  const Covers covers =
-      make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of));
+  const Covers covers = make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of));
   for (const Cover& cover : covers) {
     std::map<std::int32_t, std::set<std::int32_t>> components;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)

@@ -47,7 +47,8 @@ class FastCuller : public Culler {
         --patch;
         lanes_[patch] = load(positions_.records(), tree_.patches[patch]);
         bounds_[n] = bounds_of(lanes_[patch], positions_.error());
-        if (!options_.time_linear) bounds_[n].at[0] = bounds_[n].at[1] = smaller(bounds_[n].at[0], bounds_[n].at[1]);
+        if (!options_.time_linear)
+          bounds_[n].at[0] = bounds_[n].at[1] = smaller(bounds_[n].at[0], bounds_[n].at[1]);
       } else {
         bounds_[n] = united(bounds_[n + 1], bounds_[static_cast<std::size_t>(node.right)]);
       }
@@ -74,8 +75,10 @@ class FastCuller : public Culler {
         const Signs signs = orientation(normals, from, positions_.error());
         negative_[p][c] = signs.negative & patch.lanes;
         for (unsigned rest = patch.lanes & ~signs.positive; rest != 0; rest &= rest - 1)
-          for (const Lane& near : tree_.ring_of(patch.triangle[static_cast<std::size_t>(std::countr_zero(rest))]))
-            certified_[static_cast<std::size_t>(near.patch)][c].positive &= static_cast<Mask16>(~(1U << near.lane));
+          for (const Lane& near :
+               tree_.ring_of(patch.triangle[static_cast<std::size_t>(std::countr_zero(rest))]))
+            certified_[static_cast<std::size_t>(near.patch)][c].positive &=
+                static_cast<Mask16>(~(1U << near.lane));
       }
     }
     for (std::size_t p = 0; p < tree_.patches.size(); ++p)
@@ -225,8 +228,8 @@ class FastCuller : public Culler {
     return std::any_of(a.begin(), a.end(), [&](VertexId v) { return contains(b, v) && stars_.flat(v); });
   }
 
-  // Takes the lanes of patch q that are adjacent to a triangle of patch p out of `wanted`: passed on without a
-  // test of bounds, which always overlap, unless a flat star holds both.
+  // Takes the lanes of patch q that are adjacent to a triangle of patch p out of `wanted`: passed on without
+  // a test of bounds, which always overlap, unless a flat star holds both.
   Mask16 without_adjacent(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted) {
     const TriangleId t = tree_.patches[p].triangle[lane];
     unsigned adjacent = 0;
@@ -293,12 +296,13 @@ class FastCuller : public Culler {
   PatchTree tree_;
   Stars stars_;
   std::vector<PatchLanes> lanes_;
-  std::vector<MovingBounds> bounds_;                         // of each node
-  std::vector<std::array<std::int32_t, kCovers>> label_;     // of each node: the cluster that certifies all below
-  std::vector<std::array<Signs, kCovers>> certified_;        // of each patch
-  std::vector<std::array<Mask16, kCovers>> negative_;        // of each patch
+  std::vector<MovingBounds> bounds_;  // of each node
+  std::vector<std::array<std::int32_t, kCovers>>
+      label_;                                          // of each node: the cluster that certifies all below
+  std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
+  std::vector<std::array<Mask16, kCovers>> negative_;  // of each patch
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
-  std::vector<std::int32_t> triangle_bounds_of_;             // where in the pool
+  std::vector<std::int32_t> triangle_bounds_of_;  // where in the pool
   std::vector<TriangleBounds> pool_;
   std::size_t used_ = 0;
   RadialCounts counts_;

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstring>
 
-// A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product is
-// exact (or far below 1e-37), the conversion rounds by 2^-24 of itself: with M the largest result the error is
-// below 2^-24 (1 + 2^-20) M + 1e-37.
+// A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
+// is exact (or far below 1e-37), the conversion rounds by 2^-24 of itself: with M the largest result the
+// error is below 2^-24 (1 + 2^-20) M + 1e-37.
 namespace cscd::fast {
 namespace {
 

@@ -9,9 +9,9 @@
 
 namespace cscd::fast {
 
-// The positions of one interval in float: shifted by the first vertex, scaled by a power of two that makes the
-// reference pose about one unit large. So coordinates far from the origin lose nothing, and neither very small
-// nor very large units underflow or overflow.
+// The positions of one interval in float: shifted by the first vertex, scaled by a power of two that makes
+// the reference pose about one unit large. So coordinates far from the origin lose nothing, and neither very
+// small nor very large units underflow or overflow.
 class LocalPositions {
  public:
   // One vertex: x, y, z at the start, nothing, x, y, z at the end, nothing.

@@ -2,16 +2,17 @@
 
 // Rounding. u = 2^-24; every coordinate is off by at most d = `error`, which is at least u times the largest.
 //
-// Bounds: a sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack from it
-// rounds by at most as much again and a little. So 7 d is enough for all directions.
+// Bounds: a sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack from
+// it rounds by at most as much again and a little. So 7 d is enough for all directions.
 //
-// Orientation: (e1 x e2) . c with edges e1, e2 of the triangle and c from the viewpoint to a corner. A difference of
-// coordinates is off by 2 d and rounds by u of itself. Let A, B, C be the largest computed components of the three
-// and A' = A + 2 d, and so on. Every coefficient is a sum of products whose absolute values sum to 6 A B C (18 for the
-// middle two, which are three times the Bernstein coefficients). Errors of the factors change it by at most
+// Orientation: (e1 x e2) . c with edges e1, e2 of the triangle and c from the viewpoint to a corner. A
+// difference of coordinates is off by 2 d and rounds by u of itself. Let A, B, C be the largest computed
+// components of the three and A' = A + 2 d, and so on. Every coefficient is a sum of products whose absolute
+// values sum to 6 A B C (18 for the middle two, which are three times the Bernstein coefficients). Errors of
+// the factors change it by at most
 //   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C',
-// the eight roundings behind them by at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound
-// itself. Below kTiny products might underflow; nothing is certain then.
+// the eight roundings behind them by at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the
+// bound itself. Below kTiny products might underflow; nothing is certain then.
 namespace cscd::fast {
 namespace {
 
@@ -54,8 +55,8 @@ PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
 }  // namespace
 
 PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& patch) {
-  // Two records a row: eight numbers of one vertex, eight of the fourth behind it. Four rows are transposed within
-  // their quarters, after which quarters of starts and of ends alternate.
+  // Two records a row: eight numbers of one vertex, eight of the fourth behind it. Four rows are transposed
+  // within their quarters, after which quarters of starts and of ends alternate.
   Float16 half[2][3];
   for (std::size_t h = 0; h < 2; ++h) {
     Float16 row[4];
@@ -64,8 +65,8 @@ PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& pa
       for (std::size_t k = 0; k < 2; ++k)
         std::memcpy(&record[k], records[static_cast<std::size_t>(patch.vertex[8 * h + 4 * k + i])].at,
                     sizeof record[k]);
-      row[i] = __builtin_shufflevector(record[0], record[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-                                       14, 15);
+      row[i] =
+          __builtin_shufflevector(record[0], record[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     }
     const auto first_two = [](Float16 a, Float16 b) {
       return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
@@ -88,8 +89,8 @@ PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& pa
   for (int i = 0; i < 3; ++i) {
     out.at[0][i] = __builtin_shufflevector(half[0][i], half[1][i], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19,
                                            24, 25, 26, 27);
-    out.at[1][i] = __builtin_shufflevector(half[0][i], half[1][i], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22,
-                                           23, 28, 29, 30, 31);
+    out.at[1][i] = __builtin_shufflevector(half[0][i], half[1][i], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23,
+                                           28, 29, 30, 31);
   }
   return out;
 }
@@ -178,10 +179,8 @@ Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float
 
   const Float16 c0 = dot(0, 0), c1 = dot(1, 0) + dot(0, 1), c2 = dot(1, 1) + dot(2, 0), c3 = dot(2, 1);
   const unsigned known = above(area, broadcast(kTiny)) & above(volume, broadcast(kTiny));
-  const unsigned positive =
-      above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
-  const unsigned negative =
-      above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
+  const unsigned positive = above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
+  const unsigned negative = above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
   return {static_cast<Mask16>(positive & known), static_cast<Mask16>(negative & known)};
 }
 

@@ -18,8 +18,8 @@ PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& pa
 // Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
 inline constexpr std::size_t kDirections = 8;
 
-// Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): for each
-// end, the least projection along every direction, then the least along its negative.
+// Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): for
+// each end, the least projection along every direction, then the least along its negative.
 struct MovingBounds {
   Float16 at[2];
 };
@@ -41,7 +41,8 @@ struct TriangleBounds {
 };
 TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error);
 
-// Which of the triangles in `mask` are not proven apart from the bounds, or from triangle `lane` of another patch.
+// Which of the triangles in `mask` are not proven apart from the bounds, or from triangle `lane` of another
+// patch.
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane);
 

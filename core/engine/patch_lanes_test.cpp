@@ -43,7 +43,8 @@ constexpr struct {
 std::vector<Scene> scenes() {
   std::vector<Scene> all;
   int seed = 0;
-  for (const auto& s : kScenes) all.emplace_back(s.noise, s.bend, Vec3(s.origin, -s.origin / 2, s.origin / 4), s.scale, ++seed);
+  for (const auto& s : kScenes)
+    all.emplace_back(s.noise, s.bend, Vec3(s.origin, -s.origin / 2, s.origin / 4), s.scale, ++seed);
   return all;
 }
 
@@ -144,8 +145,8 @@ TEST(PatchLanes, NearIsApartLaneByLane) {
 }
 
 // Every certified sign is the exact one, far from the origin and in any unit; and nearly all are certified.
-// Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle coefficients
-// not looked at.
+// Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle
+// coefficients not looked at.
 TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
   std::size_t certified = 0, all = 0, negative = 0;
   int turn = 0;
@@ -161,8 +162,8 @@ TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
           const float vertex = lanes.at[end][i][0];
           const float offset[3] = {0, i == 0 ? 0.0F : -0.05F, 0.7F};
           from.at[end][i] = std::round((vertex + offset[turn % 3]) * 0x1p12F) * 0x1p-12F;
-          const double world = scene.shift[static_cast<Eigen::Index>(i)] +
-                               scene.unit * static_cast<double>(from.at[end][i]);
+          const double world =
+              scene.shift[static_cast<Eigen::Index>(i)] + scene.unit * static_cast<double>(from.at[end][i]);
           (end == 0 ? q.start : q.end)[static_cast<Eigen::Index>(i)] = world;
           // Else the exact test would judge another point.
           if (mpq_class(world) != mpq_class(scene.shift[static_cast<Eigen::Index>(i)]) +

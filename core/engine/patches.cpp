@@ -8,8 +8,8 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are inside
-// it, in each cover.
+// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
+// inside it, in each cover.
 struct Cell {
   std::array<std::int32_t, kCovers> cluster;
   std::array<bool, kCovers> inside;
@@ -28,8 +28,8 @@ std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
   return cells;
 }
 
-// Cuts a cell into patches: each grows from a triangle with few free neighbours, next the triangle that needs the
-// fewest new vertices and lies nearest to the others.
+// Cuts a cell into patches: each grows from a triangle with few free neighbours, next the triangle that needs
+// the fewest new vertices and lies nearest to the others.
 class Cutter {
  public:
   Cutter(const TriangleMesh& mesh, std::span<const Vec3> centroid)

@@ -11,15 +11,15 @@
 
 namespace cscd::fast {
 
-// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers. All
-// belong to one cluster in each cover.
+// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
+// All belong to one cluster in each cover.
 struct Patch {
-  std::array<std::int32_t, kLanes16> vertex;      // a short one repeats its last
-  std::array<Places16, 3> corner;                 // of each triangle: places in `vertex`
-  std::array<TriangleId, kLanes16> triangle;      // a short one repeats its last
-  std::array<std::int32_t, kCovers> cluster;      // in each cover
-  std::array<Mask16, kCovers> inside;  // triangles whose corners' triangles all belong to that cluster
-  Mask16 lanes;                        // those that are triangles
+  std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
+  std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
+  std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
+  std::array<std::int32_t, kCovers> cluster;  // in each cover
+  std::array<Mask16, kCovers> inside;         // triangles whose corners' triangles all belong to that cluster
+  Mask16 lanes;                               // those that are triangles
 };
 
 // A triangle's place among the patches.
@@ -29,8 +29,8 @@ struct Lane {
 };
 
 // The surface cut into patches, and a binary tree over them, built once in the reference pose. Nodes stand in
-// depth-first order: the left child of node n is n + 1, so children follow their parents, and the patches below a
-// node are a range.
+// depth-first order: the left child of node n is n + 1, so children follow their parents, and the patches
+// below a node are a range.
 struct PatchTree {
   struct Node {
     std::int32_t right;  // inner node: its right child; leaf: ~patch

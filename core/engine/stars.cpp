@@ -6,10 +6,11 @@
 
 #include "core/geometry/lanes16.h"
 
-// Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is a sum of
-// two products (four for the middle one, which is twice the control vector) of edges not longer than A and B, hence
-// off by 4 d (A' + B') + 10 u A' B'; its dot product with the direction, which is exact by definition and has
-// components up to D, by D (12 d (A' + B') + 48 u A' B'). 12.2 and 50 also pay for the bound's own roundings.
+// Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is
+// a sum of two products (four for the middle one, which is twice the control vector) of edges not longer than
+// A and B, hence off by 4 d (A' + B') + 10 u A' B'; its dot product with the direction, which is exact by
+// definition and has components up to D, by D (12 d (A' + B') + 48 u A' B'). 12.2 and 50 also pay for the
+// bound's own roundings.
 namespace cscd::fast {
 namespace {
 
@@ -92,7 +93,8 @@ bool Stars::is_flat(VertexId vertex) const {
   const Float16 longest_a = largest_component(a) + slack, longest_b = largest_component(b) + slack;
   const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
   const Float16 area = longest_a * longest_b;
-  const Float16 bound = largest * (12.2F * positions_->error() * (longest_a + longest_b) + 50 * 0x1p-24F * area);
+  const Float16 bound =
+      largest * (12.2F * positions_->error() * (longest_a + longest_b) + 50 * 0x1p-24F * area);
   const auto along = [&](int n) {
     return control[n][0] * direction[0] + control[n][1] * direction[1] + control[n][2] * direction[2];
   };

@@ -9,14 +9,15 @@
 
 namespace cscd::fast {
 
-// Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two triangles of
-// such a star touch nowhere but in what they share, if they do not at t = 0: a proof for pairs of adjacent triangles
-// that needs no cluster. Asked for few vertices of an interval, and kept until the next.
+// Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two
+// triangles of such a star touch nowhere but in what they share, if they do not at t = 0: a proof for pairs
+// of adjacent triangles that needs no cluster. Asked for few vertices of an interval, and kept until the
+// next.
 //
-// Why: seen along the plane's normal all triangles of the star have positive area, so the angles under which they are
-// seen at the vertex sum to a multiple of a full turn, which cannot change as long as they stay positive. At t = 0 the
-// star is embedded and closed; on a small sphere about the vertex it is a simple closed curve, which winds about an
-// axis at most once. So their sectors never overlap.
+// Why: seen along the plane's normal all triangles of the star have positive area, so the angles under which
+// they are seen at the vertex sum to a multiple of a full turn, which cannot change as long as they stay
+// positive. At t = 0 the star is embedded and closed; on a small sphere about the vertex it is a simple
+// closed curve, which winds about an axis at most once. So their sectors never overlap.
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);

@@ -27,8 +27,8 @@ std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, Ver
   return contacts;
 }
 
-// Noise up to where neighbours run into each other. Mutations: the bound zero on flat surfaces; the direction's
-// sign; the middle control vector not looked at; the end not looked at.
+// Noise up to where neighbours run into each other. Mutations: the bound zero on flat surfaces; the
+// direction's sign; the middle control vector not looked at; the end not looked at.
 TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
   std::size_t flat = 0, others_with_contacts = 0, embedded = 0;
   for (int seed = 1; seed <= 12; ++seed) {

@@ -10,8 +10,8 @@
 
 namespace cscd {
 
-// Sixteen floats side by side: one AVX-512 register, or several smaller ones. What the vector types of gcc and
-// clang lack stands here twice: one instruction where there is one, else a loop.
+// Sixteen floats side by side: one AVX-512 register, or several smaller ones. What the vector types of gcc
+// and clang lack stands here twice: one instruction where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
 using Float16 = float __attribute__((vector_size(kLanes16 * sizeof(float))));
 using Mask16 = std::uint16_t;  // one bit a lane
@@ -69,9 +69,9 @@ inline Float16 smallest_of_rows(Float16 (&row)[kLanes16]) {
   for (std::size_t rows = kLanes16; rows > 1; rows /= 2)
     for (std::size_t r = 0; r < rows / 2; ++r) {
       const Float16 a = row[2 * r], b = row[2 * r + 1];
-      row[r] = smaller(
-          __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
-          __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31));
+      row[r] =
+          smaller(__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
+                  __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31));
     }
   return row[0];
 }
