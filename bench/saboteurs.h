@@ -203,7 +203,7 @@ class ManyCoversCuller : public Culler {
   explicit ManyCoversCuller(const Setup& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(mesh_, tree_, motion); }
+  void refit(const Motion& motion) override { bounds_.refit(motion); }
   bool classify(const Motion& motion, const Rig::Interval*) override {
     by_.assign(mesh_.triangle_count(), {});
     std::mt19937 random(14);
