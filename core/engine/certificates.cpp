@@ -1,0 +1,120 @@
+#include "core/engine/certificates.h"
+
+#include <algorithm>
+#include <bit>
+
+// Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
+// exception: a triangle that is looks whether all around it are.
+namespace cscd::fast {
+namespace {
+
+std::uint64_t count(unsigned mask) {
+  return static_cast<std::uint64_t>(std::popcount(mask));
+}
+
+template <class Take>
+void for_each_lane(unsigned mask, const Take& take) {
+  for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
+}
+
+}  // namespace
+
+Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::size_t count)
+    : tree_(tree),
+      covers_(covers),
+      count_(count),
+      certified_(tree.patches.size()),
+      negative_(tree.patches.size()),
+      label_(tree.nodes.size()) {
+  for (std::size_t c = 0; c < count_; ++c) {
+    viewpoint_[c].resize(covers_[c].observers.size());
+    counts_.clusters += viewpoint_[c].size();
+  }
+}
+
+void Certificates::update(const LocalPositions& positions, std::span<const PatchLanes> lanes) {
+  place_viewpoints(positions.records());
+  classify(positions, lanes);
+  certify_negative();
+  if (!positions.known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+  label_nodes();
+}
+
+void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
+  for (std::size_t c = 0; c < count_; ++c)
+    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i) {
+      const FollowingPoint& from = covers_[c].observers[i];
+      float sum[8] = {};
+      for (std::size_t v = 0; v < from.vertices.size(); ++v)
+        for (std::size_t k = 0; k < 8; ++k) sum[k] += from.weights[v] * records[+from.vertices[v]].at[k];
+      for (std::size_t end = 0; end < 2; ++end)
+        for (std::size_t k = 0; k < 3; ++k) viewpoint_[c][i].at[end][k] = sum[4 * end + k];
+    }
+}
+
+void Certificates::classify(const LocalPositions& positions, std::span<const PatchLanes> lanes) {
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {tree_.patches[p].inside[c], 0};
+  for (std::size_t p = 0; p < certified_.size(); ++p) {
+    const Patch& patch = tree_.patches[p];
+    const PatchNormals normals = normals_of(lanes[p], patch);
+    for (std::size_t c = 0; c < count_; ++c) {
+      if (patch.cluster[c] == kNone) continue;
+      const Viewpoint& from = viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
+      const Signs signs = orientation(normals, from, positions.error());
+      negative_[p][c] = signs.negative & patch.lanes;
+      for_each_lane(patch.lanes & ~static_cast<unsigned>(signs.positive), [&](std::size_t lane) {
+        for (const Lane& near : tree_.ring_of(patch.triangle[lane]))
+          certified_[static_cast<std::size_t>(near.patch)][c].positive &=
+              static_cast<Mask16>(~(1U << near.lane));
+      });
+    }
+  }
+}
+
+void Certificates::certify_negative() {
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for (std::size_t c = 0; c < count_; ++c)
+      for_each_lane(negative_[p][c] & tree_.patches[p].inside[c], [&](std::size_t lane) {
+        const std::span<const Lane> ring = tree_.ring_of(tree_.patches[p].triangle[lane]);
+        const bool all = std::all_of(ring.begin(), ring.end(), [&](const Lane& near) {
+          return negative_[static_cast<std::size_t>(near.patch)][c] >> near.lane & 1;
+        });
+        certified_[p][c].negative |= static_cast<Mask16>(all << lane);
+      });
+}
+
+void Certificates::label_nodes() {
+  counts_.positive = counts_.negative = counts_.uncertain = 0;
+  std::size_t p = tree_.patches.size();
+  for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
+    const PatchTree::Node& node = tree_.nodes[n];
+    if (!node.is_leaf()) {
+      const auto &left = label_[n + 1], &right = label_[static_cast<std::size_t>(node.right)];
+      for (std::size_t c = 0; c < kCovers; ++c) label_[n][c] = left[c] == right[c] ? left[c] : kNone;
+      continue;
+    }
+    const Patch& patch = tree_.patches[--p];
+    unsigned some = 0;
+    for (std::size_t c = 0; c < kCovers; ++c) {
+      const Signs& signs = certified_[p][c];
+      label_[n][c] = signs.positive == patch.lanes   ? 2 * patch.cluster[c]
+                     : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
+                                                     : kNone;
+      some |= signs.positive | signs.negative;
+    }
+    counts_.positive += count(certified_[p][0].positive);
+    counts_.negative += count(certified_[p][0].negative);
+    counts_.uncertain += count(patch.lanes & ~some);
+  }
+}
+
+RadialView Certificates::view() const {
+  RadialView view{covers_[0].cluster_of, std::vector<bool>(covers_[0].cluster_of.size())};
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for_each_lane(certified_[p][0].positive,
+                  [&](std::size_t lane) { view.positive[+tree_.patches[p].triangle[lane]] = true; });
+  return view;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/detect/counts.h"
+#include "core/detect/radial_view.h"
+#include "core/engine/patch_lanes.h"
+
+namespace cscd::fast {
+
+// What radial views certify in one interval: of every triangle and cover, whether all triangles at its
+// corners belong to its cluster and all are positive, or all negative, towards the cluster's observer.
+//
+// Two triangles that one cover certifies with one sign need not be looked at: then one field certifies
+// everything incident to any vertex or edge of the two, which is what the theorem (soundness contract) asks
+// of each feature pair that they carry. Several covers may each do so; a pair whose triangles are certified
+// by different covers stays (trap 14). So does one whose triangles are certain but not what surrounds them:
+// the other triangles at a shared vertex might be dropped by the other cover.
+class Certificates {
+ public:
+  // Looks at the first `covers` of them alone.
+  Certificates(const PatchTree& tree, const Covers& covers, std::size_t count);
+
+  void update(const LocalPositions& positions, std::span<const PatchLanes> lanes);
+
+  // Whether no pair of triangles, one below each node, has to be looked at; a == b: no pair below the node.
+  bool skip(std::size_t a, std::size_t b) const {
+    bool any = false;
+    for (std::size_t c = 0; c < kCovers; ++c) any |= label_[a][c] == label_[b][c] && label_[a][c] != kNone;
+    return any;
+  }
+  // Triangles of patch q that have to be held against triangle `lane` of patch p.
+  Mask16 needed(std::size_t p, std::size_t lane, std::size_t q) const {
+    unsigned dropped = 0;
+    for (std::size_t c = 0; c < kCovers; ++c)
+      if (tree_.patches[p].cluster[c] == tree_.patches[q].cluster[c]) {
+        if (certified_[p][c].positive >> lane & 1) dropped |= certified_[q][c].positive;
+        if (certified_[p][c].negative >> lane & 1) dropped |= certified_[q][c].negative;
+      }
+    return static_cast<Mask16>(tree_.patches[q].lanes & ~dropped);
+  }
+  // Triangles certified by the first cover, and those that no cover certifies.
+  const RadialCounts& counts() const { return counts_; }
+  // The first cover; positive with all around it.
+  RadialView view() const;
+
+ private:
+  void place_viewpoints(std::span<const LocalPositions::Record> records);
+  void classify(const LocalPositions& positions, std::span<const PatchLanes> lanes);
+  void certify_negative();
+  void label_nodes();
+
+  const PatchTree& tree_;
+  const Covers& covers_;
+  std::size_t count_;
+  std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
+  std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
+  std::vector<std::array<Mask16, kCovers>> negative_;  // of each patch: by themselves
+  std::vector<std::array<std::int32_t, kCovers>>
+      label_;  // of each node: cluster and sign of all below, or kNone
+  RadialCounts counts_;
+};
+
+}  // namespace cscd::fast
