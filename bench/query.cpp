@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 struct QueryOptions {
-  std::string input, strategy, elementary = "exact", frames, output;
+  std::string input, strategy, elementary = "filtered_exact", frames, output;
   bool force = false, unproven = false;
   std::optional<double> interval_seconds;
   ModelOptions model;
