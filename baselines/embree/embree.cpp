@@ -1,5 +1,6 @@
 #include "baselines/embree/embree.h"
 
+#include <algorithm>
 #include <embree3/rtcore.h>
 #include <span>
 #include <string>
@@ -26,6 +27,10 @@
 // A "no" rests on Embree's own code.
 namespace cscd {
 namespace {
+
+// Embree takes a box that reaches farther for a mistake and leaves it out. What overlaps still does when cut
+// off there.
+constexpr float kLargest = 1.8e18f;
 
 class EmbreeCuller : public Culler {
  public:
@@ -75,7 +80,9 @@ class EmbreeCuller : public Culler {
   static void write_bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& culler = *static_cast<const EmbreeCuller*>(arguments->geometryUserPtr);
     const float* b = culler.box_[arguments->primID].at_least;
-    *arguments->bounds_o = {b[0], b[1], b[2], 0, -b[4], -b[5], -b[6], 0};
+    const auto within = [](float x) { return std::clamp(x, -kLargest, kLargest); };
+    *arguments->bounds_o = {within(b[0]),  within(b[1]),  within(b[2]),  0,
+                            within(-b[4]), within(-b[5]), within(-b[6]), 0};
   }
   static void take_pairs(void* self, RTCCollision* pairs, unsigned count) {
     auto& culler = *static_cast<EmbreeCuller*>(self);
