@@ -23,7 +23,7 @@ class ContactResponse final : public Effect {
       : where_(p.where()),
         pull_(p.number("pull", 0.3)),
         mesh_(shape.triangles, shape.positions.size(), p.where()),
-        setup_{mesh_, shape.positions, &shape.rig, *find_elementary_test("exact")},
+        setup_{mesh_, shape.positions, &shape.rig, *find_elementary_test("filtered_exact")},
         embedding_(mesh_, shape.positions),
         step_(mesh_, shape.positions, first(setup_),
               compose(std::make_unique<PlainCuller<Kdop16>>(setup_), mesh_, setup_.elementary,
