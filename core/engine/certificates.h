@@ -31,15 +31,28 @@ class Certificates {
     for (std::size_t c = 0; c < kCovers; ++c) any |= label_[a][c] == label_[b][c] && label_[a][c] != kNone;
     return any;
   }
-  // Triangles of patch q that have to be held against triangle `lane` of patch p.
-  Mask16 needed(std::size_t p, std::size_t lane, std::size_t q) const {
-    unsigned dropped = 0;
+  // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one of q in
+  // the same set.
+  struct Shared {
+    std::array<Mask16, 2 * kCovers> p, q;
+    Mask16 lanes_q;
+
+    // Triangles of patch q that have to be held against triangle `lane` of patch p.
+    Mask16 needed(std::size_t lane) const {
+      unsigned dropped = 0;
+      for (std::size_t s = 0; s < p.size(); ++s) dropped |= p[s] >> lane & 1 ? q[s] : 0U;
+      return static_cast<Mask16>(lanes_q & ~dropped);
+    }
+  };
+  Shared shared(std::size_t p, std::size_t q) const {
+    Shared sets{{}, {}, tree_.patches[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
       if (tree_.patches[p].cluster[c] == tree_.patches[q].cluster[c]) {
-        if (certified_[p][c].positive >> lane & 1) dropped |= certified_[q][c].positive;
-        if (certified_[p][c].negative >> lane & 1) dropped |= certified_[q][c].negative;
+        const Signs &a = certified_[p][c], &b = certified_[q][c];
+        sets.p[2 * c] = a.positive, sets.p[2 * c + 1] = a.negative;
+        sets.q[2 * c] = b.positive, sets.q[2 * c + 1] = b.negative;
       }
-    return static_cast<Mask16>(tree_.patches[q].lanes & ~dropped);
+    return sets;
   }
   // Triangles certified by the first cover, and those that no cover certifies.
   const RadialCounts& counts() const { return counts_; }

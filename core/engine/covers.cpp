@@ -172,7 +172,7 @@ Seams seams_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluste
 }
 
 // Joins clusters that are too thin for their middle to lie well inside with the neighbour along the longest
-// seam, the thinnest first. Only ends and links of a chain: what has more than two neighbours is no limb.
+// seam, the thinnest first. Only links of a chain: what has more than two neighbours is no limb.
 void merge_thin(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of) {
   while (true) {
     const Seams seams = seams_of(mesh, cluster_of);
@@ -193,8 +193,7 @@ void merge_thin(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of)
       std::int32_t from = kNone, into = kNone;
     } best;
     for (const auto& [clusters, triangles] : seams) {
-      const auto [fewer, more] = std::minmax(neighbours[clusters.first], neighbours[clusters.second]);
-      if (fewer > 1 && more > 2) continue;
+      if (neighbours[clusters.first] > 2 || neighbours[clusters.second] > 2) continue;
       const std::int32_t thinner = std::min(depth[clusters.first], depth[clusters.second]);
       if (std::pair(thinner, best.length) < std::pair(best.depth, triangles.size()))
         best = {thinner, triangles.size(), clusters.second, clusters.first};

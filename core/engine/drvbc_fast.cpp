@@ -47,7 +47,7 @@ class FastCuller : public Culler {
       const PatchTree::Node& node = tree_.nodes[n];
       if (node.is_leaf()) {
         --patch;
-        lanes_[patch] = load(positions_.records(), tree_.patches[patch]);
+        lanes_[patch] = load(positions_.records(), tree_.patches[patch].vertex);
         bounds_[n] = bounds_of(lanes_[patch], positions_.error());
         if (!options_.time_linear) sweep(bounds_[n]);
       } else {
@@ -117,34 +117,42 @@ class FastCuller : public Culler {
 
   // Pairs inside one patch.
   void inside(std::size_t p) {
+    const Certificates::Shared shared = certificates_.shared(p, p);
+    const Adjacent* adjacent = tree_.adjacent_to(p, p);
     const Mask16 lanes = tree_.patches[p].lanes;
     for (std::size_t lane = 0; lanes >> lane > 1; ++lane)
-      row(p, lane, p, static_cast<Mask16>(certificates_.needed(p, lane, p) & ~((2U << lane) - 1)));
+      row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), adjacent);
   }
 
   // Pairs between two patches: those triangles of each that meet the other's bounds.
   void between(std::size_t p, const MovingBounds& bounds_p, std::size_t q, const MovingBounds& bounds_q) {
-    Mask16 rows = 0, columns = 0, need[kLanes16];
-    for (std::size_t lane = 0; tree_.patches[p].lanes >> lane != 0; ++lane) {
-      need[lane] = certificates_.needed(p, lane, q);
-      if (need[lane] != 0) rows |= static_cast<Mask16>(1U << lane);
-      columns |= need[lane];
+    const Certificates::Shared shared = certificates_.shared(p, q);
+    Mask16 rows = tree_.patches[p].lanes, columns = tree_.patches[q].lanes;
+    for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
+      if (shared.q[s] == tree_.patches[q].lanes) rows &= static_cast<Mask16>(~shared.p[s]);
+      if (shared.p[s] == tree_.patches[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
     }
-    if (rows == 0) return;
+    if (rows == 0 || columns == 0) return;
     rows = near_counted(bounds_of_triangles(p), rows, bounds_q);
     if (rows == 0) return;
     columns = near_counted(bounds_of_triangles(q), columns, bounds_p);
+    if (columns == 0) return;
+    const Adjacent* adjacent = tree_.adjacent_to(p, q);
     for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-      row(p, lane, q, static_cast<Mask16>(need[lane] & columns));
+      row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), adjacent);
     }
   }
 
   // One triangle of patch p against some of patch q.
-  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted) {
+  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Adjacent* adjacent) {
     if (wanted == 0) return;
-    wanted = without_adjacent(p, lane, q, wanted);
-    if (wanted == 0) return;
+    if (adjacent != nullptr) {
+      const auto beside = static_cast<Mask16>(wanted & adjacent->lanes[lane]);
+      wanted &= static_cast<Mask16>(~beside);
+      take_adjacent(p, lane, q, beside);
+      if (wanted == 0) return;
+    }
     bounds_of_triangles(p);  // before a reference is taken, as they are made on demand
     const TriangleBounds& others = bounds_of_triangles(q);
     tests_ += static_cast<unsigned>(std::popcount(wanted));
@@ -155,17 +163,12 @@ class FastCuller : public Culler {
   }
 
   // Adjacent triangles always overlap: they are passed on untested, unless a star proves them apart.
-  Mask16 without_adjacent(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted) {
+  void take_adjacent(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
     const TriangleId t = tree_.patches[p].triangle[lane];
-    unsigned adjacent = 0;
-    for (const Lane& near : tree_.ring_of(t))
-      if (static_cast<std::size_t>(near.patch) == q) adjacent |= 1U << near.lane;
-    adjacent &= wanted;
-    for (unsigned rest = adjacent; rest != 0; rest &= rest - 1) {
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
       const TriangleId u = tree_.patches[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))];
       if (!options_.stars || !in_flat_star(t, u)) sink_->add(t, u);
     }
-    return static_cast<Mask16>(wanted & ~adjacent);
   }
 
   bool in_flat_star(TriangleId t, TriangleId u) {

@@ -54,7 +54,8 @@ PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
 
 }  // namespace
 
-PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& patch) {
+PatchLanes load(std::span<const LocalPositions::Record> records,
+                const std::array<std::int32_t, kLanes16>& vertex) {
   // Two records a row: eight numbers of one vertex, eight of the fourth behind it. Four rows are transposed
   // within their quarters, after which quarters of starts and of ends alternate.
   Float16 half[2][3];
@@ -63,7 +64,7 @@ PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& pa
     for (std::size_t i = 0; i < 4; ++i) {
       Float8 record[2];
       for (std::size_t k = 0; k < 2; ++k)
-        std::memcpy(&record[k], records[static_cast<std::size_t>(patch.vertex[8 * h + 4 * k + i])].at,
+        std::memcpy(&record[k], records[static_cast<std::size_t>(vertex[8 * h + 4 * k + i])].at,
                     sizeof record[k]);
       row[i] =
           __builtin_shufflevector(record[0], record[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

@@ -13,7 +13,8 @@ namespace cscd::fast {
 struct PatchLanes {
   Float16 at[2][3];
 };
-PatchLanes load(std::span<const LocalPositions::Record> records, const Patch& patch);
+PatchLanes load(std::span<const LocalPositions::Record> records,
+                const std::array<std::int32_t, kLanes16>& vertex);
 
 // Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
 inline constexpr std::size_t kDirections = 8;

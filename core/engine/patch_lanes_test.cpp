@@ -51,7 +51,7 @@ std::vector<Scene> scenes() {
 TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
   const Scene scene(0.1, 1, {0, 0, 0}, 1, 1);
   for (const Patch& patch : scene.tree.patches) {
-    const PatchLanes lanes = load(scene.local.records(), patch);
+    const PatchLanes lanes = load(scene.local.records(), patch.vertex);
     for (std::size_t l = 0; l < kLanes16; ++l)
       for (std::size_t i = 0; i < 3; ++i) {
         const float* at = scene.local.records()[static_cast<std::size_t>(patch.vertex[l])].at;
@@ -69,7 +69,7 @@ TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
   for (const Scene& scene : scenes())
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 5) {
       const Patch& patch = scene.tree.patches[p];
-      const PatchLanes lanes = load(scene.local.records(), patch);
+      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
       const MovingBounds bounds = bounds_of(lanes, scene.local.error());
       const TriangleBounds triangles = triangle_bounds(lanes, patch, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l)
@@ -129,10 +129,10 @@ TEST(PatchLanes, NearIsApartLaneByLane) {
   for (std::size_t p = 0; p + 1 < scene.tree.patches.size(); ++p) {
     const Patch &patch = scene.tree.patches[p], &other = scene.tree.patches[p + 1];
     const auto of = [&](const Patch& x) {
-      return triangle_bounds(load(scene.local.records(), x), x, scene.local.error());
+      return triangle_bounds(load(scene.local.records(), x.vertex), x, scene.local.error());
     };
     const TriangleBounds first = of(patch), second = of(other);
-    const MovingBounds whole = bounds_of(load(scene.local.records(), other), scene.local.error());
+    const MovingBounds whole = bounds_of(load(scene.local.records(), other.vertex), scene.local.error());
     const Mask16 to_whole = near(first, 0xffff, whole), to_lane = near(first, 0xffff, second, 5);
     for (std::size_t l = 0; l < kLanes16; ++l) {
       EXPECT_EQ(to_whole >> l & 1, !apart(bounds_of_lane(first, l), whole));
@@ -153,7 +153,7 @@ TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
   for (const Scene& scene : scenes())
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 11) {
       const Patch& patch = scene.tree.patches[p];
-      const PatchLanes lanes = load(scene.local.records(), patch);
+      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
       // From inside, from the surface itself, and from outside.
       Viewpoint from;
       MovingPoint q;
@@ -226,7 +226,7 @@ int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
 TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
   for (const Scene& scene : scenes())
     for (const Patch& patch : scene.tree.patches) {
-      const PatchLanes lanes = load(scene.local.records(), patch);
+      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
       const Viewpoint from = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
       const Signs signs = orientation(normals_of(lanes, patch), from, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l) {

@@ -207,6 +207,16 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
     for (const TriangleId t : around) tree.ring.push_back(lane_of[+t]);
     tree.ring_offset.push_back(static_cast<std::int32_t>(tree.ring.size()));
   }
+
+  tree.adjacent_offset.push_back(0);
+  for (const Patch& patch : tree.patches) {
+    std::map<std::int32_t, std::array<Mask16, kLanes16>> touching;
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
+      for (const Lane& near : tree.ring_of(patch.triangle[l]))
+        touching[near.patch][l] |= static_cast<Mask16>(1U << near.lane);
+    for (const auto& [other, lanes] : touching) tree.adjacent.push_back({other, lanes});
+    tree.adjacent_offset.push_back(static_cast<std::int32_t>(tree.adjacent.size()));
+  }
 }
 
 }  // namespace

@@ -28,6 +28,12 @@ struct Lane {
   std::int32_t lane;
 };
 
+// Which triangles of another patch share a vertex with each triangle of this one.
+struct Adjacent {
+  std::int32_t patch;
+  std::array<Mask16, kLanes16> lanes;
+};
+
 // The surface cut into patches, and a binary tree over them, built once in the reference pose. Nodes stand in
 // depth-first order: the left child of node n is n + 1, so children follow their parents, and the patches
 // below a node are a range.
@@ -39,6 +45,17 @@ struct PatchTree {
   };
   std::vector<Node> nodes;
   std::vector<Patch> patches;
+
+  // The patches that touch a patch, itself among them, in compressed rows.
+  std::vector<std::int32_t> adjacent_offset;
+  std::vector<Adjacent> adjacent;
+  // Null where the two do not touch.
+  const Adjacent* adjacent_to(std::size_t p, std::size_t q) const {
+    for (auto i = static_cast<std::size_t>(adjacent_offset[p]);
+         i < static_cast<std::size_t>(adjacent_offset[p + 1]); ++i)
+      if (static_cast<std::size_t>(adjacent[i].patch) == q) return &adjacent[i];
+    return nullptr;
+  }
 
   // Lanes of the triangles that share a vertex with a triangle, itself among them, in compressed rows.
   std::vector<std::int32_t> ring_offset;

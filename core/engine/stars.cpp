@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/lanes16.h"
+#include "core/engine/patch_lanes.h"
 
 // Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is
 // a sum of two products (four for the middle one, which is twice the control vector) of edges not longer than
@@ -56,28 +56,23 @@ bool Stars::is_flat(VertexId vertex) const {
   const std::span<const LocalPositions::Record> records = positions_->records();
   const LocalPositions::Record& here = records[+vertex];
 
-  Float16 a[2][3], b[2][3];
+  std::array<std::int32_t, kLanes16> second, third;
   for (std::size_t l = 0; l < kLanes16; ++l) {
     const Ends& ends = ends_[first + std::min(l, count - 1)];
-    const float* second = records[static_cast<std::size_t>(ends.second)].at;
-    const float* third = records[static_cast<std::size_t>(ends.third)].at;
-    for (std::size_t end = 0; end < 2; ++end)
-      for (std::size_t i = 0; i < 3; ++i) {
-        a[end][i][l] = second[4 * end + i];
-        b[end][i][l] = third[4 * end + i];
-      }
+    second[l] = ends.second;
+    third[l] = ends.third;
   }
-  for (std::size_t end = 0; end < 2; ++end)
-    for (std::size_t i = 0; i < 3; ++i) {
-      a[end][i] -= here.at[4 * end + i];
-      b[end][i] -= here.at[4 * end + i];
-    }
+  PatchLanes edges[2] = {load(records, second), load(records, third)};
+  auto& [a, b] = edges;
+  for (PatchLanes& edge : edges)
+    for (std::size_t end = 0; end < 2; ++end)
+      for (std::size_t i = 0; i < 3; ++i) edge.at[end][i] -= here.at[4 * end + i];
   Float16 control[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    control[0][i] = a[0][j] * b[0][k] - a[0][k] * b[0][j];
-    control[1][i] = (a[0][j] * b[1][k] - a[0][k] * b[1][j]) + (a[1][j] * b[0][k] - a[1][k] * b[0][j]);
-    control[2][i] = a[1][j] * b[1][k] - a[1][k] * b[1][j];
+    control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
+    control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) + (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
+    control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
   }
   // The direction: the mean of the normals about the middle of the interval.
   Float16 middle[3], length = {};
@@ -85,12 +80,12 @@ bool Stars::is_flat(VertexId vertex) const {
     middle[i] = control[0][i] + control[1][i] + control[2][i];
     length += middle[i] * middle[i];
   }
-  for (std::size_t l = 0; l < kLanes16; ++l) length[l] = std::sqrt(length[l]) + kTiny;
+  for (std::size_t l = 0; l < count; ++l) length[l] = std::sqrt(length[l]) + kTiny;
   float direction[3];
   for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length, count);
 
   const Float16 slack = Float16{} + 2 * positions_->error();
-  const Float16 longest_a = largest_component(a) + slack, longest_b = largest_component(b) + slack;
+  const Float16 longest_a = largest_component(a.at) + slack, longest_b = largest_component(b.at) + slack;
   const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
   const Float16 area = longest_a * longest_b;
   const Float16 bound =
