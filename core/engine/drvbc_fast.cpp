@@ -95,24 +95,16 @@ class FastCuller : public Culler {
   void pair(std::size_t a, std::size_t b) {
     if (certificates_.skip(a, b)) return;
     ++tests_;
-    if (apart(bounds_[a], bounds_[b])) return;
+    if (!apart(bounds_[a], bounds_[b])) below(a, b);
+  }
+
+  void below(std::size_t a, std::size_t b) {
     const PatchTree::Node &first = tree_.nodes[a], &second = tree_.nodes[b];
-    const auto right_a = static_cast<std::size_t>(first.right),
-               right_b = static_cast<std::size_t>(second.right);
-    if (first.is_leaf() && second.is_leaf()) {
-      between(first.patch(), bounds_[a], second.patch(), bounds_[b]);
-    } else if (first.is_leaf()) {
-      pair(a, b + 1);
-      pair(a, right_b);
-    } else if (second.is_leaf()) {
-      pair(a + 1, b);
-      pair(right_a, b);
-    } else {
-      pair(a + 1, b + 1);
-      pair(a + 1, right_b);
-      pair(right_a, b + 1);
-      pair(right_a, right_b);
-    }
+    if (first.is_leaf() && second.is_leaf()) return between(a, b);
+    const std::size_t of_a[2] = {first.is_leaf() ? a : a + 1, static_cast<std::size_t>(first.right)};
+    const std::size_t of_b[2] = {second.is_leaf() ? b : b + 1, static_cast<std::size_t>(second.right)};
+    for (std::size_t i = 0; i < (first.is_leaf() ? 1 : 2); ++i)
+      for (std::size_t j = 0; j < (second.is_leaf() ? 1 : 2); ++j) pair(of_a[i], of_b[j]);
   }
 
   // Pairs inside one patch.
@@ -124,8 +116,9 @@ class FastCuller : public Culler {
       row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), adjacent);
   }
 
-  // Pairs between two patches: those triangles of each that meet the other's bounds.
-  void between(std::size_t p, const MovingBounds& bounds_p, std::size_t q, const MovingBounds& bounds_q) {
+  // Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
+  void between(std::size_t a, std::size_t b) {
+    const std::size_t p = tree_.nodes[a].patch(), q = tree_.nodes[b].patch();
     const Certificates::Shared shared = certificates_.shared(p, q);
     Mask16 rows = tree_.patches[p].lanes, columns = tree_.patches[q].lanes;
     for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
@@ -133,9 +126,9 @@ class FastCuller : public Culler {
       if (shared.p[s] == tree_.patches[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
     }
     if (rows == 0 || columns == 0) return;
-    rows = near_counted(bounds_of_triangles(p), rows, bounds_q);
+    rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
     if (rows == 0) return;
-    columns = near_counted(bounds_of_triangles(q), columns, bounds_p);
+    columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);
     if (columns == 0) return;
     const Adjacent* adjacent = tree_.adjacent_to(p, q);
     for (unsigned rest = rows; rest != 0; rest &= rest - 1) {

@@ -56,10 +56,40 @@ class Cutter {
           for (const TriangleId other : mesh_.triangles_at(e))
             if (free_[+other]) queue.push_back(other);
     }
+    join(patches);
     return patches;
   }
 
  private:
+  std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const {
+    std::vector<VertexId> vertices;
+    for (const TriangleId t : patch)
+      vertices.insert(vertices.end(), mesh_.corners(t).begin(), mesh_.corners(t).end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  // Joins what is left over between patches: the smallest with the largest that it touches and fits.
+  void join(std::vector<std::vector<TriangleId>>& patches) const {
+    std::stable_sort(patches.begin(), patches.end(),
+                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const std::vector<VertexId> own = vertices_of(patches[i]);
+      for (std::size_t j = patches.size(); j-- > i + 1;) {
+        if (patches[i].size() + patches[j].size() > kLanes16) continue;
+        const std::vector<VertexId> other = vertices_of(patches[j]);
+        std::vector<VertexId> both;
+        std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
+        if (both.size() > kLanes16 || both.size() == own.size() + other.size()) continue;
+        patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
+        patches[i].clear();
+        break;
+      }
+    }
+    std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+  }
+
   std::vector<TriangleId> grow(TriangleId seed) {
     std::vector<TriangleId> patch = {seed}, front;
     std::vector<VertexId> vertices(mesh_.corners(seed).begin(), mesh_.corners(seed).end());
