@@ -57,11 +57,14 @@ void Certificates::classify(const LocalPositions& positions, std::span<const Pat
     for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {tree_.patches[p].inside[c], 0};
   for (std::size_t p = 0; p < certified_.size(); ++p) {
     const Patch& patch = tree_.patches[p];
-    const PatchNormals normals = normals_of(lanes[p], patch);
+    const Viewpoint* from[kCovers] = {};
+    for (std::size_t c = 0; c < count_; ++c)
+      if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
+    Signs seen[kCovers];
+    orientations(lanes[p], patch, from, positions.error(), seen);
     for (std::size_t c = 0; c < count_; ++c) {
-      if (patch.cluster[c] == kNone) continue;
-      const Viewpoint& from = viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
-      const Signs signs = orientation(normals, from, positions.error());
+      if (from[c] == nullptr) continue;
+      const Signs& signs = seen[c];
       negative_[p][c] = signs.negative & patch.lanes;
       for_each_lane(patch.lanes & ~static_cast<unsigned>(signs.positive), [&](std::size_t lane) {
         for (const Lane& near : tree_.ring_of(patch.triangle[lane]))

@@ -31,8 +31,8 @@ class Certificates {
     for (std::size_t c = 0; c < kCovers; ++c) any |= label_[a][c] == label_[b][c] && label_[a][c] != kNone;
     return any;
   }
-  // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one of q in
-  // the same set.
+  // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one
+  // of q in the same set.
   struct Shared {
     std::array<Mask16, 2 * kCovers> p, q;
     Mask16 lanes_q;

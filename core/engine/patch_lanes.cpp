@@ -145,7 +145,9 @@ Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& 
   return mask;
 }
 
-PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch) {
+namespace {
+
+[[gnu::always_inline]] inline PatchNormals make_normals(const PatchLanes& lanes, const Patch& patch) {
   PatchNormals out;
   out.corner = corner_of(lanes, patch.corner[0]);
   const PatchLanes a = corner_of(lanes, patch.corner[1]) - out.corner,
@@ -162,7 +164,8 @@ PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch) {
   return out;
 }
 
-Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error) {
+[[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const Viewpoint& viewpoint,
+                                         float error) {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) c.at[end][i] = normals.corner.at[end][i] - broadcast(viewpoint.at[end][i]);
@@ -183,6 +186,22 @@ Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float
   const unsigned positive = above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
   const unsigned negative = above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
   return {static_cast<Mask16>(positive & known), static_cast<Mask16>(negative & known)};
+}
+
+}  // namespace
+
+PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch) {
+  return make_normals(lanes, patch);
+}
+
+Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error) {
+  return look(normals, viewpoint, error);
+}
+
+void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
+                  float error, Signs (&out)[kCovers]) {
+  const PatchNormals normals = make_normals(lanes, patch);
+  for (std::size_t c = 0; c < kCovers; ++c) out[c] = from[c] ? look(normals, *from[c], error) : Signs{};
 }
 
 }  // namespace cscd::fast

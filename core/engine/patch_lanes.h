@@ -65,5 +65,8 @@ struct PatchNormals {
 };
 PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch);
 Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error);
+// The same towards several viewpoints, in one go; null gives none.
+void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
+                  float error, Signs (&out)[kCovers]);
 
 }  // namespace cscd::fast

@@ -71,7 +71,8 @@ bool Stars::is_flat(VertexId vertex) const {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
-    control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) + (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
+    control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) +
+                    (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
     control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
   }
   // The direction: the mean of the normals about the middle of the interval.
