@@ -58,10 +58,12 @@ struct Dop {
     for (std::size_t k = 0; k < K; ++k) at_least[k] = std::min(at_least[k], other.at_least[k]);
   }
   bool overlaps(const Dop& other) const {
-    bool apart = false;
-    for (std::size_t k = 0; k < K / 2; ++k)
-      apart |= (at_least[k] > -other.at_least[K / 2 + k]) | (other.at_least[k] > -at_least[K / 2 + k]);
-    return !apart;
+    int apart = 0;
+    for (std::size_t k = 0; k < K / 2; ++k) {
+      apart |= at_least[k] > -other.at_least[K / 2 + k];
+      apart |= other.at_least[k] > -at_least[K / 2 + k];
+    }
+    return apart == 0;
   }
 };
 
