@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <map>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "bench/catalogue.h"
@@ -67,7 +67,7 @@ std::vector<std::string> command_line(const AccuracyOptions& o) {
   };
   add("--scene", joined(o.scenes));
   add("--every", std::to_string(o.every));
-  add("--set", o.set);
+  add("--set", std::filesystem::path(o.set).filename());  // not where it lies on this machine
   add("--elementary", o.elementary);
   add("--sweep", o.sweep);
   add("--sweep-queries", std::to_string(o.sweep_queries));
