@@ -37,6 +37,9 @@ build() {
   shift 3
   local cxx=g++ cc=gcc
   [ "$compiler" = clang ] && cxx=clang++ cc=clang
+  # Of a folder that was configured with another compiler CMake forgets the cache file's settings, silently.
+  local known=$root/$folder/CMakeCache.txt
+  if [ -e "$known" ] && ! grep -Eq "^CMAKE_CXX_COMPILER:[A-Z]+=(.*/)?$cxx\$" "$known"; then rm "$known"; fi
   cmake -S "$root" -B "$root/$folder" -G Ninja -C "$root/scripts/cmake/$cache.cmake" \
     -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >/dev/null
   ninja -C "$root/$folder" "$@"
