@@ -1,0 +1,169 @@
+#include "core/engine/certificates.h"
+
+#include <gtest/gtest.h>
+
+#include "core/engine/test_body.h"
+#include "core/radial/orientation.h"
+
+namespace cscd::fast {
+namespace {
+
+using radial::Orientation;
+
+// One interval of a body, and what the rule of the theorem says about its triangles, in double precision and
+// by looking at every triangle: the twin of what certificates gather from patches.
+struct Scene : test::Body {
+  Covers covers;
+  PatchTree tree;
+  LocalPositions local;
+  Certificates certificates;
+  // Of each triangle and cover: the sign that all triangles with a common vertex have towards the observer of
+  // the cluster that all of them belong to; uncertain where they do not.
+  std::vector<std::array<Orientation, kCovers>> all_round;
+
+  explicit Scene(double noise, double bend, int seed, bool inside_out = false)
+      : test::Body(noise, bend, {3, -2, 1}, 1, seed), local(start), certificates(prepared(inside_out)) {
+    local.update(motion());
+    std::vector<PatchLanes> lanes;
+    for (const Patch& patch : tree.patches) lanes.push_back(load(local.records(), patch.vertex));
+    certificates.update(local, lanes);
+    find_all_round();
+  }
+  std::size_t cluster(std::size_t c, std::size_t triangle) const {
+    return static_cast<std::size_t>(covers[c].cluster_of[triangle]);
+  }
+  // Whether one cover has both triangles, and all round them, on one side of one observer.
+  bool one_field(TriangleId t, TriangleId u) const {
+    for (std::size_t c = 0; c < kCovers; ++c)
+      if (cluster(c, +t) == cluster(c, +u) && all_round[+t][c] != Orientation::uncertain &&
+          all_round[+t][c] == all_round[+u][c])
+        return true;
+    return false;
+  }
+
+ private:
+  Certificates prepared(bool inside_out) {
+    if (inside_out) {
+      std::vector<Triangle> flipped(mesh.triangles().begin(), mesh.triangles().end());
+      for (Triangle& t : flipped) std::swap(t[1], t[2]);
+      mesh = TriangleMesh(flipped, mesh.vertex_count());
+    }
+    // Observers of the surface as it was: that all of it is then seen from behind is the aim.
+    covers = make_covers(shape.mesh(), shape.positions, atomic);
+    tree = make_patches(mesh, shape.positions, covers);
+    return Certificates(tree, covers, kCovers);
+  }
+  // A point of the body in the coordinates of the records, hardly rounded.
+  MovingPoint at(VertexId v) const {
+    const double unit = scale();
+    return {(start[+v] - start[0]) * unit, (end[+v] - start[0]) * unit};
+  }
+  double scale() const {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : start) box.extend(p);
+    return std::ldexp(1.0, -std::ilogb(box.sizes().maxCoeff()));
+  }
+  radial::Observer observer(const FollowingPoint& from) const {
+    float sum[8] = {};
+    for (std::size_t i = 0; i < from.vertices.size(); ++i)
+      for (std::size_t k = 0; k < 8; ++k)
+        sum[k] += from.weights[i] * local.records()[+from.vertices[i]].at[k];
+    return radial::Observer::point({Vec3(sum[0], sum[1], sum[2]), Vec3(sum[4], sum[5], sum[6])});
+  }
+  void find_all_round() {
+    std::vector<std::array<Orientation, kCovers>> own(mesh.triangle_count());
+    for (std::size_t t = 0; t < own.size(); ++t)
+      for (std::size_t c = 0; c < kCovers; ++c) {
+        const Triangle& corner = mesh.triangles()[t];
+        own[t][c] = radial::orientation({at(corner[0]), at(corner[1]), at(corner[2])},
+                                        observer(covers[c].observers[cluster(c, t)]));
+      }
+    all_round = own;
+    for (std::size_t t = 0; t < own.size(); ++t)
+      for (std::size_t c = 0; c < kCovers; ++c)
+        for (const VertexId v : mesh.triangles()[t])
+          for (const TriangleId near : mesh.triangles_at(v))
+            if (own[+near][c] != own[t][c] || cluster(c, +near) != cluster(c, t))
+              all_round[t][c] = Orientation::uncertain;
+  }
+};
+
+template <class Visit>
+void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
+  const std::vector<Patch>& patches = scene.tree.patches;
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t q = 0; q < patches.size(); ++q)
+      for (std::size_t i = 0; patches[p].lanes >> i != 0; ++i) {
+        const Mask16 needed = scene.certificates.shared(p, q).needed(i);
+        for (std::size_t j = 0; patches[q].lanes >> j != 0; ++j)
+          visit(patches[p].triangle[i], patches[q].triangle[j], (needed >> j & 1) != 0);
+      }
+}
+
+// Mutations: classify clears the lane that is not positive instead of all round it; needed compares signs
+// whatever the cluster, or drops what different covers certify; certify_negative does not look around.
+TEST(Certificates, Trap14APairIsDroppedOnlyByOneFieldAllRoundBoth) {
+  for (const bool inside_out : {false, true})
+    for (int seed = 1; seed <= 2; ++seed) {
+      const Scene scene(0.04 * seed, 3, seed, inside_out);
+      std::size_t dropped = 0, needed_though_each_is_certified = 0, certain = 0;
+      for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+        certain += scene.one_field(t, u);
+        if (!needed) {
+          ++dropped;
+          EXPECT_TRUE(scene.one_field(t, u)) << +t << " and " << +u << ", seed " << seed;
+          return;
+        }
+        const auto by_some = [&](TriangleId triangle) {
+          return scene.all_round[+triangle][0] != Orientation::uncertain ||
+                 scene.all_round[+triangle][1] != Orientation::uncertain;
+        };
+        needed_though_each_is_certified += by_some(t) && by_some(u);
+      });
+      EXPECT_GT(needed_though_each_is_certified, 1000u) << "else mixing covers would change nothing";
+      EXPECT_GT(dropped, certain * 9 / 10) << "float bounds cost little";
+      EXPECT_LT(certain, scene.mesh.triangle_count() * scene.mesh.triangle_count() / 2);
+    }
+}
+
+// Mutation: label_nodes takes the left child's label.
+TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
+  const Scene scene(0.04, 3, 1);
+  // Patches below a node: depth first, so a range that ends where the node's subtree does.
+  std::vector<std::vector<std::size_t>> below(scene.tree.nodes.size());
+  for (std::size_t n = below.size(); n-- > 0;) {
+    const PatchTree::Node& node = scene.tree.nodes[n];
+    if (node.is_leaf()) {
+      below[n] = {node.patch()};
+      continue;
+    }
+    below[n] = below[n + 1];
+    const std::vector<std::size_t>& right = below[static_cast<std::size_t>(node.right)];
+    below[n].insert(below[n].end(), right.begin(), right.end());
+  }
+  std::size_t skipped_inner = 0;
+  for (std::size_t a = 0; a < below.size(); ++a)
+    for (std::size_t b = a; b < below.size(); ++b) {
+      if (!scene.certificates.skip(a, b)) continue;
+      skipped_inner += below[a].size() > 1;
+      for (const std::size_t p : below[a])
+        for (const std::size_t q : below[b])
+          for (std::size_t i = 0; scene.tree.patches[p].lanes >> i != 0; ++i)
+            ASSERT_EQ(scene.certificates.shared(p, q).needed(i), 0) << "nodes " << a << " and " << b;
+    }
+  EXPECT_GT(skipped_inner, 10u);
+}
+
+TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
+  Scene scene(0.01, 1, 1);
+  for (Vec3& p : scene.end) p *= 1e30;
+  scene.local.update(scene.motion());
+  ASSERT_FALSE(scene.local.known());
+  std::vector<PatchLanes> lanes;
+  for (const Patch& patch : scene.tree.patches) lanes.push_back(load(scene.local.records(), patch.vertex));
+  scene.certificates.update(scene.local, lanes);
+  for_each_pair_of_lanes(scene, [](TriangleId, TriangleId, bool needed) { EXPECT_TRUE(needed); });
+}
+
+}  // namespace
+}  // namespace cscd::fast
