@@ -21,6 +21,7 @@ Record sample_record() {
   record.scene = {"rope", "A rope.", "00ff", 4, 8, 1, 4};
   record.elementary = "newton";
   record.intervals = 3;
+  record.counted_intervals = {0, 1, 2};
   record.timed_intervals = {0, 2};
   record.verification.reference = "slow";
   record.verification.elementary = "exact";

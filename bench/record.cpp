@@ -144,8 +144,9 @@ StrategyRecord strategy_from(const ordered_json& s) {
 void require_whole(const Record& record) {
   for (const StrategyRecord& strategy : record.strategies) {
     for (const auto& [key, column] : strategy.counts)
-      if (column.size() != record.intervals)
-        throw InputError("strategy " + strategy.name + ": counts of " + key + " are not one an interval");
+      if (column.size() != record.counted_intervals.size())
+        throw InputError("strategy " + strategy.name + ": counts of " + key +
+                         " are not one a counted interval");
     for (const auto& [stage, repetitions] : strategy.ms)
       for (const std::vector<double>& row : repetitions)
         if (row.size() != record.timed_intervals.size() ||
@@ -178,8 +179,8 @@ ordered_json to_json(const Record& record) {
             {"frames", scene.frames},
             {"effects", std::move(effects)}}},
           {"elementary", record.elementary},
-          {"first_interval", record.first_interval},
           {"intervals", record.intervals},
+          {"counted_intervals", record.counted_intervals},
           {"timed_intervals", record.timed_intervals},
           {"verification", to_json(record.verification)},
           {"strategies", std::move(strategies)}};
@@ -202,8 +203,8 @@ Record parse_record(const std::string& text, const std::string& where) {
     for (const ordered_json& effect : scene.at("effects"))
       out.scene.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
     out.elementary = document.at("elementary");
-    out.first_interval = document.at("first_interval");
     out.intervals = document.at("intervals");
+    out.counted_intervals = document.at("counted_intervals").get<std::vector<std::size_t>>();
     out.timed_intervals = document.at("timed_intervals").get<std::vector<std::size_t>>();
     out.verification = verification_from(document.at("verification"));
     for (const ordered_json& strategy : document.at("strategies"))

@@ -15,12 +15,12 @@
 #include "core/detect/verify.h"
 #include "scenes/catalog/generate.h"
 
-// What one run of the harness keeps (schema cscd.run/1): every raw sample of every stage of every interval of
+// What one run of the harness keeps (schema cscd.run/2): every raw sample of every stage of every interval of
 // every repetition, beside the counters, the digests and the verdict without which there are no samples.
 // Tables and figures are made from records alone.
 namespace cscd::bench {
 
-inline constexpr std::string_view kRunSchema = "cscd.run/1";
+inline constexpr std::string_view kRunSchema = "cscd.run/2";
 
 // One number an interval. A counter that a strategy does not have has no column.
 using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
@@ -76,9 +76,10 @@ struct Record {
   std::vector<std::string> command;
   std::uint64_t seed = 0;
   SceneRecord scene;
-  std::string elementary;  // the timed one
-  std::size_t first_interval = 0, intervals = 0;
-  std::vector<std::size_t> timed_intervals;  // those of them that were timed; counters are there for all
+  std::string elementary;                      // the timed one
+  std::size_t intervals = 0;                   // that the command spans
+  std::vector<std::size_t> counted_intervals;  // those of them that have counters and digests, ascending
+  std::vector<std::size_t> timed_intervals;    // those of these that were timed, ascending
   VerificationRecord verification;
   std::vector<StrategyRecord> strategies;
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
+#include <set>
 
 #include "bench/catalogue.h"
 #include "bench/command.h"
@@ -28,7 +29,7 @@ constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 struct RunOptions {
   std::string scene = "rope", elementary = "newton", frames, output;
   std::vector<std::string> strategies;
-  std::size_t repetitions = 5, time_every = 1, verify_every = 1;
+  std::size_t repetitions = 5, count_every = 1, time_every = 1, verify_every = 1;
   std::uint64_t seed = 2014;
   bool smoke = false, force = false;
   ModelOptions model;
@@ -49,6 +50,7 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
       "--elementary",   options.elementary,
       "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
       "--repetitions",  std::to_string(options.repetitions),
+      "--count-every",  std::to_string(options.count_every),
       "--time-every",   std::to_string(options.time_every),
       "--verify-every", std::to_string(options.verify_every),
       "--seed",         std::to_string(options.seed)};
@@ -111,6 +113,12 @@ void print(const VerificationRecord& v, const std::string& timed) {
       static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
+std::vector<std::size_t> united(const std::vector<std::vector<std::size_t>>& sets) {
+  std::set<std::size_t> all;
+  for (const std::vector<std::size_t>& set : sets) all.insert(set.begin(), set.end());
+  return {all.begin(), all.end()};
+}
+
 // Whether every strategy kept its promise.
 bool run_one(RunOptions options, OutputFile& output) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
@@ -134,17 +142,19 @@ bool run_one(RunOptions options, OutputFile& output) {
   record.scene = describe(input);
   record.seed = options.seed;
   record.elementary = timed.name;
-  record.first_interval = range.first;
   record.intervals = range.last - range.first;
   record.timed_intervals = every_kth(range, options.time_every);
+  const std::vector<std::size_t> to_verify = every_kth(range, options.verify_every);
+  record.counted_intervals =
+      united({every_kth(range, options.count_every), record.timed_intervals, to_verify});
   std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
   record.command = command_line(options, contestants, range, input.import.has_value());
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
 
-  VerificationOutcome verified =
-      verify_contestants(input, contestants, exact, timed, every_kth(range, options.verify_every));
+  VerificationOutcome verified = verify_contestants(input, contestants, exact, timed, to_verify);
   if (verified.record.ok()) {
-    const TimingPlan plan{range, record.timed_intervals, options.repetitions, options.seed};
+    const TimingPlan plan{record.counted_intervals, record.timed_intervals, options.repetitions,
+                          options.seed};
     if (const auto void_times = time_contestants(input, contestants, plan, verified, record.strategies))
       verified.record.strategies[void_times->contestant].failures.push_back(void_times->failure);
     for (StrategyRecord& strategy : record.strategies)
@@ -226,7 +236,11 @@ void add_run(CLI::App& app) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
-      ->add_option("--time-every", options->time_every, "time each K-th interval; counters are taken of all")
+      ->add_option("--count-every", options->count_every,
+                   "take the counters of each K-th interval, and of those timed or verified")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--time-every", options->time_every, "time each K-th interval")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");

@@ -68,6 +68,7 @@ ordered_json source_json(const Record& record) {
           {"command", record.command},
           {"environment", record.environment},
           {"intervals", record.intervals},
+          {"counted_intervals", record.counted_intervals.size()},
           {"timed_intervals", record.timed_intervals.size()},
           {"verified_intervals", v.intervals.size()},
           {"unembedded_intervals", v.unembedded.size()},
@@ -98,7 +99,11 @@ std::string provenance(const Record& record) {
   out += "Made by `" + joined(record.command) + "`.\n";
   out += std::to_string(record.timed_intervals.size()) + " of " + std::to_string(record.intervals) +
          " intervals timed, " + std::to_string(repetitions(record)) +
-         " repetitions, interleaved; counters of all. ";
+         " repetitions, interleaved; counters of " +
+         (record.counted_intervals.size() == record.intervals
+              ? "all"
+              : std::to_string(record.counted_intervals.size())) +
+         ". ";
   out += "Answers verified on " + std::to_string(v.intervals.size()) + " intervals against `" + v.reference +
          "` with the elementary test `" + v.elementary + "`: no strategy failed its guarantee";
   out += v.unembedded.empty() ? ", every start was embedded.\n"

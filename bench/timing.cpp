@@ -42,13 +42,12 @@ void shuffle(std::vector<std::size_t>& order, std::mt19937_64& random) {
 std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
                                              const TimingPlan& plan, const VerificationOutcome& verified,
                                              std::vector<StrategyRecord>& records) {
-  const auto [first, last] = plan.range;
-  Progress progress("timing " + input.name, last - first + plan.repetitions * plan.intervals.size());
+  Progress progress("timing " + input.name, plan.counted.size() + plan.repetitions * plan.timed.size());
   ContactSet found;
   std::vector<std::vector<Report>> warm_ups(contestants.size());
 
   auto next_verified = verified.record.intervals.begin();
-  for (std::size_t i = first; i < last; ++i) {
+  for (const std::size_t i : plan.counted) {
     const scenes::ClipInterval interval = input.clip->load(i);
     const bool was_verified = next_verified != verified.record.intervals.end() && *next_verified == i;
     for (std::size_t c = 0; c < contestants.size(); ++c) {
@@ -69,14 +68,15 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition)
-    for (const std::size_t i : plan.intervals) {
+    for (const std::size_t i : plan.timed) {
+      const auto row =
+          static_cast<std::size_t>(std::ranges::lower_bound(plan.counted, i) - plan.counted.begin());
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {
         const Answer timed = answer(contestants[c], interval, found);
         append_times(timed.report.ms, records[c].ms, repetition);
-        if (timed.digest != records[c].digests[i - first] ||
-            !same_culling(timed.report, warm_ups[c][i - first]))
+        if (timed.digest != records[c].digests[row] || !same_culling(timed.report, warm_ups[c][row]))
           return Unrepeatable{c, "interval " + std::to_string(i) +
                                      ": other contacts or counters in repetition " +
                                      std::to_string(repetition) + " than before"};

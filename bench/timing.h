@@ -14,8 +14,8 @@
 namespace cscd::bench {
 
 struct TimingPlan {
-  IntervalRange range;                 // of the warm-up
-  std::vector<std::size_t> intervals;  // of it, those that are timed
+  std::vector<std::size_t> counted;  // all of the warm-up, ascending; those verified are among them
+  std::vector<std::size_t> timed;    // of these
   std::size_t repetitions;
   std::uint64_t seed;
 };
@@ -26,9 +26,9 @@ struct Unrepeatable {
   std::string failure;
 };
 
-// One warm-up pass that takes the counters and digests of all intervals, then the timed repetitions. Every
-// interval is given to all strategies in turn, in a random order drawn anew each time, so that drift of the
-// machine hits all alike. Stops at the first strategy whose counters differ from those verified, or whose
+// One warm-up pass that takes the counters and digests of the counted intervals, then the timed repetitions.
+// Every interval is given to all strategies in turn, in a random order drawn anew each time, so that drift of
+// the machine hits all alike. Stops at the first strategy whose counters differ from those verified, or whose
 // contacts differ between repetitions.
 std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
                                              const TimingPlan& plan, const VerificationOutcome& verified,

@@ -102,7 +102,7 @@ Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
   outcome.verified = verify_contestants(input, contestants, exact(), newton(), {0});
   outcome.records.resize(contestants.size());
   outcome.void_times =
-      time_contestants(input, contestants, {{0, 1}, {0}, repetitions, 1}, outcome.verified, outcome.records);
+      time_contestants(input, contestants, {{0}, {0}, repetitions, 1}, outcome.verified, outcome.records);
   return outcome;
 }
 
