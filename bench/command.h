@@ -26,5 +26,6 @@ void add_clusters(CLI::App& app);
 void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
 void add_accuracy(CLI::App& app);
+void add_scale(CLI::App& app);
 
 }  // namespace cscd::bench

@@ -1,5 +1,6 @@
 #include "bench/footprint.h"
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <linux/perf_event.h>
@@ -62,32 +63,37 @@ std::optional<std::uint64_t> growth(std::optional<std::uint64_t> before, std::op
 
 }  // namespace
 
-Footprint measure_footprint(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
-                            std::span<const std::size_t> intervals) {
-  input.clip->load(intervals.front());  // the source's own buffers are not the strategy's
-  malloc_trim(0);                       // nor is what earlier strategies freed
+Made make_measured(Input& input, const Strategy& strategy, const ElementaryTest& elementary, std::size_t at) {
+  const scenes::ClipInterval interval =
+      input.clip->load(at);  // the source's own buffers are not the strategy's
+  malloc_trim(0);            // nor is what earlier strategies freed
   const bool peak_is_ours = reset_peak();
   const auto resident = status_bytes("VmRSS");
 
-  const Prepared prepared = strategy.make(input.setup(elementary));
+  const auto begin = std::chrono::steady_clock::now();
+  Made made{strategy.make(input.setup(elementary)), {}};
+  made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   ContactSet found;
-  const auto query = [&](std::size_t i) {
-    const scenes::ClipInterval interval = input.clip->load(i);
-    prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
-  };
-  for (int time = 0; time < 2; ++time) query(intervals.front());
-  Footprint footprint;
-  if (peak_is_ours) footprint.peak_bytes = growth(resident, status_bytes("VmHWM"));
+  for (int time = 0; time < 2; ++time)
+    made.prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+  if (peak_is_ours) made.footprint.peak_bytes = growth(resident, status_bytes("VmHWM"));
   malloc_trim(0);
-  footprint.held_bytes = growth(resident, status_bytes("VmRSS"));
+  made.footprint.held_bytes = growth(resident, status_bytes("VmRSS"));
+  return made;
+}
 
+Footprint measure_footprint(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                            std::span<const std::size_t> intervals) {
+  const Made made = make_measured(input, strategy, elementary, intervals.front());
+  Footprint footprint = made.footprint;
+  ContactSet found;
   const InstructionCounter counter;
   std::uint64_t instructions = 0;
   for (const std::size_t i : intervals) {
     const scenes::ClipInterval interval = input.clip->load(i);
     const auto before = counter.so_far();
     if (!before) return footprint;
-    prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+    made.prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
     instructions += growth(before, counter.so_far()).value_or(0);
   }
   footprint.instructions = static_cast<double>(instructions) / static_cast<double>(intervals.size());

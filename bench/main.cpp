@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   cscd::bench::add_verify(app);
   cscd::bench::add_hardcases(app);
   cscd::bench::add_accuracy(app);
+  cscd::bench::add_scale(app);
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);
 

@@ -49,6 +49,12 @@ ShapeRow box_row() {
             p.size = parameters.vector("size");
             p.bones = parameters.integer("bones");
             return box(p);
+          },
+          [](const Parameters& parameters, double factor) {
+            Parameters scaled = parameters;
+            for (const char* cells : {"cells_x", "cells_y", "cells_z"})
+              scaled = scaled.with(cells, scaled_count(parameters.integer(cells), factor, 1));
+            return scaled;
           }};
 }
 

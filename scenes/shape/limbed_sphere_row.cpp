@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "core/base/error.h"
@@ -71,6 +73,21 @@ Limb read_limb(const Parameters& p, const std::vector<std::string>& body_bones) 
   return limb;
 }
 
+// The patch keeps its middle on the face, and its share of the triangles where its size has to be rounded.
+Parameters scaled_limb(const Parameters& limb, double factor, int cells, double scaled_cells) {
+  const int size = limb.integer("size");
+  const double scaled_size = scaled_count(size, factor, 1);
+  const auto lowest = [&](const char* cell) {
+    const double middle = (limb.integer(cell) + size / 2.0) / cells;
+    return std::clamp(std::round(middle * scaled_cells - scaled_size / 2), 0.0,
+                      std::max(0.0, scaled_cells - scaled_size));
+  };
+  return limb.with("size", scaled_size)
+      .with("cell_u", lowest("cell_u"))
+      .with("cell_v", lowest("cell_v"))
+      .with("rings", scaled_count(limb.integer("rings"), factor * factor * size / scaled_size, 2));
+}
+
 }  // namespace
 
 ShapeRow limbed_sphere_row() {
@@ -110,6 +127,14 @@ ShapeRow limbed_sphere_row() {
             for (const Parameters& limb : parameters.objects("limbs"))
               p.limbs.push_back(read_limb(limb, p.body_bones));
             return limbed_sphere(p);
+          },
+          [](const Parameters& parameters, double factor) {
+            const int cells = parameters.integer("cells");
+            const double scaled_cells = scaled_count(cells, factor, 1);
+            std::vector<Parameters> limbs;
+            for (const Parameters& limb : parameters.objects("limbs"))
+              limbs.push_back(scaled_limb(limb, factor, cells, scaled_cells));
+            return parameters.with("cells", scaled_cells).with("limbs", std::move(limbs));
           }};
 }
 

@@ -57,6 +57,12 @@ void check_value(const Parameters& parameters, std::string_view name, const Para
 
 }  // namespace
 
+Parameters Parameters::with(const std::string& name, Value value) const {
+  Parameters changed = *this;
+  changed.values_.insert_or_assign(name, std::move(value));
+  return changed;
+}
+
 const Parameters::Value& Parameters::at(std::string_view name) const {
   const auto found = values_.find(name);
   if (found == values_.end()) refuse(*this, name, "is missing; add it to the scene file");

@@ -53,6 +53,9 @@ class Parameters {
 
   const std::map<std::string, Value, std::less<>>& values() const { return values_; }
 
+  // The same but for one value.
+  Parameters with(const std::string& name, Value value) const;
+
  private:
   const Value& at(std::string_view name) const;
   std::string where_;

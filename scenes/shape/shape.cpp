@@ -1,5 +1,7 @@
 #include "scenes/shape/shape.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/base/error.h"
@@ -14,13 +16,20 @@ std::span<const ShapeRow> shapes() {
   return rows;
 }
 
+double scaled_count(int count, double factor, int least) {
+  return std::max(static_cast<double>(least), std::round(count * factor));
+}
+
 Shape make_shape(std::string_view name, const Parameters& parameters) {
+  const ShapeRow& row = shape_row(name, parameters);
+  check(parameters, row.parameters);
+  return row.make(parameters);
+}
+
+const ShapeRow& shape_row(std::string_view name, const Parameters& parameters) {
   std::string known;
   for (const ShapeRow& row : shapes()) {
-    if (row.name == name) {
-      check(parameters, row.parameters);
-      return row.make(parameters);
-    }
+    if (row.name == name) return row;
     known += (known.empty() ? "" : ", ") + std::string(row.name);
   }
   throw InputError(parameters.where() + ": unknown shape " + std::string(name) + "; known are: " + known);

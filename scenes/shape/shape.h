@@ -36,12 +36,21 @@ struct ShapeRow {
   std::string_view description;
   std::span<const ParameterRow> parameters;
   Shape (*make)(const Parameters& parameters);  // of checked parameters
+  // The same form and skeleton with so many times as many cells along every direction, rounded: about
+  // factor^2 times the triangles.
+  Parameters (*at_resolution)(const Parameters& parameters, double factor);
 };
 
 std::span<const ShapeRow> shapes();
 
+// A count of cells at another resolution, as parameters hold it.
+double scaled_count(int count, double factor, int least);
+
 // Checks the parameters and builds the shape. Throws InputError for an unknown name, listing the known ones,
 // and for unusable parameters.
 Shape make_shape(std::string_view name, const Parameters& parameters);
+
+// The row of that name. Throws InputError for an unknown name, listing the known ones.
+const ShapeRow& shape_row(std::string_view name, const Parameters& parameters);
 
 }  // namespace cscd::scenes

@@ -164,6 +164,10 @@ ShapeRow tube_row() {
             p.arc_radius = parameters.number("arc_radius", p.arc_radius);
             p.arc_side = parameters.vector("arc_side", p.arc_side);
             return tube(p);
+          },
+          [](const Parameters& parameters, double factor) {
+            return parameters.with("rings", scaled_count(parameters.integer("rings"), factor, 2))
+                .with("sides", scaled_count(parameters.integer("sides"), factor, 3));
           }};
 }
 

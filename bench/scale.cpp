@@ -1,0 +1,327 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+
+#include "bench/catalogue.h"
+#include "bench/command.h"
+#include "bench/data.h"
+#include "bench/environment.h"
+#include "bench/json_text.h"
+#include "bench/output.h"
+#include "bench/progress.h"
+#include "bench/scale_study.h"
+#include "bench/scaling.h"
+#include "bench/schema.h"
+#include "bench/statistics.h"
+#include "core/base/error.h"
+
+// How cost grows: with triangles, with the length of the step, with bones (schema cscd.scale/1). What is run
+// unless told otherwise is data, scale_plan.json.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct ScaleOptions {
+  std::vector<std::string> studies, scenes, strategies;
+  std::vector<std::size_t> sizes;
+  std::vector<double> steps;
+  std::size_t intervals = 0, repetitions = 0, reference_limit = 250'000;
+  std::uint64_t seed = 2014;
+  bool smoke = false, largest = false, force = false;
+  std::string output;
+};
+
+constexpr const char* kStudies[] = {"size", "step", "bones"};
+
+// One subject and the scene that it is of.
+struct Planned {
+  std::string scene;
+  ScaleSubject subject;
+};
+
+// Those of the named rows that this build has: packages may be missing. Throws InputError where the user
+// named one that is not known.
+std::vector<const Strategy*> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
+  std::vector<const Strategy*> rows;
+  if (!options.strategies.empty()) {
+    for (const std::string& name : options.strategies) rows.push_back(&strategy_named(name));
+    return rows;
+  }
+  for (const std::string name : planned)
+    for (const Strategy& row : strategies())
+      if (row.name == name) rows.push_back(&row);
+  return rows;
+}
+
+// What a full, or small, run consists of.
+std::vector<Planned> plan(const ScaleOptions& options) {
+  const ordered_json defaults = data_json("scale_plan.json").at(options.smoke ? "smoke" : "full");
+  const auto or_default = [&](const auto& given, const char* key) {
+    using List = std::remove_cvref_t<decltype(given)>;
+    return given.empty() ? defaults.at(key).get<List>() : given;
+  };
+  for (const std::string& study : options.studies)
+    if (std::ranges::find(kStudies, study) == std::end(kStudies))
+      throw InputError("--study " + study + ": is not known; choose among size, step, bones");
+  const auto wanted = [&](const char* study) {
+    return options.studies.empty() || std::ranges::find(options.studies, study) != options.studies.end();
+  };
+  const std::size_t intervals =
+      options.intervals > 0 ? options.intervals : defaults.at("intervals").get<std::size_t>();
+  ScaleSubject common;
+  common.repetitions =
+      options.repetitions > 0 ? options.repetitions : defaults.at("repetitions").get<std::size_t>();
+  common.reference_limit = options.reference_limit;
+
+  std::vector<Planned> all;
+  const auto scenes = or_default(options.scenes, "scenes");
+  auto sizes = or_default(options.sizes, "sizes");
+  if (options.largest) sizes.push_back(defaults.at("largest"));
+  auto steps = or_default(options.steps, "steps");
+  std::sort(sizes.begin(), sizes.end());
+  std::sort(steps.begin(), steps.end());
+  for (const double step : steps)
+    if (step > 1 && step != std::floor(step))
+      throw InputError("--steps: " + ordered_json(step).dump() +
+                       " is neither a share of a frame nor a whole number of frames; round it");
+  const auto add = [&](const std::string& scene, ScaleSubject subject) {
+    subject.starts = spread_starts(scenes::load_scene(scene).frames, intervals, subject.steps.back());
+    all.push_back({scene, std::move(subject)});
+  };
+  for (const std::string& scene : scenes) {
+    ScaleSubject subject = common;
+    if (wanted("size")) {
+      subject.study = "size";
+      subject.steps = {1};
+      subject.strategies = chosen_rows(options, defaults.at("size_strategies"));
+      for (const std::size_t size : sizes) subject.triangles = size, add(scene, subject);
+    }
+    subject.triangles = defaults.at("other_triangles");
+    if (wanted("step")) {
+      subject.study = "step";
+      subject.steps = steps;
+      subject.strategies = chosen_rows(options, defaults.at("step_strategies"));
+      add(scene, subject);
+    }
+    const auto bone_scenes = defaults.at("bone_scenes").get<std::vector<std::string>>();
+    if (wanted("bones") && std::ranges::find(bone_scenes, scene) != bone_scenes.end()) {
+      subject.study = "bones";
+      subject.steps = {1};
+      subject.strategies = chosen_rows(options, defaults.at("bone_strategies"));
+      for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(scene, subject);
+    }
+  }
+  return all;
+}
+
+// Queries that will be asked, weighed by triangles: about what a run costs.
+double estimated_minutes(std::span<const Planned> all) {
+  constexpr double kMicrosecondsATriangle = 30, kSecondsOnce = 1;
+  double seconds = 0;
+  for (const auto& [name, subject] : all) {
+    const scenes::Scene scene = scenes::load_scene(name);
+    const auto triangles =
+        static_cast<double>(subject.triangles > 0 ? subject.triangles : scene.expected.triangles);
+    const auto intervals = static_cast<double>(subject.steps.size() * subject.starts.size());
+    seconds += kSecondsOnce + kMicrosecondsATriangle * 1e-6 * triangles * intervals;
+  }
+  return seconds / 60;
+}
+
+std::vector<std::string> command_line(const ScaleOptions& o, std::span<const Planned> all) {
+  std::vector<std::string> words = {"cscd", "scale"};
+  const auto add = [&](const char* name, const auto& values) {
+    std::string text;
+    for (const auto& value : values) {
+      const std::string word = ordered_json(value).dump();
+      text += (text.empty() ? "" : ",") + (word.front() == '"' ? word.substr(1, word.size() - 2) : word);
+    }
+    if (!text.empty()) words.insert(words.end(), {name, text});
+  };
+  if (o.smoke) words.push_back("--smoke");
+  if (o.largest) words.push_back("--largest");
+  add("--study", o.studies);
+  add("--scene", o.scenes);
+  add("--sizes", o.sizes);
+  add("--steps", o.steps);
+  add("--strategy", o.strategies);
+  add("--intervals", std::vector{all.front().subject.starts.size()});
+  add("--repetitions", std::vector{all.front().subject.repetitions});
+  add("--reference-up-to", std::vector{o.reference_limit});
+  add("--seed", std::vector{o.seed});
+  return words;
+}
+
+const ordered_json* row_named(const ordered_json& rows, const std::string& name) {
+  for (const ordered_json& row : rows)
+    if (row.at("name") == name) return &row;
+  return nullptr;
+}
+
+// Exponents over the triangles of the study of sizes, or the bones of that of bones.
+ordered_json fits(const ordered_json& subjects) {
+  struct Series {
+    std::vector<double> x, y;
+  };
+  // In order of their first appearance: study, scene, strategy, quantity.
+  std::vector<std::pair<std::array<std::string, 4>, Series>> series;
+  for (const ordered_json& subject : subjects) {
+    const std::string study = subject.at("study");
+    if (study == "step") continue;
+    const double x = subject.at(study == "size" ? "triangles" : "bones");
+    const auto add = [&](const std::string& strategy, const std::string& quantity, double y) {
+      const std::array<std::string, 4> key = {study, subject.at("scene"), strategy, quantity};
+      auto place = std::ranges::find(series, key, [](const auto& entry) { return entry.first; });
+      if (place == series.end()) place = series.insert(series.end(), {key, {}});
+      place->second.x.push_back(x);
+      place->second.y.push_back(y);
+    };
+    for (const ordered_json& strategy : subject.at("strategies")) {
+      const std::string name = strategy.at("name");
+      for (const char* quantity : {"make_ms", "held_bytes", "peak_bytes"})
+        if (strategy.contains(quantity)) add(name, quantity, strategy.at(quantity));
+      const ordered_json& row = *row_named(subject.at("steps").at(0).at("strategies"), name);
+      for (const char* quantity : {"bvot", "pctp"})
+        if (row.at("counts").contains(quantity)) add(name, quantity, row.at("counts").at(quantity));
+      if (row.contains("ms"))
+        for (const auto& [stage, ms] : row.at("ms").items()) add(name, stage, ms);
+    }
+  }
+  ordered_json out = ordered_json::array();
+  for (const auto& [key, one] : series) {
+    ordered_json row = {{"study", key[0]}, {"scene", key[1]}, {"strategy", key[2]}, {"quantity", key[3]}};
+    if (const auto law = fit_power_law(one.x, one.y))
+      row.update({{"exponent", law->exponent}, {"factor", law->factor}, {"points", law->points}});
+    else
+      row["exponent"] = nullptr;  // fewer than three positive values
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+// What a step of other length costs against one of a frame; both of the same repetitions.
+ordered_json step_ratios(const ordered_json& subjects) {
+  ordered_json out = ordered_json::array();
+  for (const ordered_json& subject : subjects) {
+    if (subject.at("study") != "step") continue;
+    const auto& steps = subject.at("steps");
+    const auto one =
+        std::ranges::find_if(steps, [](const ordered_json& step) { return step.at("step") == 1; });
+    if (one == steps.end()) continue;
+    for (const ordered_json& step : steps)
+      for (const ordered_json& row : step.at("strategies")) {
+        const ordered_json& unit = *row_named(one->at("strategies"), row.at("name"));
+        if (!row.contains("ms") || !unit.contains("ms")) continue;
+        const auto a = row.at("total_samples").get<std::vector<double>>();
+        const auto b = unit.at("total_samples").get<std::vector<double>>();
+        ordered_json ratio = {{"scene", subject.at("scene")},
+                              {"strategy", row.at("name")},
+                              {"step", step.at("step")},
+                              {"ratio", median(a) / median(b)}};
+        if (a.size() == b.size()) {  // else one of them was too slow to be repeated
+          const Estimate interval = bootstrap_ratio_of_medians(a, b);
+          ratio.update({{"low", interval.low}, {"high", interval.high}});
+        }
+        out.push_back(std::move(ratio));
+      }
+  }
+  return out;
+}
+
+void print(const ordered_json& subject) {
+  std::printf("%s %s: %zu triangles, %zu bones%s\n", subject.at("study").get<std::string>().c_str(),
+              subject.at("scene").get<std::string>().c_str(), subject.at("triangles").get<std::size_t>(),
+              subject.at("bones").get<std::size_t>(), subject.at("ok") ? "" : ", NOT VERIFIED");
+  for (const ordered_json& step : subject.at("steps")) {
+    for (const ordered_json& failure : step.at("verified").at("failures"))
+      std::printf("  %s\n", failure.get<std::string>().c_str());
+    std::printf("  step %-5s %zu of %zu collide:", step.at("step").dump().c_str(),
+                step.at("colliding").get<std::size_t>(), step.at("starts").size());
+    for (const ordered_json& row : step.at("strategies"))
+      if (row.contains("ms"))
+        std::printf("  %s %.2f ms", row.at("name").get<std::string>().c_str(),
+                    row.at("ms").at("total").get<double>());
+    std::printf("\n");
+  }
+  std::fflush(stdout);
+}
+
+void run_scale(const ScaleOptions& options) {
+  const std::vector<Planned> all = plan(options);
+  if (all.empty()) throw InputError("--study, --scene: leave nothing to measure; name a scene of the study");
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output.emplace(options.output, options.force);
+  std::printf("%zu surfaces; about %.1f minutes on an idle machine\n", all.size(), estimated_minutes(all));
+  std::fflush(stdout);
+
+  std::mt19937_64 random(options.seed);
+  ordered_json subjects = ordered_json::array();
+  const ordered_json where = environment();  // with the load before the work
+  Progress progress("scale", all.size());
+  bool ok = true;
+  for (const auto& [scene, subject] : all) {
+    subjects.push_back(measure_subject(pose_scene(scene, subject.steps, subject.starts), subject, random));
+    ok = ok && subjects.back().at("ok");
+    print(subjects.back());
+    progress.advance();
+  }
+  const ordered_json record = {{"schema", "cscd.scale/1"},
+                               {"environment", where},
+                               {"command", command_line(options, all)},
+                               {"seed", options.seed},
+                               {"smoke", options.smoke},
+                               {"ok", ok},
+                               {"fits", fits(subjects)},
+                               {"step_ratios", step_ratios(subjects)},
+                               {"subjects", std::move(subjects)}};
+  if (const std::string violation = schema_violation(record, "scale.schema.json"); !violation.empty())
+    throw std::logic_error("the record does not follow its schema: " + violation);
+  if (output) output->commit(json_text(record));
+  if (!ok) throw kVerificationFailed;
+}
+
+}  // namespace
+
+void add_scale(CLI::App& app) {
+  auto options = std::make_shared<ScaleOptions>();
+  CLI::App* command = app.add_subcommand(
+      "scale",
+      "Measure how cost grows: with triangles, with the length of the step, with bones.\n\n"
+      "  cscd scale --json scale.json\n"
+      "  cscd scale --smoke\n"
+      "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
+      "size   the scenes with other numbers of triangles in the same motion, and memory a triangle\n"
+      "step   intervals between frames that lie further apart, or nearer\n"
+      "bones  chains of bones merged or cut, on the same surface\n\n"
+      "Every answer is held against the complete reference before anything is timed; on meshes above\n"
+      "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
+      "answer is wrong.");
+  command->add_option("--study", options->studies, "size, step, bones, with commas; default all")
+      ->delimiter(',');
+  command->add_option("--scene", options->scenes, "scenes with commas; default the six")->delimiter(',');
+  command->add_option("--sizes", options->sizes, "numbers of triangles, about")
+      ->delimiter(',')
+      ->check(CLI::Range(500, 20'000'000));
+  command->add_flag("--largest", options->largest, "one size more: four times the triangles");
+  command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1000.0));
+  command->add_option("--strategy", options->strategies, "strategies with commas; default by study")
+      ->delimiter(',');
+  command->add_option("--intervals", options->intervals, "of each scene, spread evenly")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--repetitions", options->repetitions, "of each interval's timing")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--reference-up-to", options->reference_limit,
+                   "triangles up to which the reference answers and is timed on every interval")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the order of the strategies")->capture_default_str();
+  command->add_flag("--smoke", options->smoke, "small surfaces, in seconds; times mean nothing");
+  command->add_option("--json", options->output, "where the record goes");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->callback([options] { run_scale(*options); });
+}
+
+}  // namespace cscd::bench

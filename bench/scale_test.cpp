@@ -1,0 +1,187 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/scale_study.h"
+#include "bench/scaling.h"
+#include "bench/schema.h"
+#include "bench/test_program.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+TEST(PowerLaw, IsFoundWhereItHolds) {
+  const std::vector<double> x = {10, 20, 40, 80, 160};
+  std::vector<double> y;
+  for (const double value : x) y.push_back(3 * std::pow(value, 1.25));
+  const auto law = fit_power_law(x, y);
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->exponent, 1.25, 1e-12);
+  EXPECT_NEAR(law->factor, 3, 1e-10);
+  EXPECT_EQ(law->points, 5u);
+}
+
+TEST(PowerLaw, IsTheLeastSquaresOneInLogarithms) {
+  const std::vector<double> x = {1, std::exp(1), std::exp(2)}, y = {1, std::exp(1), 1};
+  const auto law = fit_power_law(x, y);
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->exponent, 0, 1e-15);
+  EXPECT_NEAR(std::log(law->factor), 1.0 / 3, 1e-15);
+}
+
+TEST(PowerLaw, LeavesOutZerosAndNeedsThreePointsApart) {
+  EXPECT_EQ(fit_power_law(std::vector<double>{1, 2, 4, 8}, std::vector<double>{0, 2, 4, 8})->points, 3u);
+  EXPECT_FALSE(fit_power_law(std::vector<double>{1, 2, 4}, std::vector<double>{0, 2, 4}));
+  EXPECT_FALSE(fit_power_law(std::vector<double>{2, 2, 2}, std::vector<double>{1, 2, 4}));
+  EXPECT_FALSE(fit_power_law({}, {}));
+}
+
+std::vector<Bone> chain(std::size_t count) {
+  std::vector<Bone> bones;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<double>(i);
+    bones.push_back({Vec3(at, at * at, 0), Vec3(at + 1, (at + 1) * (at + 1), 0)});
+  }
+  return bones;
+}
+
+TEST(ResampledChain, MergesAndCutsBonesWhereTheirJointsAre) {
+  const std::vector<Bone> four = chain(4);
+  const auto two = resampled_chain(four, 2), eight = resampled_chain(four, 8),
+             same = resampled_chain(four, 4);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[0].head, four[0].head);
+  EXPECT_EQ(two[0].tail, four[1].tail);
+  EXPECT_EQ(two[1].tail, four[3].tail);
+  ASSERT_EQ(eight.size(), 8u);
+  EXPECT_EQ(eight[2].tail, Vec3((four[1].head + four[1].tail) / 2));
+  EXPECT_EQ(eight[7].tail, four[3].tail);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(same[i].head, four[i].head);
+  for (std::size_t i = 1; i < 8; ++i) EXPECT_EQ(eight[i].head, eight[i - 1].tail);
+}
+
+TEST(ResampledChain, IsAskedOfChainsAlone) {
+  EXPECT_TRUE(is_chain({{BoneId{-1}, BoneId{0}, BoneId{1}}, chain(3)}));
+  EXPECT_FALSE(is_chain({{BoneId{-1}, BoneId{0}, BoneId{0}}, chain(3)}));
+  EXPECT_FALSE(is_chain({{}, {}}));
+}
+
+TEST(Between, LiesOnTheStraightLines) {
+  const Moment a{{{0, 0, 0}, {4, 0, 0}}, {{{0, 0, 0}, {0, 8, 0}}}};
+  const Moment b{{{4, 0, 0}, {4, 4, 0}}, {{{0, 0, 4}, {0, 8, 4}}}};
+  const Moment quarter = between(a, b, 0.25);
+  EXPECT_EQ(quarter.positions[0], Vec3(1, 0, 0));
+  EXPECT_EQ(quarter.positions[1], Vec3(4, 1, 0));
+  EXPECT_EQ(quarter.bones[0].tail, Vec3(0, 8, 1));
+}
+
+TEST(MomentSource, GivesIntervalsBetweenAnyTwoMoments) {
+  const auto at = [](double x) {
+    return Moment{{{x, 0, 0}, {x, 1, 0}, {x, 0, 1}}, {{{x, 0, 0}, {x, 1, 1}}}};
+  };
+  const scenes::ClipHeader header{{{VertexId{0}, VertexId{1}, VertexId{2}}}, 3, {BoneId{-1}}, false};
+  MomentSource source(header, {at(0), at(1), at(5)}, {{0, 2}, {0, 1}, {2, 1}});
+  EXPECT_EQ(source.interval_count(), 3u);
+  EXPECT_EQ(source.load(0).motion.end()[1], Vec3(5, 1, 0));
+  EXPECT_EQ(source.load(1).motion.end()[1], Vec3(1, 1, 0));
+  EXPECT_EQ(source.load(2).motion.start()[0], Vec3(5, 0, 0));
+  EXPECT_EQ(source.load(2).bones->end[0].head, Vec3(1, 0, 0));
+  EXPECT_EQ(source.load_frame(3).positions[0], Vec3(1, 0, 0));
+  EXPECT_THROW(MomentSource(header, {Moment{{{0, 0, 0}}, {}}}, {{0, 0}}), InputError);
+}
+
+TEST(SpreadStarts, LeaveRoomForTheLongestStep) {
+  EXPECT_EQ(spread_starts(241, 3, 16), (std::vector<std::size_t>{37, 112, 186}));
+  for (const std::size_t start : spread_starts(20, 4, 2.5)) EXPECT_LT(start + 3, 20u);
+  EXPECT_THROW(spread_starts(16, 3, 16), InputError);
+}
+
+// The program, on surfaces so small that it takes seconds.
+class ScaleProgram : public testing::Test {
+ protected:
+  static nlohmann::ordered_json record(std::vector<std::string> arguments, const std::string& name) {
+    const std::string out = scratch_->operator/(name);
+    arguments.insert(arguments.begin(), "scale");
+    arguments.insert(arguments.end(), {"--json", out});
+    const Outcome outcome = cscd(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    return nlohmann::ordered_json::parse(read(out));
+  }
+  static void SetUpTestSuite() { scratch_ = std::make_unique<Scratch>(); }
+  static void TearDownTestSuite() { scratch_.reset(); }
+  static inline std::unique_ptr<Scratch> scratch_;
+};
+
+TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
+  const auto out =
+      record({"--smoke", "--study", "size", "--scene", "rope", "--sizes", "1000,3000,9000"}, "sizes");
+  EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
+  ASSERT_EQ(out.at("subjects").size(), 3u);
+  for (const auto& subject : out.at("subjects")) {
+    EXPECT_EQ(subject.at("study"), "size");
+    EXPECT_EQ(subject.at("bones"), 100);
+    const auto& step = subject.at("steps").at(0);
+    EXPECT_EQ(step.at("verified").at("by_reference"), 2);
+    for (const auto& row : step.at("strategies")) EXPECT_GT(row.at("ms").at("total"), 0);
+  }
+  EXPECT_NEAR(out.at("subjects")[2].at("triangles").get<double>(), 9000, 900);
+  bool found = false;
+  for (const auto& fit : out.at("fits"))
+    if (fit.at("strategy") == "base" && fit.at("quantity") == "bvot") {
+      found = true;
+      EXPECT_GT(fit.at("exponent"), 0.5);
+      EXPECT_LT(fit.at("exponent"), 2);
+    }
+  EXPECT_TRUE(found);
+
+  auto damaged = out;
+  damaged["subjects"][0]["steps"][0]["verified"]["by_reference"] = 0;
+  EXPECT_NE(schema_violation(damaged, "scale.schema.json"), "") << "no time without a verified answer";
+}
+
+TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {
+  const auto steps = record(
+      {"--smoke", "--study", "step", "--scene", "urchin", "--steps", "0.5,1,3", "--strategy", "base,drvbc"},
+      "steps");
+  ASSERT_EQ(steps.at("subjects").size(), 1u);
+  ASSERT_EQ(steps.at("subjects")[0].at("steps").size(), 3u);
+  EXPECT_EQ(steps.at("step_ratios").size(), 6u);
+  for (const auto& ratio : steps.at("step_ratios"))
+    if (ratio.at("step") == 1) {
+      EXPECT_EQ(ratio.at("ratio"), 1);
+    }
+  const auto pairs = [&](std::size_t step) {
+    return steps.at("subjects")[0]
+        .at("steps")[step]
+        .at("strategies")[0]
+        .at("counts")
+        .at("pctp")
+        .get<double>();
+  };
+  EXPECT_LT(pairs(0), pairs(1)) << "bounds of longer paths meet more";
+  EXPECT_LT(pairs(1), pairs(2));
+}
+
+TEST_F(ScaleProgram, RefusesInOneLine) {
+  const auto refusal = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "scale");
+    const Outcome outcome = cscd(arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+    return outcome.errors;
+  };
+  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones"), std::string::npos);
+  EXPECT_NE(refusal({"--steps", "1,2.5"}).find("round it"), std::string::npos);
+  EXPECT_NE(refusal({"--steps", "1,500"}).find("does not fit"), std::string::npos);
+  EXPECT_NE(refusal({"--scene", "nosuch"}).find("unknown scene"), std::string::npos);
+  EXPECT_NE(refusal({"--strategy", "nosuch"}).find("is not known"), std::string::npos);
+  EXPECT_NE(refusal({"--scene", "hand_contact"}).find("name a scene without it"), std::string::npos);
+  EXPECT_NE(refusal({"--study", "bones", "--scene", "urchin"}).find("leave nothing to measure"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--smoke", "--json", "/nosuch/folder/x.json"}).find("/nosuch/folder"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::bench
