@@ -26,17 +26,23 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
       certified_(tree.patches.size()),
       negative_(tree.patches.size()),
       label_(tree.nodes.size()) {
+  for (const Patch& patch : tree_.patches) cell_.push_back({patch.cluster, patch.inside, patch.lanes});
   for (std::size_t c = 0; c < count_; ++c) {
     viewpoint_[c].resize(covers_[c].observers.size());
     counts_.clusters += viewpoint_[c].size();
   }
 }
 
-void Certificates::update(const LocalPositions& positions, std::span<const PatchLanes> lanes) {
+void Certificates::start(const LocalPositions& positions) {
+  positions_ = &positions;
   place_viewpoints(positions.records());
-  classify(positions, lanes);
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+}
+
+void Certificates::finish() {
   certify_negative();
-  if (!positions.known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+  if (!positions_->known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   label_nodes();
 }
 
@@ -52,33 +58,29 @@ void Certificates::place_viewpoints(std::span<const LocalPositions::Record> reco
     }
 }
 
-void Certificates::classify(const LocalPositions& positions, std::span<const PatchLanes> lanes) {
-  for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {tree_.patches[p].inside[c], 0};
-  for (std::size_t p = 0; p < certified_.size(); ++p) {
-    const Patch& patch = tree_.patches[p];
-    const Viewpoint* from[kCovers] = {};
-    for (std::size_t c = 0; c < count_; ++c)
-      if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
-    Signs seen[kCovers];
-    orientations(lanes[p], patch, from, positions.error(), seen);
-    for (std::size_t c = 0; c < count_; ++c) {
-      if (from[c] == nullptr) continue;
-      const Signs& signs = seen[c];
-      negative_[p][c] = signs.negative & patch.lanes;
-      for_each_lane(patch.lanes & ~static_cast<unsigned>(signs.positive), [&](std::size_t lane) {
-        for (const Lane& near : tree_.ring_of(patch.triangle[lane]))
-          certified_[static_cast<std::size_t>(near.patch)][c].positive &=
-              static_cast<Mask16>(~(1U << near.lane));
-      });
-    }
+void Certificates::look(std::size_t p, const PatchLanes& lanes) {
+  const Patch& patch = tree_.patches[p];
+  const Viewpoint* from[kCovers] = {};
+  for (std::size_t c = 0; c < count_; ++c)
+    if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
+  Signs seen[kCovers];
+  orientations(lanes, patch, from, positions_->error(), seen);
+  for (std::size_t c = 0; c < count_; ++c) {
+    if (from[c] == nullptr) continue;
+    const Signs& signs = seen[c];
+    negative_[p][c] = signs.negative & patch.lanes;
+    for_each_lane(patch.lanes & ~static_cast<unsigned>(signs.positive), [&](std::size_t lane) {
+      for (const Lane& near : tree_.ring_of(patch.triangle[lane]))
+        certified_[static_cast<std::size_t>(near.patch)][c].positive &=
+            static_cast<Mask16>(~(1U << near.lane));
+    });
   }
 }
 
 void Certificates::certify_negative() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for (std::size_t c = 0; c < count_; ++c)
-      for_each_lane(negative_[p][c] & tree_.patches[p].inside[c], [&](std::size_t lane) {
+      for_each_lane(negative_[p][c] & cell_[p].inside[c], [&](std::size_t lane) {
         const std::span<const Lane> ring = tree_.ring_of(tree_.patches[p].triangle[lane]);
         const bool all = std::all_of(ring.begin(), ring.end(), [&](const Lane& near) {
           return negative_[static_cast<std::size_t>(near.patch)][c] >> near.lane & 1;
@@ -89,15 +91,15 @@ void Certificates::certify_negative() {
 
 void Certificates::label_nodes() {
   counts_.positive = counts_.negative = counts_.uncertain = 0;
-  std::size_t p = tree_.patches.size();
   for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
     const PatchTree::Node& node = tree_.nodes[n];
     if (!node.is_leaf()) {
-      const auto &left = label_[n + 1], &right = label_[static_cast<std::size_t>(node.right)];
+      const auto &left = label_[node.left()], &right = label_[node.right()];
       for (std::size_t c = 0; c < kCovers; ++c) label_[n][c] = left[c] == right[c] ? left[c] : kNone;
       continue;
     }
-    const Patch& patch = tree_.patches[--p];
+    const std::size_t p = node.patch();
+    const Cell& patch = cell_[p];
     unsigned some = 0;
     for (std::size_t c = 0; c < kCovers; ++c) {
       const Signs& signs = certified_[p][c];

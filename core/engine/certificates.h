@@ -23,7 +23,10 @@ class Certificates {
   // Looks at the first `covers` of them alone.
   Certificates(const PatchTree& tree, const Covers& covers, std::size_t count);
 
-  void update(const LocalPositions& positions, std::span<const PatchLanes> lanes);
+  // One interval: `start`, then `look` at every patch, in any order, then `finish`.
+  void start(const LocalPositions& positions);
+  void look(std::size_t patch, const PatchLanes& lanes);
+  void finish();
 
   // Whether no pair of triangles, one below each node, has to be looked at; a == b: no pair below the node.
   bool skip(std::size_t a, std::size_t b) const {
@@ -45,9 +48,9 @@ class Certificates {
     }
   };
   Shared shared(std::size_t p, std::size_t q) const {
-    Shared sets{{}, {}, tree_.patches[q].lanes};
+    Shared sets{{}, {}, cell_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
-      if (tree_.patches[p].cluster[c] == tree_.patches[q].cluster[c]) {
+      if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
         const Signs &a = certified_[p][c], &b = certified_[q][c];
         sets.p[2 * c] = a.positive, sets.p[2 * c + 1] = a.negative;
         sets.q[2 * c] = b.positive, sets.q[2 * c + 1] = b.negative;
@@ -61,13 +64,20 @@ class Certificates {
 
  private:
   void place_viewpoints(std::span<const LocalPositions::Record> records);
-  void classify(const LocalPositions& positions, std::span<const PatchLanes> lanes);
   void certify_negative();
   void label_nodes();
+
+  struct Cell {  // of a patch: what is needed of all of them, together
+    std::array<std::int32_t, kCovers> cluster;
+    std::array<Mask16, kCovers> inside;
+    Mask16 lanes;
+  };
 
   const PatchTree& tree_;
   const Covers& covers_;
   std::size_t count_;
+  const LocalPositions* positions_ = nullptr;
+  std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
   std::vector<std::array<Mask16, kCovers>> negative_;  // of each patch: by themselves

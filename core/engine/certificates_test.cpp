@@ -24,10 +24,14 @@ struct Scene : test::Body {
   explicit Scene(double noise, double bend, int seed, bool inside_out = false)
       : test::Body(noise, bend, {3, -2, 1}, 1, seed), local(start), certificates(prepared(inside_out)) {
     local.update(motion());
-    std::vector<PatchLanes> lanes;
-    for (const Patch& patch : tree.patches) lanes.push_back(load(local.records(), patch.vertex));
-    certificates.update(local, lanes);
+    certify();
     find_all_round();
+  }
+  void certify() {
+    certificates.start(local);
+    for (std::size_t p = 0; p < tree.patches.size(); ++p)
+      certificates.look(p, load(local.records(), tree.patches[p].vertex));
+    certificates.finish();
   }
   std::size_t cluster(std::size_t c, std::size_t triangle) const {
     return static_cast<std::size_t>(covers[c].cluster_of[triangle]);
@@ -129,7 +133,6 @@ TEST(Certificates, Trap14APairIsDroppedOnlyByOneFieldAllRoundBoth) {
 // Mutation: label_nodes takes the left child's label.
 TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
   const Scene scene(0.04, 3, 1);
-  // Patches below a node: depth first, so a range that ends where the node's subtree does.
   std::vector<std::vector<std::size_t>> below(scene.tree.nodes.size());
   for (std::size_t n = below.size(); n-- > 0;) {
     const PatchTree::Node& node = scene.tree.nodes[n];
@@ -137,8 +140,8 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
       below[n] = {node.patch()};
       continue;
     }
-    below[n] = below[n + 1];
-    const std::vector<std::size_t>& right = below[static_cast<std::size_t>(node.right)];
+    below[n] = below[node.left()];
+    const std::vector<std::size_t>& right = below[node.right()];
     below[n].insert(below[n].end(), right.begin(), right.end());
   }
   std::size_t skipped_inner = 0;
@@ -159,9 +162,7 @@ TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
   for (Vec3& p : scene.end) p *= 1e30;
   scene.local.update(scene.motion());
   ASSERT_FALSE(scene.local.known());
-  std::vector<PatchLanes> lanes;
-  for (const Patch& patch : scene.tree.patches) lanes.push_back(load(scene.local.records(), patch.vertex));
-  scene.certificates.update(scene.local, lanes);
+  scene.certify();
   for_each_pair_of_lanes(scene, [](TriangleId, TriangleId, bool needed) { EXPECT_TRUE(needed); });
 }
 

@@ -8,8 +8,8 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/engine/certificates.h"
+#include "core/engine/node_bounds.h"
 #include "core/engine/stars.h"
-#include "core/mesh/adjacency.h"
 #include "core/radial/distance_field.h"
 #include "core/radial/observer.h"
 #include "core/radial/refinement.h"
@@ -29,38 +29,36 @@ namespace {
 class FastCuller : public Culler {
  public:
   FastCuller(const Setup& setup, Covers covers, const DrvbcFastOptions& options)
-      : mesh_(setup.mesh),
-        covers_(std::move(covers)),
+      : covers_(std::move(covers)),
         options_(options),
         positions_(setup.reference),
         tree_(make_patches(setup.mesh, setup.reference, covers_)),
         certificates_(tree_, covers_, options.second_cover ? kCovers : 1),
         stars_(setup.mesh),
-        lanes_(tree_.patches.size()),
         bounds_(tree_.nodes.size()),
         triangle_bounds_at_(tree_.patches.size(), kNone) {}
 
   void refit(const Motion& motion) override {
     positions_.update(motion);
-    std::size_t patch = tree_.patches.size();
+    grid_ = Grid(positions_.error());
+  }
+
+  // Bounds too, as a patch is loaded once for both.
+  bool classify(const Motion&, const Rig::Interval*) override {
+    certificates_.start(positions_);
     for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
       const PatchTree::Node& node = tree_.nodes[n];
       if (node.is_leaf()) {
-        --patch;
-        lanes_[patch] = load(positions_.records(), tree_.patches[patch].vertex);
-        bounds_[n] = bounds_of(lanes_[patch], positions_.error());
-        if (!options_.time_linear) sweep(bounds_[n]);
+        const PatchLanes lanes = load(positions_.records(), tree_.patches[node.patch()].vertex);
+        bounds_[n] = grid_.bounds_of(lanes);
+        if (!options_.time_linear) bounds_[n] = swept(bounds_[n]);
+        certificates_.look(node.patch(), lanes);
       } else {
-        bounds_[n] = united(bounds_[n + 1], bounds_[static_cast<std::size_t>(node.right)]);
+        bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
       }
     }
-    if (!positions_.known())  // everything overlaps
-      for (MovingBounds& b : bounds_)
-        for (Float16& end : b.at) end = Float16{} - std::numeric_limits<float>::infinity();
-  }
-
-  bool classify(const Motion&, const Rig::Interval*) override {
-    certificates_.update(positions_, lanes_);
+    certificates_.finish();
+    if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
     return true;
   }
 
@@ -80,31 +78,39 @@ class FastCuller : public Culler {
   RadialView radial_view() const override { return certificates_.view(); }
 
  private:
-  static void sweep(MovingBounds& b) { b.at[0] = b.at[1] = smaller(b.at[0], b.at[1]); }
-
   void self(std::size_t n) {
     if (certificates_.skip(n, n)) return;
     const PatchTree::Node& node = tree_.nodes[n];
     if (node.is_leaf()) return inside(node.patch());
-    const auto right = static_cast<std::size_t>(node.right);
-    self(n + 1);
-    self(right);
-    pair(n + 1, right);
+    self(node.left());
+    self(node.right());
+    pair(node.left(), node.right());
   }
 
-  void pair(std::size_t a, std::size_t b) {
-    if (certificates_.skip(a, b)) return;
-    ++tests_;
-    if (!apart(bounds_[a], bounds_[b])) below(a, b);
-  }
+  void pair(std::size_t a, std::size_t b) { step<1, 1>(a, b); }
 
   void below(std::size_t a, std::size_t b) {
-    const PatchTree::Node &first = tree_.nodes[a], &second = tree_.nodes[b];
-    if (first.is_leaf() && second.is_leaf()) return between(a, b);
-    const std::size_t of_a[2] = {first.is_leaf() ? a : a + 1, static_cast<std::size_t>(first.right)};
-    const std::size_t of_b[2] = {second.is_leaf() ? b : b + 1, static_cast<std::size_t>(second.right)};
-    for (std::size_t i = 0; i < (first.is_leaf() ? 1 : 2); ++i)
-      for (std::size_t j = 0; j < (second.is_leaf() ? 1 : 2); ++j) pair(of_a[i], of_b[j]);
+    const PatchTree::Node first = tree_.nodes[a], second = tree_.nodes[b];
+    if (!first.is_leaf() && !second.is_leaf()) return step<2, 2>(first.left(), second.left());
+    if (!first.is_leaf()) return step<2, 1>(first.left(), b);
+    if (!second.is_leaf()) return step<1, 2>(a, second.left());
+    between(a, b);
+  }
+
+  // One node or two siblings against one or two. All are tested before any is descended into.
+  template <std::size_t kA, std::size_t kB>
+  void step(std::size_t a, std::size_t b) {
+    unsigned open = 0;
+    for (std::size_t i = 0; i < kA; ++i)
+      for (std::size_t j = 0; j < kB; ++j) {
+        const bool asked = !certificates_.skip(a + i, b + j);
+        tests_ += asked;
+        open |= static_cast<unsigned>(asked & !apart(bounds_[a + i], bounds_[b + j])) << (i * kB + j);
+      }
+    for (; open != 0; open &= open - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(open));
+      below(a + k / kB, b + k % kB);
+    }
   }
 
   // Pairs inside one patch.
@@ -126,9 +132,9 @@ class FastCuller : public Culler {
       if (shared.p[s] == tree_.patches[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
     }
     if (rows == 0 || columns == 0) return;
-    rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
+    rows = near_counted(bounds_of_triangles(p), rows, grid_.in_units(bounds_[b]));
     if (rows == 0) return;
-    columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);
+    columns = near_counted(bounds_of_triangles(q), columns, grid_.in_units(bounds_[a]));
     if (columns == 0) return;
     const Adjacent* adjacent = tree_.adjacent_to(p, q);
     for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
@@ -141,32 +147,34 @@ class FastCuller : public Culler {
   void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Adjacent* adjacent) {
     if (wanted == 0) return;
     if (adjacent != nullptr) {
-      const auto beside = static_cast<Mask16>(wanted & adjacent->lanes[lane]);
+      wanted = not_flat(p, lane, wanted, adjacent->sharing[lane]);
+      // Adjacent triangles always overlap: they are passed on untested.
+      const auto beside = static_cast<Mask16>(wanted & adjacent->lanes(lane));
       wanted &= static_cast<Mask16>(~beside);
-      take_adjacent(p, lane, q, beside);
+      pass_on(p, lane, q, beside);
       if (wanted == 0) return;
     }
     bounds_of_triangles(p);  // before a reference is taken, as they are made on demand
     const TriangleBounds& others = bounds_of_triangles(q);
     tests_ += static_cast<unsigned>(std::popcount(wanted));
     if (positions_.known()) wanted = near(others, wanted, bounds_of_triangles(p), lane);
-    for (unsigned rest = wanted; rest != 0; rest &= rest - 1)
+    pass_on(p, lane, q, wanted);
+  }
+
+  // Without the pairs that the star of a common corner proves apart. `sharing`: those with each corner.
+  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const std::array<Mask16, 3>& sharing) {
+    if (!options_.stars) return wanted;
+    const Patch& patch = tree_.patches[p];
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((wanted & sharing[k]) != 0 && stars_.flat(VertexId{patch.vertex[patch.corner[k][lane]]}))
+        wanted &= static_cast<Mask16>(~sharing[k]);
+    return wanted;
+  }
+
+  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
       sink_->add(tree_.patches[p].triangle[lane],
                  tree_.patches[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))]);
-  }
-
-  // Adjacent triangles always overlap: they are passed on untested, unless a star proves them apart.
-  void take_adjacent(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
-    const TriangleId t = tree_.patches[p].triangle[lane];
-    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
-      const TriangleId u = tree_.patches[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))];
-      if (!options_.stars || !in_flat_star(t, u)) sink_->add(t, u);
-    }
-  }
-
-  bool in_flat_star(TriangleId t, TriangleId u) {
-    const Triangle &a = mesh_.corners(t), &b = mesh_.corners(u);
-    return std::any_of(a.begin(), a.end(), [&](VertexId v) { return contains(b, v) && stars_.flat(v); });
   }
 
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other) {
@@ -181,7 +189,8 @@ class FastCuller : public Culler {
       if (triangle_bounds_used_ == triangle_bounds_.size()) triangle_bounds_.emplace_back();
       at = static_cast<std::int32_t>(triangle_bounds_used_++);
       TriangleBounds& bounds = triangle_bounds_[static_cast<std::size_t>(at)];
-      bounds = triangle_bounds(lanes_[p], tree_.patches[p], positions_.error());
+      bounds = triangle_bounds(load(positions_.records(), tree_.patches[p].vertex), tree_.patches[p],
+                               positions_.error());
       if (!options_.time_linear)
         for (std::size_t k = 0; k < kDirections; ++k) {
           bounds.low[k][0] = bounds.low[k][1] = smaller(bounds.low[k][0], bounds.low[k][1]);
@@ -191,15 +200,14 @@ class FastCuller : public Culler {
     return triangle_bounds_[static_cast<std::size_t>(at)];
   }
 
-  const TriangleMesh& mesh_;
   Covers covers_;
   DrvbcFastOptions options_;
   LocalPositions positions_;
   PatchTree tree_;
   Certificates certificates_;
   Stars stars_;
-  std::vector<PatchLanes> lanes_;                 // of each patch
-  std::vector<MovingBounds> bounds_;              // of each node
+  Grid grid_{1};
+  std::vector<NodeBounds> bounds_;                // of each node
   std::vector<std::int32_t> triangle_bounds_at_;  // of each patch: where among those below, made on demand
   std::vector<TriangleBounds> triangle_bounds_;
   std::size_t triangle_bounds_used_ = 0;

@@ -18,7 +18,6 @@ namespace {
 
 constexpr float kTiny = 1e-30F;
 
-using Rows = Float16[kLanes16];
 using Float8 = float __attribute__((vector_size(32)));
 
 Float16 broadcast(float x) {
@@ -94,17 +93,6 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
                                            28, 29, 30, 31);
   }
   return out;
-}
-
-MovingBounds bounds_of(const PatchLanes& lanes, float error) {
-  MovingBounds bounds;
-  for (int end = 0; end < 2; ++end) {
-    Rows rows;
-    directions(lanes.at[end], rows);
-    for (std::size_t k = 0; k < kDirections; ++k) rows[kDirections + k] = -rows[k];
-    bounds.at[end] = smallest_of_rows(rows) - broadcast(7 * error);
-  }
-  return bounds;
 }
 
 TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error) {

@@ -24,22 +24,12 @@ inline constexpr std::size_t kDirections = 8;
 struct MovingBounds {
   Float16 at[2];
 };
-// `error`: of every coordinate.
-MovingBounds bounds_of(const PatchLanes& lanes, float error);
-
-inline MovingBounds united(const MovingBounds& a, const MovingBounds& b) {
-  return {{smaller(a.at[0], b.at[0]), smaller(a.at[1], b.at[1])}};
-}
-
-// True is a proof: along one direction one lies on the same side of the other at both ends, therefore always.
-inline bool apart(const MovingBounds& a, const MovingBounds& b) {
-  return (above(a.at[0], -swapped(b.at[0])) & above(a.at[1], -swapped(b.at[1]))) != 0;
-}
 
 // Bounds of the triangles of a patch: [direction][end].
 struct TriangleBounds {
   Float16 low[kDirections][2], high[kDirections][2];
 };
+// `error`: of every coordinate.
 TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error);
 
 // Which of the triangles in `mask` are not proven apart from the bounds, or from triangle `lane` of another

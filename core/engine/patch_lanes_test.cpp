@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/engine/node_bounds.h"
 #include "core/engine/test_body.h"
 #include "core/radial/exact_orientation.h"
 
@@ -64,13 +65,14 @@ TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
 constexpr int kDirection[8][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
                                   {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
 
-// Mutations: bounds without their slack; the slack of one end alone.
+// Mutations: bounds without their slack; the slack of one end alone; a grid that does not give way.
 TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
   for (const Scene& scene : scenes())
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 5) {
       const Patch& patch = scene.tree.patches[p];
       const PatchLanes lanes = load(scene.local.records(), patch.vertex);
-      const MovingBounds bounds = bounds_of(lanes, scene.local.error());
+      const Grid grid(scene.local.error());
+      const MovingBounds bounds = grid.in_units(grid.bounds_of(lanes));
       const TriangleBounds triangles = triangle_bounds(lanes, patch, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l)
         for (const VertexId v : scene.mesh.corners(patch.triangle[l]))
@@ -88,29 +90,16 @@ TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
     }
 }
 
-MovingBounds bounds_of_point(const Vec3& start, const Vec3& end) {
-  MovingBounds bounds;
-  for (int e = 0; e < 2; ++e)
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      const Vec3& p = e == 0 ? start : end;
-      const float along =
-          static_cast<float>(kDirection[k][0] * p.x() + kDirection[k][1] * p.y() + kDirection[k][2] * p.z());
-      bounds.at[e][k] = along;
-      bounds.at[e][kDirections + k] = -along;
+bool apart_in_units(const MovingBounds& a, const MovingBounds& b) {
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    bool over = true, under = true;
+    for (std::size_t end = 0; end < 2; ++end) {
+      over &= a.at[end][k] > -b.at[end][kDirections + k];
+      under &= b.at[end][k] > -a.at[end][kDirections + k];
     }
-  return bounds;
-}
-
-// Points that rush by together stay apart, points that change places do not; touching is not apart.
-// Mutation: `apart` joins both ends by "or".
-TEST(PatchLanes, ApartMeansOnOneSideAllTheTime) {
-  const MovingBounds a = bounds_of_point({0, 0, 0}, {100, 0, 0});
-  EXPECT_TRUE(apart(a, bounds_of_point({1, 0, 0}, {101, 0, 0})));
-  EXPECT_TRUE(apart(bounds_of_point({1, 0, 0}, {101, 0, 0}), a));
-  EXPECT_FALSE(apart(a, bounds_of_point({1, 0, 0}, {99, 0, 0})));
-  EXPECT_FALSE(apart(bounds_of_point({1, 0, 0}, {99, 0, 0}), a));
-  EXPECT_FALSE(apart(a, bounds_of_point({1, 0, 0}, {100, 0, 0})));
-  EXPECT_FALSE(apart(a, a));
+    if (over || under) return true;
+  }
+  return false;
 }
 
 // `near` says of every triangle what `apart` says of its bounds. Mutation: one of the two sides left out.
@@ -132,11 +121,12 @@ TEST(PatchLanes, NearIsApartLaneByLane) {
       return triangle_bounds(load(scene.local.records(), x.vertex), x, scene.local.error());
     };
     const TriangleBounds first = of(patch), second = of(other);
-    const MovingBounds whole = bounds_of(load(scene.local.records(), other.vertex), scene.local.error());
+    const Grid grid(scene.local.error());
+    const MovingBounds whole = grid.in_units(grid.bounds_of(load(scene.local.records(), other.vertex)));
     const Mask16 to_whole = near(first, 0xffff, whole), to_lane = near(first, 0xffff, second, 5);
     for (std::size_t l = 0; l < kLanes16; ++l) {
-      EXPECT_EQ(to_whole >> l & 1, !apart(bounds_of_lane(first, l), whole));
-      EXPECT_EQ(to_lane >> l & 1, !apart(bounds_of_lane(first, l), bounds_of_lane(second, 5)));
+      EXPECT_EQ(to_whole >> l & 1, !apart_in_units(bounds_of_lane(first, l), whole));
+      EXPECT_EQ(to_lane >> l & 1, !apart_in_units(bounds_of_lane(first, l), bounds_of_lane(second, 5)));
       ++outcomes[to_lane >> l & 1];
     }
   }

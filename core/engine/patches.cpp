@@ -170,12 +170,13 @@ class TreeBuilder {
              const std::vector<std::int32_t>& cell) {
     std::vector<std::size_t> all(count);
     std::iota(all.begin(), all.end(), std::size_t{0});
-    split(grouped(all, cluster), [&](const Item& in_cluster) {
-      split(grouped(in_cluster.patches, cell), [&](const Item& in_cell) {
+    tree_.nodes.push_back({0});
+    split(grouped(all, cluster), 0, [&](const Item& in_cluster, std::size_t cluster_node) {
+      split(grouped(in_cluster.patches, cell), cluster_node, [&](const Item& in_cell, std::size_t cell_node) {
         std::vector<Item> single;
         for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
-        split(single, [&](const Item& patch) {
-          tree_.nodes.push_back({~static_cast<std::int32_t>(tree_.patches.size())});
+        split(single, cell_node, [&](const Item& patch, std::size_t leaf) {
+          tree_.nodes[leaf].child = ~static_cast<std::int32_t>(tree_.patches.size());
           tree_.patches.push_back(patches_[patch.patches[0]]);
         });
       });
@@ -197,22 +198,23 @@ class TreeBuilder {
   }
 
   // Halves items at the median along the longest axis of the box of their centres.
-  void split(std::span<Item> items, const std::function<void(const Item&)>& leaf) {
-    if (items.size() == 1) return leaf(items[0]);
+  using Leaf = std::function<void(const Item&, std::size_t node)>;
+  void split(std::span<Item> items, std::size_t node, const Leaf& leaf) {
+    if (items.size() == 1) return leaf(items[0], node);
     Eigen::AlignedBox3d box;
     for (const Item& item : items) box.extend(item.centre);
     int axis = 0;
     box.sizes().maxCoeff(&axis);
     std::stable_sort(items.begin(), items.end(),
                      [&](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
-    const std::size_t node = tree_.nodes.size(), half = items.size() / 2;
-    tree_.nodes.push_back({0});
-    split(items.first(half), leaf);
-    tree_.nodes[node].right = static_cast<std::int32_t>(tree_.nodes.size());
-    split(items.subspan(half), leaf);
+    const std::size_t left = tree_.nodes.size(), half = items.size() / 2;
+    tree_.nodes[node].child = static_cast<std::int32_t>(left);
+    tree_.nodes.resize(left + 2);
+    split(items.first(half), left, leaf);
+    split(items.subspan(half), left + 1, leaf);
   }
-  void split(std::vector<Item> items, const std::function<void(const Item&)>& leaf) {
-    split(std::span(items), leaf);
+  void split(std::vector<Item> items, std::size_t node, const Leaf& leaf) {
+    split(std::span(items), node, leaf);
   }
 
   const std::vector<Patch>& patches_;
@@ -240,11 +242,12 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
 
   tree.adjacent_offset.push_back(0);
   for (const Patch& patch : tree.patches) {
-    std::map<std::int32_t, std::array<Mask16, kLanes16>> touching;
+    std::map<std::int32_t, std::array<std::array<Mask16, 3>, kLanes16>> touching;
     for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      for (const Lane& near : tree.ring_of(patch.triangle[l]))
-        touching[near.patch][l] |= static_cast<Mask16>(1U << near.lane);
-    for (const auto& [other, lanes] : touching) tree.adjacent.push_back({other, lanes});
+      for (std::size_t k = 0; k < 3; ++k)
+        for (const TriangleId t : mesh.triangles_at(mesh.corners(patch.triangle[l])[k]))
+          touching[lane_of[+t].patch][l][k] |= static_cast<Mask16>(1U << lane_of[+t].lane);
+    for (const auto& [other, sharing] : touching) tree.adjacent.push_back({other, sharing});
     tree.adjacent_offset.push_back(static_cast<std::int32_t>(tree.adjacent.size()));
   }
 }

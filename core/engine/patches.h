@@ -16,10 +16,11 @@ namespace cscd::fast {
 struct Patch {
   std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
   std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
-  std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
   std::array<std::int32_t, kCovers> cluster;  // in each cover
   std::array<Mask16, kCovers> inside;         // triangles whose corners' triangles all belong to that cluster
   Mask16 lanes;                               // those that are triangles
+  // Not needed of most patches, and in a cache line of its own.
+  alignas(64) std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
 };
 
 // A triangle's place among the patches.
@@ -28,20 +29,23 @@ struct Lane {
   std::int32_t lane;
 };
 
-// Which triangles of another patch share a vertex with each triangle of this one.
+// Which triangles of another patch share each corner of each triangle of this one.
 struct Adjacent {
   std::int32_t patch;
-  std::array<Mask16, kLanes16> lanes;
+  std::array<std::array<Mask16, 3>, kLanes16> sharing;
+
+  Mask16 lanes(std::size_t lane) const { return sharing[lane][0] | sharing[lane][1] | sharing[lane][2]; }
 };
 
-// The surface cut into patches, and a binary tree over them, built once in the reference pose. Nodes stand in
-// depth-first order: the left child of node n is n + 1, so children follow their parents, and the patches
-// below a node are a range.
+// The surface cut into patches, and a binary tree over them, built once in the reference pose. The children
+// of a node stand side by side and after it.
 struct PatchTree {
   struct Node {
-    std::int32_t right;  // inner node: its right child; leaf: ~patch
-    bool is_leaf() const { return right < 0; }
-    std::size_t patch() const { return static_cast<std::size_t>(~right); }
+    std::int32_t child;  // inner node: its left child, before the right one; leaf: ~patch
+    bool is_leaf() const { return child < 0; }
+    std::size_t patch() const { return static_cast<std::size_t>(~child); }
+    std::size_t left() const { return static_cast<std::size_t>(child); }
+    std::size_t right() const { return left() + 1; }
   };
   std::vector<Node> nodes;
   std::vector<Patch> patches;

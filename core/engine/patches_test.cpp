@@ -72,12 +72,18 @@ TEST(Patches, RingsHoldAllTrianglesWithACommonVertex) {
 TEST(Patches, TheTreeHoldsThePatchesInOrder) {
   const Cut cut;
   std::size_t next = 0;
-  for (std::size_t n = 0; n < cut.tree.nodes.size(); ++n) {
+  std::vector<std::size_t> open = {0};
+  while (!open.empty()) {
+    const std::size_t n = open.back();
     const PatchTree::Node& node = cut.tree.nodes[n];
-    if (node.is_leaf())
+    open.pop_back();
+    if (node.is_leaf()) {
       EXPECT_EQ(node.patch(), next++);
-    else
-      EXPECT_GT(static_cast<std::size_t>(node.right), n + 1);
+      continue;
+    }
+    EXPECT_GT(node.left(), n);
+    open.push_back(node.right());
+    open.push_back(node.left());
   }
   EXPECT_EQ(next, cut.tree.patches.size());
   EXPECT_EQ(cut.tree.nodes.size(), 2 * next - 1);

@@ -59,27 +59,4 @@ inline Float16 permuted(Float16 v, const Places16& place) {
 #endif
 }
 
-// Halves exchanged.
-inline Float16 swapped(Float16 v) {
-  return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-
-// Halves the number of rows: neighbouring lanes of two rows become one row. A template, so that loops unroll.
-template <std::size_t kRows>
-inline void fold_rows(Float16* row) {
-  for (std::size_t r = 0; r < kRows / 2; ++r) {
-    const Float16 a = row[2 * r], b = row[2 * r + 1];
-    row[r] =
-        smaller(__builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
-                __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31));
-  }
-  if constexpr (kRows > 2) fold_rows<kRows / 2>(row);
-}
-
-// Lane r of the result is the smallest lane of row r.
-inline Float16 smallest_of_rows(Float16 (&row)[kLanes16]) {
-  fold_rows<kLanes16>(row);
-  return row[0];
-}
-
 }  // namespace cscd

@@ -1,0 +1,23 @@
+#include "core/engine/node_bounds.h"
+
+namespace cscd::fast {
+
+NodeBounds Grid::bounds_of(const PatchLanes& lanes) const {
+  Short32 p[3], row[kLanes16];
+  for (int i = 0; i < 3; ++i) p[i] = rounded_pairs(lanes.at[0][i] * steps_, lanes.at[1][i] * steps_);
+  row[0] = p[0], row[1] = p[1], row[2] = p[2];
+  row[3] = p[0] + p[1], row[4] = p[0] + p[2], row[5] = p[1] + p[2];
+  row[6] = p[0] - p[1], row[7] = p[0] - p[2];
+  for (std::size_t k = 0; k < kDirections; ++k) row[kDirections + k] = -row[k];
+  return {smallest_pairs_of_rows(row) - std::int16_t{1}};
+}
+
+// A step in units is off by 2^-22 of itself, so that the product is by less than 0.012 steps; 1/64 pays for
+// that and for the 0.004 above.
+MovingBounds Grid::in_units(const NodeBounds& bounds) const {
+  const auto pairs = reinterpret_cast<Int16>(bounds.at);
+  const auto units = [&](Int16 steps) { return (__builtin_convertvector(steps, Float16) - 0x1p-6F) * step_; };
+  return {{units((pairs << 16) >> 16), units(pairs >> 16)}};
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#ifdef __AVX512BW__
+#include <immintrin.h>
+#endif
+
+#include "core/geometry/lanes16.h"
+
+namespace cscd {
+
+// Thirty-two 16-bit integers side by side: sixteen pairs. What the vector types lack stands here twice, as in
+// lanes16.h.
+using Short32 = std::int16_t __attribute__((vector_size(64)));
+using Int16 = std::int32_t __attribute__((vector_size(64)));
+using Mask32 = std::uint32_t;
+
+inline Short32 smaller(Short32 a, Short32 b) {
+  return a < b ? a : b;
+}
+
+// Where a > b.
+inline Mask32 above(Short32 a, Short32 b) {
+#ifdef __AVX512BW__
+  return _mm512_cmpgt_epi16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
+#else
+  const auto lanes = a > b;
+  Mask32 bits = 0;
+  for (int l = 0; l < 32; ++l) bits |= static_cast<Mask32>(lanes[l] & 1) << l;
+  return bits;
+#endif
+}
+
+// Pair l holds a[l] and b[l], both rounded to the nearest integer, which 16 bits must hold.
+inline Short32 rounded_pairs(Float16 a, Float16 b) {
+  constexpr float kShift = 0x1.8p23F;  // floats of this size are integers
+  const Int16 low = __builtin_convertvector((a + kShift) - kShift, Int16),
+              high = __builtin_convertvector((b + kShift) - kShift, Int16);
+  return reinterpret_cast<Short32>((low & 0xffff) | (high << 16));
+}
+
+// The larger and the smaller halves of the pairs exchanged: pairs 8 to 15 before 0 to 7.
+inline Short32 swapped(Short32 v) {
+  const auto pairs = reinterpret_cast<Int16>(v);
+  return reinterpret_cast<Short32>(
+      __builtin_shufflevector(pairs, pairs, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+}
+
+// Pair r of the result is the smallest pair of row r, each half by itself.
+inline Short32 smallest_pairs_of_rows(Short32 (&row)[kLanes16]) {
+  // Neighbouring pairs of two rows within quarters, twice; then the quarters themselves, twice.
+  const auto take = [](Short32 a, Short32 b, const auto& shuffle) {
+    return reinterpret_cast<Short32>(shuffle(reinterpret_cast<Int16>(a), reinterpret_cast<Int16>(b)));
+  };
+  const auto even = [](Int16 a, Int16 b) {
+    return __builtin_shufflevector(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30);
+  };
+  const auto odd = [](Int16 a, Int16 b) {
+    return __builtin_shufflevector(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31);
+  };
+  const auto even_quarters = [](Int16 a, Int16 b) {
+    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27);
+  };
+  const auto odd_quarters = [](Int16 a, Int16 b) {
+    return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
+  };
+#pragma GCC unroll 8
+  for (int r = 0; r < 8; ++r)
+    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even), take(row[2 * r], row[2 * r + 1], odd));
+#pragma GCC unroll 4
+  for (int r = 0; r < 4; ++r)
+    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even), take(row[2 * r], row[2 * r + 1], odd));
+#pragma GCC unroll 2
+  for (int r = 0; r < 2; ++r)
+    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even_quarters),
+                     take(row[2 * r], row[2 * r + 1], odd_quarters));
+  return smaller(take(row[0], row[1], even_quarters), take(row[0], row[1], odd_quarters));
+}
+
+}  // namespace cscd
