@@ -76,7 +76,13 @@ constexpr std::array kStrategies = {
     Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
              Guarantee::first_contact, true,
              [](const Setup& setup) {
-               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .second_cover = false});
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_two_covers", "drvbc_fast with the first two of its covers", Guarantee::first_contact,
+             true,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
              },
              kAblation},
     Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,

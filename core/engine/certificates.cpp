@@ -103,7 +103,8 @@ void Certificates::label_nodes() {
     unsigned some = 0;
     for (std::size_t c = 0; c < kCovers; ++c) {
       const Signs& signs = certified_[p][c];
-      label_[n][c] = signs.positive == patch.lanes   ? 2 * patch.cluster[c]
+      label_[n][c] = patch.cluster[c] == kNone       ? kNone
+                     : signs.positive == patch.lanes ? 2 * patch.cluster[c]
                      : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
                                                      : kNone;
       some |= signs.positive | signs.negative;

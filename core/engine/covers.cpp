@@ -107,9 +107,18 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
   return best;
 }
 
-void place_observers(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t clusters,
-                     Cover& cover) {
-  std::vector<std::vector<TriangleId>> members(clusters);
+// Numbers clusters from 0 and returns how many there are.
+std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
+  std::map<std::int32_t, std::int32_t> number;
+  for (std::int32_t& c : cluster_of)
+    if (c != kNone) c = number.try_emplace(c, static_cast<std::int32_t>(number.size())).first->second;
+  return number.size();
+}
+
+}  // namespace
+
+void place_observers(const TriangleMesh& mesh, std::span<const Vec3> positions, Cover& cover) {
+  std::vector<std::vector<TriangleId>> members(renumbered(cover.cluster_of));
   for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
     if (cover.cluster_of[t] != kNone)
       members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
@@ -120,6 +129,8 @@ void place_observers(const TriangleMesh& mesh, std::span<const Vec3> positions, 
     cover.observers.push_back(following(mesh, positions, triangles, best_viewpoint(faces)));
   }
 }
+
+namespace {
 
 // ---- Clusters
 
@@ -203,14 +214,6 @@ void merge_thin(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of)
   }
 }
 
-// Numbers clusters from 0 and returns how many there are.
-std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
-  std::map<std::int32_t, std::int32_t> number;
-  for (std::int32_t& c : cluster_of)
-    if (c != kNone) c = number.try_emplace(c, static_cast<std::int32_t>(number.size())).first->second;
-  return number.size();
-}
-
 }  // namespace
 
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
@@ -227,15 +230,16 @@ std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t>
 Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
                    const radial::AtomicClusters& atomic) {
   Covers covers;
-  auto& [bones, seams] = covers;
+  auto& [bones, seams, corners] = covers;
   bones.cluster_of = atomic.of_triangle;
   merge_thin(mesh, bones.cluster_of);
-  place_observers(mesh, reference, renumbered(bones.cluster_of), bones);
+  place_observers(mesh, reference, bones);
 
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, bones.cluster_of)) seeds.push_back(triangles);
   seams.cluster_of = rings_from(mesh, seeds).seed;
-  place_observers(mesh, reference, renumbered(seams.cluster_of), seams);
+  place_observers(mesh, reference, seams);
+  corners.cluster_of.assign(mesh.triangle_count(), kNone);
   return covers;
 }
 

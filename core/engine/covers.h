@@ -24,13 +24,18 @@ struct Cover {
   std::vector<FollowingPoint> observers;
 };
 
-// Two covers that overlap, so that what lies at a seam of one lies well inside a cluster of the other:
+// Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another:
 //   0  the atomic clusters, thin ones merged
 //   1  every triangle with the nearest seam between two of them
-inline constexpr std::size_t kCovers = 2;
+//   2  where seams of both meet: what has all around it in no cluster of theirs, and its surroundings. Made
+//      with the patches (patches.h); before that it has no cluster.
+inline constexpr std::size_t kCovers = 3;
 using Covers = std::array<Cover, kCovers>;
 Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
                    const radial::AtomicClusters& atomic);
+
+// Numbers the clusters of a cover from 0 and gives each its observer.
+void place_observers(const TriangleMesh& mesh, std::span<const Vec3> reference, Cover& cover);
 
 // Triangles all around whose corners belong to their own cluster.
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of);

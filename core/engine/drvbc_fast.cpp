@@ -33,7 +33,7 @@ class FastCuller : public Culler {
         options_(options),
         positions_(setup.reference),
         tree_(make_patches(setup.mesh, setup.reference, covers_)),
-        certificates_(tree_, covers_, options.second_cover ? kCovers : 1),
+        certificates_(tree_, covers_, options.covers),
         stars_(setup.mesh),
         bounds_(tree_.nodes.size()),
         triangle_bounds_at_(tree_.patches.size(), kNone) {}

@@ -9,7 +9,7 @@ namespace cscd {
 struct DrvbcFastOptions {
   std::string_view name = "drvbc_fast";  // begins error texts
   // For the ablation.
-  bool second_cover = true;
+  std::size_t covers = 3;  // the first of them
   bool time_linear = true;
   bool stars = true;
 };

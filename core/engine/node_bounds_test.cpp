@@ -28,7 +28,7 @@ NodeBounds bounds_of_point(const Vec3& start, const Vec3& end) {
 // Points that rush by together stay apart, points that change places do not; touching is not apart.
 // Mutation: `apart` joins both ends by "or".
 TEST(PatchLanes, ApartMeansOnOneSideAllTheTime) {
-  const MovingBounds a = bounds_of_point({0, 0, 0}, {100, 0, 0});
+  const NodeBounds a = bounds_of_point({0, 0, 0}, {100, 0, 0});
   EXPECT_TRUE(apart(a, bounds_of_point({1, 0, 0}, {101, 0, 0})));
   EXPECT_TRUE(apart(bounds_of_point({1, 0, 0}, {101, 0, 0}), a));
   EXPECT_FALSE(apart(a, bounds_of_point({1, 0, 0}, {99, 0, 0})));

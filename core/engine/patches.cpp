@@ -8,17 +8,20 @@
 namespace cscd::fast {
 namespace {
 
+constexpr std::size_t kCutting = 2;       // covers by which patches are cut
+constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cutting covers miss
+
 // Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
-// inside it, in each cover.
+// inside it, in each of those covers.
 struct Cell {
-  std::array<std::int32_t, kCovers> cluster;
-  std::array<bool, kCovers> inside;
+  std::array<std::int32_t, kCutting> cluster;
+  std::array<bool, kCutting> inside;
   auto operator<=>(const Cell&) const = default;
 };
 
 std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
   std::vector<Cell> cells(mesh.triangle_count());
-  for (std::size_t c = 0; c < kCovers; ++c) {
+  for (std::size_t c = 0; c < kCutting; ++c) {
     const std::vector<bool> all = inside(mesh, covers[c].cluster_of);
     for (std::size_t t = 0; t < cells.size(); ++t) {
       cells[t].cluster[c] = covers[c].cluster_of[t];
@@ -147,7 +150,8 @@ Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles
   for (std::size_t l = 0; l < kLanes16; ++l)
     patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
   patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
-  for (std::size_t c = 0; c < kCovers; ++c) {
+  patch.cluster.fill(kNone);
+  for (std::size_t c = 0; c < kCutting; ++c) {
     patch.cluster[c] = cell.cluster[c];
     patch.inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
   }
@@ -252,9 +256,58 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
   }
 }
 
+// The last cover: patches that lie inside no cluster of the others, those that touch each other together, and
+// rings of patches about them.
+void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover) {
+  const auto missed = [](const Patch& patch) {
+    return std::all_of(patch.inside.begin(), patch.inside.end(), [](Mask16 lanes) { return lanes == 0; });
+  };
+  const auto for_each_touching = [&](std::size_t p, const auto& take) {
+    for (auto i = static_cast<std::size_t>(tree.adjacent_offset[p]);
+         i < static_cast<std::size_t>(tree.adjacent_offset[p + 1]); ++i)
+      take(static_cast<std::size_t>(tree.adjacent[i].patch));
+  };
+  std::vector<std::int32_t> cluster(tree.patches.size(), kNone), ring(tree.patches.size(), 0);
+  std::vector<std::size_t> queue;
+  std::int32_t count = 0;
+  for (std::size_t seed = 0; seed < cluster.size(); ++seed) {
+    if (cluster[seed] != kNone || !missed(tree.patches[seed])) continue;
+    std::size_t next = queue.size();
+    cluster[seed] = count;
+    queue.push_back(seed);
+    for (; next < queue.size(); ++next)
+      for_each_touching(queue[next], [&](std::size_t other) {
+        if (cluster[other] != kNone || !missed(tree.patches[other])) return;
+        cluster[other] = count;
+        queue.push_back(other);
+      });
+    ++count;
+  }
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const std::size_t p = queue[next];
+    if (ring[p] == kCornerRings) continue;
+    for_each_touching(p, [&](std::size_t other) {
+      if (cluster[other] != kNone) return;
+      cluster[other] = cluster[p];
+      ring[other] = ring[p] + 1;
+      queue.push_back(other);
+    });
+  }
+  for (std::size_t p = 0; p < cluster.size(); ++p)
+    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
+      cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
+  place_observers(mesh, reference, cover);
+  const std::vector<bool> all = inside(mesh, cover.cluster_of);
+  for (Patch& patch : tree.patches) {
+    patch.cluster[kCutting] = cover.cluster_of[+patch.triangle[0]];
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
+      patch.inside[kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
+  }
+}
+
 }  // namespace
 
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers) {
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
@@ -282,6 +335,7 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   PatchTree tree;
   TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
   find_rings(mesh, tree);
+  cover_corners(mesh, reference, tree, covers[kCutting]);
   return tree;
 }
 

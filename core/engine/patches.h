@@ -12,7 +12,7 @@
 namespace cscd::fast {
 
 // Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
-// All belong to one cluster in each cover.
+// All belong to one cluster in each cover, or to none.
 struct Patch {
   std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
   std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
@@ -70,6 +70,7 @@ struct PatchTree {
   }
 };
 
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, const Covers& covers);
+// Cuts by the first two covers and makes the third.
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers);
 
 }  // namespace cscd::fast

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
+#include <set>
 
 #include "core/engine/test_body.h"
 #include "core/mesh/adjacency.h"
@@ -43,7 +45,7 @@ TEST(Patches, InsideMeansAllAroundEveryCorner) {
           EXPECT_FALSE(patch.inside[c] >> l & 1);
           continue;
         }
-        bool all = true;
+        bool all = patch.cluster[c] != kNone;
         for (std::size_t t = 0; t < cut.mesh.triangle_count(); ++t)
           if (share_vertex(cut.mesh.triangles()[t], cut.mesh.corners(patch.triangle[l])))
             all = all && cut.covers[c].cluster_of[t] == patch.cluster[c];
@@ -67,6 +69,33 @@ TEST(Patches, RingsHoldAllTrianglesWithACommonVertex) {
         expected.push_back(TriangleId{static_cast<std::int32_t>(u)});
     EXPECT_EQ(ring, expected);
   }
+}
+
+// What lies inside no cluster of the first two covers lies inside one of the third, which spans no two
+// components. Mutation: no rings about the patches that are missed.
+TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
+  const test::Shape two = test::together(test::icosphere(4, 1), test::icosphere(4, 3));
+  const TriangleMesh mesh = two.mesh();
+  std::vector<BoneId> bone_of;
+  for (const Triangle& t : mesh.triangles()) {
+    const Vec3& p = two.positions[+t[0]];
+    bone_of.push_back(BoneId{4 * (p.x() < 0 ? 0 : 1) + 2 * (p.y() < 0 ? 0 : 1) + (p.z() < 0 ? 0 : 1)});
+  }
+  Covers covers = make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of));
+  const PatchTree tree = make_patches(mesh, two.positions, covers);
+  EXPECT_GE(covers[2].observers.size(), 4u);
+  std::size_t missed = 0;
+  for (const Patch& patch : tree.patches) {
+    const auto first_two = static_cast<Mask16>(patch.inside[0] | patch.inside[1]);
+    missed += first_two != patch.lanes;
+    EXPECT_EQ(first_two | patch.inside[2], patch.lanes);
+  }
+  EXPECT_GT(missed, 4u);
+  std::map<std::int32_t, std::set<std::int32_t>> components;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    components[covers[2].cluster_of[t]].insert(mesh.component(TriangleId{static_cast<std::int32_t>(t)}));
+  components.erase(kNone);
+  for (const auto& [cluster, in] : components) EXPECT_EQ(in.size(), 1u);
 }
 
 TEST(Patches, TheTreeHoldsThePatchesInOrder) {
