@@ -30,21 +30,21 @@ void directions(const Float16 (&p)[3], Float16* out) {
   out[6] = p[0] - p[1], out[7] = p[0] - p[2];
 }
 
-Float16 largest_component(const PatchLanes& v) {
+[[gnu::always_inline]] inline Float16 largest_component(const PatchLanes& v) {
   const auto largest = [&](int end) {
     return larger(larger(absolute(v.at[end][0]), absolute(v.at[end][1])), absolute(v.at[end][2]));
   };
   return larger(largest(0), largest(1));
 }
 
-PatchLanes corner_of(const PatchLanes& lanes, const Places16& place) {
+[[gnu::always_inline]] inline PatchLanes corner_of(const PatchLanes& lanes, const Places16& place) {
   PatchLanes out;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) out.at[end][i] = permuted(lanes.at[end][i], place);
   return out;
 }
 
-PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
+[[gnu::always_inline]] inline PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
   PatchLanes out;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];

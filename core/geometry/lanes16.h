@@ -41,17 +41,11 @@ inline Mask16 above(Float16 a, Float16 b) {
 
 // Lane l of the result is lane place[l] of v.
 inline Float16 permuted(Float16 v, const Places16& place) {
-#if defined __AVX512F__
-  using Byte16 = std::uint8_t __attribute__((vector_size(kLanes16)));
-  using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int32_t))));
-  Byte16 bytes;
+#ifdef __AVX512F__
+  // With masks of ones, as gcc 12 warns of the forms without (GCC bug 105593).
+  __m128i bytes;
   std::memcpy(&bytes, place.data(), sizeof bytes);
-  const Int16 from = __builtin_convertvector(bytes, Int16);
-#ifdef __clang__
-  return _mm512_permutexvar_ps(reinterpret_cast<__m512i>(from), v);
-#else
-  return __builtin_shuffle(v, from);
-#endif
+  return _mm512_maskz_permutexvar_ps(0xffff, _mm512_maskz_cvtepu8_epi32(0xffff, bytes), v);
 #else
   Float16 out;
   for (std::size_t l = 0; l < kLanes16; ++l) out[l] = v[place[l]];
