@@ -117,7 +117,7 @@ std::vector<Planned> plan(const ScaleOptions& options) {
 
 // Queries that will be asked, weighed by triangles: about what a run costs.
 double estimated_minutes(std::span<const Planned> all) {
-  constexpr double kMicrosecondsATriangle = 30, kSecondsOnce = 1;
+  constexpr double kMicrosecondsATriangle = 80, kSecondsOnce = 1;
   double seconds = 0;
   for (const auto& [name, subject] : all) {
     const scenes::Scene scene = scenes::load_scene(name);
