@@ -11,7 +11,9 @@
 #include "bench/progress.h"
 #include "bench/report_json.h"
 #include "bench/watchdog.h"
+#include "core/base/error.h"
 #include "core/detect/embedding.h"
+#include "core/detect/first_only.h"
 
 namespace cscd::bench {
 namespace {
@@ -20,7 +22,7 @@ using nlohmann::json;
 
 struct QueryOptions {
   std::string input, strategy, elementary = "filtered_exact", frames, output;
-  bool force = false, unproven = false;
+  bool force = false, unproven = false, first = false;
   std::optional<double> interval_seconds;
   ModelOptions model;
 };
@@ -61,8 +63,24 @@ json to_json(const ContactSet& found, const TriangleMesh& mesh) {
 // this program is.
 constexpr double kModelIntervalSeconds = 60;
 
+// The time up to which pairs are looked at has to be right.
+void require_right_times(const ElementaryTest& elementary) {
+  if (!elementary.apart_is_proof || !elementary.contact_is_proof)
+    throw InputError("--first: elementary test '" + std::string(elementary.name) +
+                     "' may be wrong about what touches; choose filtered_exact or exact");
+}
+
+std::unique_ptr<Detector> make_detector(const Strategy& strategy, const Setup& setup, bool first) {
+  std::unique_ptr<Detector> detector = strategy.make(setup).detector;
+  if (first && !look_for_first_only(*detector))
+    throw InputError("--first: strategy " + std::string(strategy.name) +
+                     " tests pairs by itself and finds all; leave one of the two out");
+  return detector;
+}
+
 void query(const QueryOptions& options) {
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
+  if (options.first) require_right_times(elementary);
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
   OutputFile output(options.output, options.force);
 
@@ -74,7 +92,7 @@ void query(const QueryOptions& options) {
                                   ": an interval, or the preparation, took more than " +
                                   json(patience).dump() + " s; raise --interval-seconds to wait longer");
   const Setup setup = input.setup(elementary);
-  const std::unique_ptr<Detector> detector = strategy->make(setup).detector;
+  const std::unique_ptr<Detector> detector = make_detector(*strategy, setup, options.first);
   const bool may_fall_back = strategy->guarantee == Guarantee::first_contact && !options.unproven;
   std::unique_ptr<Detector> fallback;  // made when it is first needed
 
@@ -88,10 +106,11 @@ void query(const QueryOptions& options) {
     const scenes::ClipInterval interval = input.clip->load(i);
     const bool embedded = embedding.embedded(interval.motion.start());
     const bool fall_back = may_fall_back && !embedded;
-    if (fall_back && !fallback) fallback = complete_reference().make(setup).detector;
+    if (fall_back && !fallback) fallback = make_detector(complete_reference(), setup, options.first);
     Detector& used = fall_back ? *fallback : *detector;
     const Report report = used.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
     found.sort();
+    if (options.first) keep_first(found);
 
     json entry = to_json(found, input.mesh);
     entry["index"] = i;
@@ -112,6 +131,7 @@ void query(const QueryOptions& options) {
   json document = {{"schema", "cscd.query/1"},      {"input", options.input},
                    {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
                    {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
+  if (options.first) document["first_only"] = true;
   if (input.import) document["import"] = import_json(*input.import);
   output.commit(document.dump(1) + "\n");
   std::printf(
@@ -133,7 +153,9 @@ void add_query(CLI::App& app) {
                          "  cscd query character.glb --clip walk --json out.json\n\n"
                          "Where a start is not embedded, the guarantee first_contact is void, and the "
                          "complete reference strategy\n"
-                         "answers that interval instead (--unproven: do not).");
+                         "answers that interval instead (--unproven: do not). Whoever wants the earliest "
+                         "contact and no later ones\n"
+                         "has it sooner with --first.");
   command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--strategy", options->strategy,
                       "culling strategy (cscd list); without it, the best that the input allows");
@@ -142,6 +164,7 @@ void add_query(CLI::App& app) {
   command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
   command->add_option("--json", options->output, "where the answer goes")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
+  command->add_flag("--first", options->first, "only the contacts of the earliest time of each interval");
   command->add_flag("--unproven", options->unproven, "run the strategy even where its guarantee is void");
   command
       ->add_option("--interval-seconds", options->interval_seconds,

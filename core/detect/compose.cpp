@@ -1,12 +1,18 @@
 #include "core/detect/compose.h"
 
+#include <algorithm>
+
 #include "core/base/stage_clock.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
+#include "core/detect/first_only.h"
 #include "core/elementary/relative_box.h"
 
 namespace cscd {
 namespace {
+
+// More than times are off (2^-50, core/elementary/exact.h): equal ones are all looked at.
+constexpr double kTimeSlack = 0x1p-48;
 
 // Where pairs become contacts: triangle pairs in, contacts out.
 class PairTester : public TrianglePairSink {
@@ -20,7 +26,9 @@ class PairTester : public TrianglePairSink {
     out_ = &out;
     counts_ = {};
     met_.start_interval();
+    earliest_ = 1;
   }
+  void look_for_first_only() { first_only_ = true; }
   // Tests what is left of the interval.
   void finish_interval() {
     flush();
@@ -73,13 +81,28 @@ class PairTester : public TrianglePairSink {
       case PairFilter::none:
         left_.assign(pairs.begin(), pairs.end());
     }
+    if (first_only_) return test_first();
     for (const FeaturePair& pair : left_)
       if (met_.insert(pair)) test(pair);
+  }
+  // In the order in which they can touch, up to the earliest contact so far.
+  void test_first() {
+    order_.clear();
+    for (const FeaturePair& pair : left_)
+      if (met_.insert(pair)) order_.emplace_back(no_contact_before(mesh_, *motion_, pair), pair);
+    const auto later = [](const Bounded& a, const Bounded& b) { return a.first > b.first; };
+    std::make_heap(order_.begin(), order_.end(), later);
+    while (!order_.empty() && order_.front().first <= earliest_ + kTimeSlack) {
+      test(order_.front().second);
+      std::pop_heap(order_.begin(), order_.end(), later);
+      order_.pop_back();
+    }
   }
   void test(const FeaturePair& pair) {
     ++counts_.elementary_tests;
     const Answer answer = ask(test_, mesh_, *motion_, pair);
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
+    if (answer.verdict == Verdict::contact) earliest_ = std::min(earliest_, answer.time);
   }
 
   const TriangleMesh& mesh_;
@@ -91,7 +114,11 @@ class PairTester : public TrianglePairSink {
   PairCounts counts_;
   std::vector<FeaturePair> carried_;  // by the block's triangle pairs; one may be carried by several
   std::vector<FeaturePair> left_;     // of those, what the filter could not prove apart
-  FeaturePairSet met_;                // tested in this interval
+  FeaturePairSet met_;                // met in this interval
+  bool first_only_ = false;
+  double earliest_ = 1;  // contact so far
+  using Bounded = std::pair<double, FeaturePair>;
+  std::vector<Bounded> order_;
 };
 
 class ComposedDetector : public Detector {
@@ -124,6 +151,7 @@ class ComposedDetector : public Detector {
     return report;
   }
   RadialView radial_view() const override { return culler_->radial_view(); }
+  void look_for_first_only() { tester_.look_for_first_only(); }
 
  private:
   StageClock clock_;
@@ -136,6 +164,12 @@ class ComposedDetector : public Detector {
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
                                   const ElementaryTest& test, PairOptions options) {
   return std::make_unique<ComposedDetector>(std::move(culler), mesh, test, std::move(options));
+}
+
+bool look_for_first_only(Detector& detector) {
+  auto* const composed = dynamic_cast<ComposedDetector*>(&detector);
+  if (composed != nullptr) composed->look_for_first_only();
+  return composed != nullptr;
 }
 
 }  // namespace cscd

@@ -1,0 +1,76 @@
+// Looking for the earliest contact only changes what is asked, not what the earliest time is.
+#include "core/detect/first_only.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/catalogue.h"
+#include "bench/test_program.h"
+#include "scenes/clip/point_cache.h"
+#include "scenes/random/random_interval.h"
+
+namespace cscd::bench {
+namespace {
+
+// Every strategy, promises or not: the contacts of its earliest time are those of its full answer.
+TEST(FirstOnly, EveryStrategyKeepsItsContactsOfTheEarliestTime) {
+  const ElementaryTest& test = elementary_test_named("filtered_exact");
+  std::size_t colliding = 0;
+  for (std::uint64_t seed = 1; seed <= 66; ++seed) {
+    scenes::RandomInterval random = scenes::make_random_interval(seed);
+    const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
+    const std::optional<Rig> rig = scenes::rig_of(random.clip);
+    const scenes::ClipInterval interval = random.clip.interval(0);
+    for (const Strategy& strategy : strategies()) {
+      const cscd::Setup setup{mesh, random.clip.frame(0).positions, &*rig, test};
+      const auto all = strategy.make(setup).detector, first = strategy.make(setup).detector;
+      if (!look_for_first_only(*first)) {
+        EXPECT_TRUE(strategy.own_test) << strategy.name;
+        continue;
+      }
+      ContactSet expected, found;
+      all->detect(interval.motion, &*interval.bones, expected);
+      first->detect(interval.motion, &*interval.bones, found);
+      for (ContactSet* set : {&expected, &found}) {
+        set->sort();
+        keep_first(*set);
+      }
+      EXPECT_EQ(digest(found), digest(expected)) << strategy.name << ", seed " << seed;
+      colliding += !found.contacts.empty();
+    }
+  }
+  EXPECT_GT(colliding, 100u);
+}
+
+TEST(FirstOnly, QueryReportsTheEarliestTimeAloneAndRefusesWhatMayBeWrong) {
+  const Scratch scratch;
+  const std::string file = scratch / "ball.h5", out = scratch / "out.json";
+  scenes::RandomInterval random = scenes::make_random_interval(11);
+  scenes::PointCacheWriter writer(file, random.clip.header(), false);
+  scenes::copy_frames(random.clip, writer);
+  writer.finish();
+  const auto answer = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"query", file, "--force", "--json", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = cscd(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    return nlohmann::json::parse(read(out));
+  };
+  const nlohmann::json all = answer({}), first = answer({"--first"});
+  EXPECT_EQ(first["first_only"], true);
+  const nlohmann::json &from = all["intervals"][0], &left = first["intervals"][0];
+  ASSERT_EQ(from["collides"], true);
+  EXPECT_EQ(left["time"], from["time"]);
+  nlohmann::json expected = nlohmann::json::array();
+  for (const nlohmann::json& contact : from["contacts"])
+    if (contact["time"] == from["time"]) expected.push_back(contact);
+  EXPECT_EQ(left["contacts"], expected);
+
+  const Outcome refused =
+      cscd({"query", file, "--first", "--elementary", "newton", "--force", "--json", out});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.errors.find("newton"), std::string::npos) << refused.errors;
+}
+
+}  // namespace
+}  // namespace cscd::bench
