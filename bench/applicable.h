@@ -7,8 +7,8 @@
 
 namespace cscd::bench {
 
-// Why a strategy cannot be made for a mesh; nothing where it can. Strategies that need bones need a closed,
-// consistently oriented surface as well, unless they are complete.
+// Why a strategy cannot be made for a mesh; nothing where it can. Strategies that need bones or promise the
+// first contact need a closed, consistently oriented surface.
 std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones);
 
 }  // namespace cscd::bench

@@ -44,7 +44,7 @@ constexpr std::array kStrategies = {
     Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
              [](const Setup& setup) { return make_drvbc(setup); }},
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
-             true, [](const Setup& setup) { return make_drvbc_fast(setup); }},
+             false, [](const Setup& setup) { return make_drvbc_fast(setup); }},
 #ifdef CSCD_BASELINES_FCL
     Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
              Guarantee::heuristic, false, make_fcl, "checker", true},
@@ -74,26 +74,32 @@ constexpr std::array kStrategies = {
              [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
              kAblation},
     Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
-             Guarantee::first_contact, true,
+             Guarantee::first_contact, false,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
              },
              kAblation},
     Strategy{"drvbc_fast_two_covers", "drvbc_fast with the first two of its covers", Guarantee::first_contact,
-             true,
+             false,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
              },
              kAblation},
     Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
-             true,
+             false,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
              },
              kAblation},
-    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact, true,
+    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact, false,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_no_bones", "drvbc_fast, its covers of the surface alone", Guarantee::first_contact,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones", .bones = false});
              },
              kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",

@@ -40,13 +40,14 @@ Found hold_to_promises(const Shape& shape, const std::vector<Vec3>& end, const V
   const Motion motion(shape.positions, end);
   const bool embedded = EmbeddingTest(mesh, shape.positions).embedded(shape.positions);
   ContactSet truth;
-  const Setup judged{mesh, shape.positions, &rig, exact}, asked{mesh, shape.positions, &rig, ours};
+  const Setup judged{mesh, shape.positions, &rig, exact}, asked{mesh, shape.positions, &rig, ours},
+      boneless{mesh, shape.positions, nullptr, ours};
   all_pairs().make(judged).detector->detect(motion, &bones, truth);
   truth.sort();
   for (const Strategy& strategy : strategies()) {
     if (strategy.guarantee == Guarantee::heuristic || (strategy.needs_rig && !with_bones)) continue;
     ContactSet answer;
-    strategy.make(asked).detector->detect(motion, &bones, answer);
+    strategy.make(with_bones ? asked : boneless).detector->detect(motion, &bones, answer);
     answer.sort();
     const Verification judgement = verify(truth, answer, strategy.guarantee, embedded);
     EXPECT_TRUE(judgement.ok) << strategy.name << ": " << judgement.failure;

@@ -63,7 +63,7 @@ struct Scene : test::Body {
       mesh = TriangleMesh(flipped, mesh.vertex_count());
     }
     // Observers of the surface as it was: that all of it is then seen from behind is the aim.
-    covers = make_covers(shape.mesh(), shape.positions, atomic);
+    covers = make_covers(shape.mesh(), shape.positions, atomic.of_triangle);
     tree = make_patches(mesh, shape.positions, covers);
     return Certificates(tree, covers, kCovers);
   }

@@ -8,56 +8,15 @@
 #include <queue>
 #include <random>
 
+#include "core/engine/viewpoint.h"
+
 namespace cscd::fast {
 namespace {
 
 constexpr std::size_t kFollowed = 16;  // vertices at most that an observer follows
 constexpr std::int32_t kThin = 4;      // clusters without a triangle so many rings from its seams are merged
-constexpr int kDescentSteps = 400;
 
 // ---- Observers
-
-struct Face {
-  Vec3 centre, normal;  // of unit length, or zero
-};
-
-Face face(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId triangle) {
-  const Triangle& c = mesh.corners(triangle);
-  const Vec3 normal = (positions[+c[1]] - positions[+c[0]]).cross(positions[+c[2]] - positions[+c[0]]);
-  const double length = normal.norm();
-  return {positions[+c[0]] / 3 + positions[+c[1]] / 3 + positions[+c[2]] / 3,
-          length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
-}
-
-// A point behind as many faces as possible, with room to spare. How far each lacks from that, summed, is
-// convex in the point: subgradient descent, from a point inside.
-Vec3 best_viewpoint(std::span<const Face> faces) {
-  Vec3 q = Vec3::Zero();
-  for (const Face& f : faces) q += f.centre / static_cast<double>(faces.size());
-  double size = 0;
-  for (const Face& f : faces) size += (f.centre - q).norm() / static_cast<double>(faces.size());
-  const double room = 0.4 * size;
-  Vec3 best = q;
-  double least = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kDescentSteps; ++step) {
-    double lack = 0;
-    Vec3 away = Vec3::Zero();
-    for (const Face& f : faces) {
-      const double depth = f.normal.dot(f.centre - q);
-      if (depth >= room) continue;
-      lack += room - depth;
-      away += f.normal;
-    }
-    if (lack < least) {
-      least = lack;
-      best = q;
-    }
-    const double length = away.norm();
-    if (!(length > 0)) break;
-    q -= away * (0.3 * size / (length * std::sqrt(1.0 + step)));
-  }
-  return best;
-}
 
 // Vertices of the triangles, few, with weights that make them the wanted point in the reference pose.
 FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
@@ -125,7 +84,7 @@ void place_observers(const TriangleMesh& mesh, std::span<const Vec3> positions, 
           TriangleId{static_cast<std::int32_t>(t)});
   for (const std::vector<TriangleId>& triangles : members) {
     std::vector<Face> faces;
-    for (const TriangleId t : triangles) faces.push_back(face(mesh, positions, t));
+    for (const TriangleId t : triangles) faces.push_back(face_of(mesh, positions, t));
     cover.observers.push_back(following(mesh, positions, triangles, best_viewpoint(faces)));
   }
 }
@@ -228,15 +187,15 @@ std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t>
 }
 
 Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                   const radial::AtomicClusters& atomic) {
+                   std::span<const std::int32_t> cluster_of) {
   Covers covers;
-  auto& [bones, seams, corners] = covers;
-  bones.cluster_of = atomic.of_triangle;
-  merge_thin(mesh, bones.cluster_of);
-  place_observers(mesh, reference, bones);
+  auto& [parts, seams, corners] = covers;
+  parts.cluster_of.assign(cluster_of.begin(), cluster_of.end());
+  merge_thin(mesh, parts.cluster_of);
+  place_observers(mesh, reference, parts);
 
   std::vector<std::vector<TriangleId>> seeds;
-  for (auto& [clusters, triangles] : seams_of(mesh, bones.cluster_of)) seeds.push_back(triangles);
+  for (auto& [clusters, triangles] : seams_of(mesh, parts.cluster_of)) seeds.push_back(triangles);
   seams.cluster_of = rings_from(mesh, seeds).seed;
   place_observers(mesh, reference, seams);
   corners.cluster_of.assign(mesh.triangle_count(), kNone);

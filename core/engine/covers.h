@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/mesh/rig.h"
-#include "core/radial/atomic_clusters.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace cscd::fast {
 
@@ -25,14 +24,16 @@ struct Cover {
 };
 
 // Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another:
-//   0  the atomic clusters, thin ones merged
+//   0  the given clusters, thin ones merged
 //   1  every triangle with the nearest seam between two of them
 //   2  where seams of both meet: what has all around it in no cluster of theirs, and its surroundings. Made
 //      with the patches (patches.h); before that it has no cluster.
 inline constexpr std::size_t kCovers = 3;
 using Covers = std::array<Cover, kCovers>;
+// Takes the cluster of each triangle, of one component each: of bones (radial/atomic_clusters.h), or of the
+// surface alone (surface_clusters.h).
 Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                   const radial::AtomicClusters& atomic);
+                   std::span<const std::int32_t> cluster_of);
 
 // Numbers the clusters of a cover from 0 and gives each its observer.
 void place_observers(const TriangleMesh& mesh, std::span<const Vec3> reference, Cover& cover);

@@ -11,7 +11,7 @@ namespace {
 // Mutation: the second cover takes the labels of the first.
 TEST(Covers, WhatLiesAtASeamOfOneLiesInsideTheOther) {
   const test::Body body(0.01, 0);
-  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic);
+  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
   EXPECT_EQ(covers[0].observers.size(), 5u);
   EXPECT_EQ(covers[1].observers.size(), 4u);
   const std::vector<bool> first = inside(body.mesh, covers[0].cluster_of),
@@ -29,7 +29,7 @@ TEST(Covers, ThinClustersAreMerged) {
   }
   const radial::AtomicClusters atomic = radial::make_atomic_clusters(body.mesh, bone_of);
   EXPECT_EQ(atomic.clusters.size(), 3u);
-  EXPECT_EQ(make_covers(body.mesh, body.shape.positions, atomic)[0].observers.size(), 2u);
+  EXPECT_EQ(make_covers(body.mesh, body.shape.positions, atomic.of_triangle)[0].observers.size(), 2u);
 }
 
 // Mutation: seeds spread over all triangles instead of over neighbours.
@@ -38,7 +38,8 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
   const TriangleMesh mesh = two.mesh();
   std::vector<BoneId> bone_of;
   for (const Triangle& t : mesh.triangles()) bone_of.push_back(BoneId{two.positions[+t[0]].x() < 5 ? 0 : 1});
-  const Covers covers = make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of));
+  const Covers covers =
+      make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of).of_triangle);
   for (const Cover& cover : covers) {
     std::map<std::int32_t, std::set<std::int32_t>> components;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -52,7 +53,7 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
 
 TEST(Covers, ObserversSeeAllOfATubeFromInside) {
   const test::Body body(0, 0);
-  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic);
+  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
   for (const Cover& cover : covers)
     for (const FollowingPoint& from : cover.observers) {
       Vec3 q = Vec3::Zero();

@@ -10,11 +10,11 @@
 #include "core/engine/certificates.h"
 #include "core/engine/node_bounds.h"
 #include "core/engine/stars.h"
+#include "core/engine/surface_clusters.h"
 #include "core/radial/distance_field.h"
 #include "core/radial/observer.h"
 #include "core/radial/refinement.h"
 #include "core/radial/segmentation.h"
-#include "core/radial/setup.h"
 
 // Radial view based culling after the paper (drvbc.cpp), taken further: one tree over patches of sixteen
 // triangles; two covers whose seams lie inside each other's clusters instead of mega clusters
@@ -215,33 +215,42 @@ class FastCuller : public Culler {
   std::uint64_t tests_ = 0;
 };
 
-// As in drvbc.
-radial::AtomicClusters refined_clusters(const Setup& setup, std::vector<BoneId> bone_of) {
+bool has_bones(const Setup& setup) {
+  return setup.rig != nullptr && !setup.rig->parent.empty();
+}
+
+// Where there are bones, their clusters, made as in drvbc.
+std::vector<std::int32_t> bone_clusters(const Setup& setup, StageClock& clock) {
+  clock.enter(Stage::distance_and_heat);
+  const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
+  std::vector<BoneId> bone_of =
+      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {std::max(1, full / 4), 5});
+  clock.enter(Stage::decomposition);
   const radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
   const std::vector<radial::ObserverKind> kinds = radial::choose_by_rotation_trial(
       setup.mesh, setup.reference, *setup.rig, clusters, 10 * std::numbers::pi / 180);
   bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
-  return radial::make_atomic_clusters(setup.mesh, bone_of);
+  return radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
 }
 
 }  // namespace
 }  // namespace fast
 
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
-  radial::require_radial_setup(setup, std::string(options.name));
+  require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
+  const bool by_bones = options.bones && fast::has_bones(setup);
   StageClock clock;
-  clock.enter(Stage::distance_and_heat);
-  const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
-  std::vector<BoneId> bone_of =
-      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {std::max(1, full / 4), 5});
   clock.enter(Stage::decomposition);
-  const radial::AtomicClusters clusters = fast::refined_clusters(setup, std::move(bone_of));
-  fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, clusters);
+  const std::vector<std::int32_t> cluster_of =
+      by_bones ? fast::bone_clusters(setup, clock) : fast::surface_clusters(setup.mesh, setup.reference);
+  fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, cluster_of);
   auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
   clock.stop();
-  Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
-                          clock.milliseconds(Stage::decomposition), clusters.of_triangle,
-                          static_cast<int>(clusters.clusters.size())};
+  Preparation preparation;
+  if (by_bones) preparation.distance_and_heat_ms = clock.milliseconds(Stage::distance_and_heat);
+  preparation.decomposition_ms = clock.milliseconds(Stage::decomposition);
+  preparation.atomic_clusters = 1 + *std::max_element(cluster_of.begin(), cluster_of.end());
+  preparation.atomic_cluster = cluster_of;
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }
 

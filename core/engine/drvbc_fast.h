@@ -12,9 +12,11 @@ struct DrvbcFastOptions {
   std::size_t covers = 3;  // the first of them
   bool time_linear = true;
   bool stars = true;
+  bool bones = true;  // false: as if there were none
 };
 
-// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh and a rig.
+// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins
+// from the clusters of bones where there are any, else from clusters of the surface.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
 }  // namespace cscd

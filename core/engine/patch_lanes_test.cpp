@@ -19,7 +19,7 @@ struct Scene : test::Body {
 
   Scene(double noise, double bend, const Vec3& origin, double scale, int seed)
       : test::Body(noise, bend, origin, scale, seed),
-        covers(make_covers(mesh, shape.positions, atomic)),
+        covers(make_covers(mesh, shape.positions, atomic.of_triangle)),
         tree(make_patches(mesh, shape.positions, covers)),
         local(start) {
     local.update(motion());

@@ -12,7 +12,7 @@ namespace cscd::fast {
 namespace {
 
 struct Cut : test::Body {
-  Covers covers = make_covers(mesh, shape.positions, atomic);
+  Covers covers = make_covers(mesh, shape.positions, atomic.of_triangle);
   PatchTree tree = make_patches(mesh, shape.positions, covers);
   Cut() : test::Body(0.01, 0) {}
 };
@@ -81,7 +81,7 @@ TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
     const Vec3& p = two.positions[+t[0]];
     bone_of.push_back(BoneId{4 * (p.x() < 0 ? 0 : 1) + 2 * (p.y() < 0 ? 0 : 1) + (p.z() < 0 ? 0 : 1)});
   }
-  Covers covers = make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of));
+  Covers covers = make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of).of_triangle);
   const PatchTree tree = make_patches(mesh, two.positions, covers);
   EXPECT_GE(covers[2].observers.size(), 4u);
   std::size_t missed = 0;
