@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "bench/catalogue.h"
@@ -97,6 +98,8 @@ ordered_json row_json(const ElementaryTest& test) {
   return row;
 }
 
+constexpr std::array<const char*, 4> kStageNames = {"filter", "doubles", "integers", "referee"};
+
 class Study {
  public:
   explicit Study(const AccuracyOptions& options)
@@ -114,17 +117,20 @@ class Study {
     std::vector<Query> block;
     std::vector<Truth> truths;
     std::array<std::size_t, 3> nearness{};
+    std::array<std::size_t, kStageNames.size()> stages{};
     std::size_t queries = 0;
     for (workload.next(block); !block.empty(); workload.next(block)) {
       truths.clear();
       for (const Query& query : block) {
         truths.push_back(truth_of(query, workload.kind));
         ++nearness[static_cast<std::size_t>(truths.back().nearness)];
+        ++stages[static_cast<std::size_t>(stage_of(query, workload.kind))];
         published_ += query.truth.has_value();
         contradicted_ += query.truth && *query.truth != truths.back().contact.has_value();
       }
-      // The rows of the sweep are many and slow: they see the first queries alone.
-      const bool all = queries < options_.sweep_queries;
+      // The rows of the sweep are many and slow: they see the first queries alone, of what has no parameter of
+      // its own.
+      const bool all = !workload.hardness && queries < options_.sweep_queries;
       const std::size_t rows = all ? tests_.size() : whole_;
       const std::size_t seen = all ? std::min(block.size(), options_.sweep_queries - queries) : block.size();
       const auto part = [&](std::size_t first, std::size_t count, std::size_t row_count) {
@@ -155,8 +161,10 @@ class Study {
     if (workload.hardness) out["hardness"] = *workload.hardness;
     out["queries"] = queries;
     for (std::size_t k = 0; k < nearness.size(); ++k) out[kNearnessNames[k]] = nearness[k];
+    for (std::size_t k = 0; k < stages.size(); ++k) out["stages"][kStageNames[k]] = stages[k];
     out["rows"] = std::move(rows);
     workloads_.push_back(std::move(out));
+    keep_pairs(workload, tallies);
   }
 
   bool kept() const { return broken_.empty() && contradicted_ == 0; }
@@ -179,6 +187,7 @@ class Study {
             {"published_truths", {{"queries", published_}, {"contradicted", contradicted_}}},
             {"rows", std::move(rows)},
             {"totals", std::move(totals)},
+            {"ratios", ratios()},
             {"workloads", workloads_}};
   }
 
@@ -196,12 +205,45 @@ class Study {
                   t.queries, t.contacts, t.false_negatives, t.false_positives,
                   t.undecided_contacts + t.undecided_apart, ns(0), ns(1), ns(2));
     }
+    for (const ordered_json& ratio : ratios())
+      if (!ratio.contains("name"))
+        std::printf("filtered_exact over newton, %s: %.3f [%.3f, %.3f]\n",
+                    ratio["group"].get<std::string>().c_str(), ratio["value"].get<double>(),
+                    ratio["low"].get<double>(), ratio["high"].get<double>());
     if (contradicted_ > 0) std::printf("the referee contradicts %zu published truths\n", contradicted_);
     for (const std::string& line : broken_) std::printf("BROKEN PROMISE: %s\n", line.c_str());
   }
 
  private:
   static const char* kind_name(Kind kind) { return kind == Kind::vertex_face ? "vf" : "ee"; }
+
+  // What `filtered_exact` and `newton` took for the same blocks, by group and by name in it; "" is the group.
+  void keep_pairs(const Workload& workload, const std::vector<Tally>& tallies) {
+    const Tally *exact = nullptr, *newton = nullptr;
+    for (std::size_t i = 0; i < whole_; ++i) {
+      if (tests_[i]->name == "filtered_exact") exact = &tallies[i];
+      if (tests_[i]->name == "newton") newton = &tallies[i];
+    }
+    if (!exact || !newton) return;
+    for (const std::string& name : {std::string(), workload.name}) {
+      auto& [a, b] = pairs_[{workload.group, name}];
+      a.insert(a.end(), exact->block_ns.begin(), exact->block_ns.end());
+      b.insert(b.end(), newton->block_ns.begin(), newton->block_ns.end());
+    }
+  }
+  ordered_json ratios() const {
+    ordered_json out = ordered_json::array();
+    for (const auto& [key, times] : pairs_) {
+      if (times.first.empty()) continue;
+      const Estimate ratio = bootstrap_ratio_of_means(times.first, times.second);
+      ordered_json one = {{"row", "filtered_exact"}, {"over", "newton"}, {"group", key.first}};
+      if (!key.second.empty()) one["name"] = key.second;
+      one.update(
+          {{"blocks", times.first.size()}, {"value", ratio.value}, {"low", ratio.low}, {"high", ratio.high}});
+      out.push_back(std::move(one));
+    }
+    return out;
+  }
 
   const AccuracyOptions& options_;
   std::mt19937_64 random_;
@@ -211,6 +253,7 @@ class Study {
   std::size_t published_ = 0, contradicted_ = 0;
   std::vector<std::string> broken_;
   ordered_json workloads_ = ordered_json::array();
+  std::map<std::pair<std::string, std::string>, std::pair<std::vector<double>, std::vector<double>>> pairs_;
 };
 
 void run_accuracy(AccuracyOptions options) {
@@ -269,7 +312,7 @@ void add_accuracy(CLI::App& app) {
                    "tests with commas between them, or all; NAME@TOLERANCE[:STEPS] chooses parameters")
       ->capture_default_str();
   command->add_option("--sweep", options->sweep,
-                      "further tests that see the first queries of every workload alone");
+                      "further tests that see the first queries of every workload alone, but for the random families");
   command->add_option("--sweep-queries", options->sweep_queries, "how many those are");
   command->add_option("--scene-queries", options->scene_queries, "at most, of each scene and kind");
   command->add_option("--open-queries", options->open_queries, "at most, of each folder and kind");

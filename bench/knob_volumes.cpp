@@ -17,7 +17,8 @@ constexpr int kAxes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 constexpr int kFaces[6][3] = {{1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}, {0, 1, -1}};
 constexpr int kCorners[4][3] = {{1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {1, -1, -1}};
 
-// The first K / 2 of them; a 14-DOP has no diagonals of faces, a 16-DOP five.
+// The first K / 2 of them; a 14-DOP has no diagonals of faces, a 16-DOP five; a 24-DOP three
+// of the cube.
 template <std::size_t K>
 constexpr auto directions() {
   std::array<std::array<int, 3>, K / 2> all{};
@@ -144,8 +145,10 @@ Prepared make(const Setup& setup) {
 constexpr VolumeRow kRows[] = {
     {"AABB, float", make<float, 6>},      {"14-DOP, float", make<float, 14>},
     {"16-DOP, float", make<float, 16>},   {"18-DOP, float", make<float, 18>},
-    {"26-DOP, float", make<float, 26>},   {"AABB, double", make<double, 6>},
-    {"16-DOP, double", make<double, 16>}, {"26-DOP, double", make<double, 26>},
+    {"24-DOP, float", make<float, 24>},   {"26-DOP, float", make<float, 26>},
+    {"AABB, double", make<double, 6>},    {"14-DOP, double", make<double, 14>},
+    {"16-DOP, double", make<double, 16>}, {"18-DOP, double", make<double, 18>},
+    {"24-DOP, double", make<double, 24>}, {"26-DOP, double", make<double, 26>},
 };
 
 }  // namespace

@@ -50,6 +50,11 @@ std::vector<Setting> settings() {
   add(varied("segment seen from", "3 corners", [](DrvbcOptions&) {}));
   add(varied("segment seen from", "1 corner",
              [](DrvbcOptions& o) { o.segment_test = radial::SegmentTest::first_corner; }));
+  add(varied("orientation by", "certain sign", [](DrvbcOptions&) {}));
+  add(varied("orientation by", "plain sign",
+             [](DrvbcOptions& o) { o.orientation_sign = radial::SignTest::plain; }));
+  add(varied("orientation by", "sign of halves",
+             [](DrvbcOptions& o) { o.orientation_sign = radial::SignTest::halved; }));
   for (const double gamma : {0.0, 0.02, 0.05, 0.1, 0.2, 0.3})
     add(varied("gamma", text(gamma), [&](DrvbcOptions& o) { o.gamma = gamma; }));
   for (const double theta : {2.0, 5.0, 10.0, 20.0, 45.0})

@@ -78,4 +78,13 @@ Estimate bootstrap_ratio_of_medians(std::span<const double> a, std::span<const d
   });
 }
 
+Estimate bootstrap_ratio_of_means(std::span<const double> a, std::span<const double> b) {
+  assert(a.size() == b.size());
+  return bootstrap(a.size(), [&](const std::vector<std::size_t>& indices) {
+    double sum_a = 0, sum_b = 0;
+    for (const std::size_t index : indices) sum_a += a[index], sum_b += b[index];
+    return sum_a / sum_b;
+  });
+}
+
 }  // namespace cscd::bench

@@ -23,5 +23,7 @@ Estimate bootstrap_median(std::span<const double> samples);
 // The median of a over the median of b, where a[i] and b[i] come from the same repetition: both are resampled
 // together, so that drift common to a pair cancels. Sizes are equal.
 Estimate bootstrap_ratio_of_medians(std::span<const double> a, std::span<const double> b);
+// The same of the means: what all of a took over what all of b took, where samples are of unequal work.
+Estimate bootstrap_ratio_of_means(std::span<const double> a, std::span<const double> b);
 
 }  // namespace cscd::bench

@@ -44,6 +44,10 @@ Answer ask(const ElementaryTest& test, const Query& query, Kind kind) {
                                    : test.edge_edge(as_edge_edge(query));
 }
 
+ExactStage stage_of(const Query& query, Kind kind) {
+  return with_features(query, kind, [](const auto& q) { return filtered_exact_stage(q); });
+}
+
 double least_distance(const Query& query, Kind kind) {
   return with_features(query, kind, [](const auto& given) {
     const auto q = relative(in_range(given));
@@ -145,13 +149,16 @@ void measure(std::span<const Query> queries, std::span<const Truth> truths, Kind
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
     for (const std::size_t number : order) {
       Tally& tally = *tallies[number];
+      double whole = 0;
       for (std::size_t k = 0; k < classes.size(); ++k) {
         if (classes[k].empty()) continue;
         const auto begin = std::chrono::steady_clock::now();
         for (const std::size_t i : classes[k]) answers[i] = ask(*tests[number], queries[i], kind);
         const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - begin;
         tally.ns[k].push_back(spent.count() / static_cast<double>(classes[k].size()));
+        whole += spent.count();
       }
+      tally.block_ns.push_back(whole);
       if (pass + 1 < passes) continue;
       for (std::size_t i = 0; i < queries.size(); ++i) tally.count(queries[i], kind, truths[i], answers[i]);
       for (std::size_t k = 0; k < classes.size(); ++k) tally.timed[k] += classes[k].size();

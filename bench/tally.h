@@ -11,6 +11,7 @@
 #include "bench/workload.h"
 #include "core/elementary/elementary_test.h"
 #include "core/elementary/exact.h"
+#include "core/elementary/filtered_exact.h"
 
 // How elementary tests do on a workload: wrong answers, errors in time, nanoseconds.
 namespace cscd::bench {
@@ -29,6 +30,9 @@ Truth truth_of(const Query& query, Kind kind);
 
 Answer ask(const ElementaryTest& test, const Query& query, Kind kind);
 
+// How far `filtered_exact` has to go; asks once more, so that counting costs the timed call nothing.
+ExactStage stage_of(const Query& query, Kind kind);
+
 // The least distance of the features over the interval, in extents of the query; sampled, so from above.
 double least_distance(const Query& query, Kind kind);
 
@@ -42,6 +46,7 @@ struct Tally {
   std::array<std::uint64_t, 256> time_errors{};  // by size, see bin_of
   std::array<std::vector<double>, 3> ns;         // by nearness: a mean a block and pass
   std::array<std::uint64_t, 3> timed{};          // queries, each counted once
+  std::vector<double> block_ns;  // each block and pass as a whole; all tests of a block have the same number
 
   void count(const Query& query, Kind kind, const Truth& truth, const Answer& answer);
   void add(const Tally& other);

@@ -45,7 +45,7 @@ template <class Query>
 Decision time_by_integers(const Query& query, const DoublesResult& contact) {
   const integer::Result result = integer::contact_time(query, contact.low, contact.high);
   if (result.outcome == integer::Outcome::gave_up) return by_referee(query);
-  return {{Verdict::contact, result.time}, ExactStage::doubles};
+  return {{Verdict::contact, result.time}, ExactStage::integers};
 }
 
 // Where products of coordinates may underflow or overflow.

@@ -9,7 +9,7 @@ namespace cscd {
 Answer filtered_exact_vertex_face(const MovingVertexFace& query);
 Answer filtered_exact_edge_edge(const MovingEdgeEdge& query);
 
-// Which means the answer took.
+// Which means the answer, with its time, took.
 enum class ExactStage { filter, doubles, integers, referee };
 ExactStage filtered_exact_stage(const MovingVertexFace& query);
 ExactStage filtered_exact_stage(const MovingEdgeEdge& query);

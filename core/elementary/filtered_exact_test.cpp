@@ -138,6 +138,25 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
   ee_.expect_both_answers();
 }
 
+// Zeros of a lattice moved to the smallest of doubles: coordinates with a thousand places between their bits.
+TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
+  compare(1500, [&](int i) {
+    FourMovingPoints p = make_.lattice(1 + i % 3);
+    for (MovingPoint& x : p)
+      for (Vec3* end : {&x.start, &x.end})
+        for (int axis = 0; axis < 3; ++axis)
+          for (int steps = make_.below(3); steps > 0; --steps)
+            (*end)[axis] = std::nextafter((*end)[axis], i % 2 ? 1e9 : -1e9);
+    return p;
+  });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+  for (Family* family : {&vf_, &ee_}) {
+    EXPECT_GT(family->stages.at(ExactStage::integers), 300);
+    EXPECT_LT(family->stages[ExactStage::referee], family->queries / 100);
+  }
+}
+
 // Features that touch at borders, corners and ends up to the rounding of the coordinates.
 TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
   const double places[] = {0, 0.5, 1, 1e-16, 1 - 1e-16, 1e-9, -1e-16};
@@ -255,13 +274,14 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
   }
 }
 
-// A vertex that passes the tilted plane z = x by the smallest of doubles: more bits than the integers hold.
+// A vertex that passes the tilted plane z = x by the smallest of doubles, beside a large triangle: more bits
+// than the integers hold.
 TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
-  constexpr double tiny = 0x1p-1074;
+  constexpr double tiny = 0x1p-1074, far = 0x1p900;
   const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
-  const MovingPoint a = still(-1, -1, -1), b = still(1, -1, 1), c = still(0, 1, 0);
-  const MovingVertexFace crosses{{{0, 0, tiny}, {0, 0, -tiny}}, {a, b, c}},
-      stays{{{0, 0, 2 * tiny}, {0, 0, tiny}}, {a, b, c}};
+  const MovingPoint a = still(-far, -far, -far), b = still(far, -far, far), c = still(0, far, 0);
+  const MovingVertexFace crosses{{{tiny, 0, 2 * tiny}, {tiny, 0, 0}}, {a, b, c}},
+      stays{{{tiny, 0, 3 * tiny}, {tiny, 0, 2 * tiny}}, {a, b, c}};
   for (const MovingVertexFace& query : {crosses, stays})
     EXPECT_EQ(filtered_exact_stage(query), ExactStage::referee);
   EXPECT_EQ(ask(crosses).verdict, Verdict::contact);

@@ -3,7 +3,8 @@
 #include "core/geometry/feature_motion.h"
 
 // Contact decided with integers of fixed capacity: exact, without allocation, for coordinates whose bits span
-// not too many places (some 250 on each axis; those of a simulation span 60 to 120).
+// not too many places (some 1140 on each axis, so that a coordinate may be the smallest of doubles beside
+// others up to 2^60; those of a simulation span 60 to 120).
 namespace cscd::integer {
 
 enum class Outcome { apart, contact, gave_up };

@@ -1,13 +1,15 @@
 // Roots of integer polynomials of degree at most 3, for the integer stage of `filtered_exact`.
 //
-// Isolation: [0, 1] is cut near the critical points and then halved, until Descartes' rule (sign variations
-// of the Bernstein coefficients on the piece) says "none" or "one". Roots of even order, where that would not
-// end, are fractions, and so are then all roots: those are found by Euclid's algorithm. The floating-point
-// guesses decide how soon an answer comes, never what it is: every sign is computed in integers.
+// Isolation: Descartes' rule (sign variations of the Bernstein coefficients on a piece) says "none", "one",
+// or nothing; then the discriminant tells whether there can be more than one. If it is zero the root of even
+// order is a fraction, and so are all. Else [0, 1] is cut near the critical points and near the fraction that
+// would be the double root, and then halved. Two roots between neighbouring doubles are on either side of
+// that fraction. The floating-point guesses decide how soon an answer comes, never what it is: every sign is
+// computed in integers.
 //
-// Sign of q at an isolated root of p: certain if q has no sign variation between the neighbouring doubles
-// that enclose the root. Otherwise Euclid's algorithm tells whether the root is shared, and if it is not,
-// halving below the spacing of doubles ends.
+// Sign of q at an isolated root r of p: certain if q has no sign variation between the neighbouring doubles
+// that enclose r. Otherwise r is compared with the root of q there, without refining either: p at that root
+// is p modulo q, which is linear, and its sign follows from that of q at a fraction.
 //
 // The referee (algebraic.h) was written before and shares no code with this, so that each can be tested
 // against the other.
@@ -21,8 +23,6 @@
 namespace cscd::integer {
 namespace {
 
-// Halving below the spacing of doubles is given up here; the referee goes on.
-constexpr int kDeepest = 400;
 // Halving of [0, 1] while two roots are not told apart.
 constexpr int kDeepestSearch = 100;
 
@@ -65,6 +65,7 @@ Polynomial stretched_by(const Polynomial& p, const Wide& numerator, const Wide& 
 
 struct Signs {
   int variations = 0, first = 0;  // the sign just above 0; 0 for the zero polynomial
+  bool zero_end = false;          // at 0 or at 1
 };
 // Of the Bernstein coefficients on [0, 1].
 Signs bernstein_signs(const Polynomial& p) {
@@ -83,6 +84,7 @@ Signs bernstein_signs(const Polynomial& p) {
     sign[0] = 0;
   }
   Signs result;
+  result.zero_end = p.degree >= 0 && (sign[0] == 0 || sign[p.degree] == 0);
   int last = 0;
   for (int i = 0; i <= p.degree; ++i) {
     if (sign[i] == 0) continue;
@@ -181,7 +183,7 @@ int RootSolver::sign_at_double(const Polynomial& p, double t) {
 
 int RootSolver::sign_at_fraction(const Polynomial& p, const Wide& numerator, const Wide& denominator) {
   if (p.degree <= 0) return p.is_zero() ? 0 : p.c[0].sign();
-  if (!fits(p.bits() + 3 * std::max(numerator.bits(), denominator.bits()) + 8)) return 0;
+  if (!fits(p.bits() + p.degree * std::max(numerator.bits(), denominator.bits()) + 8)) return 0;
   Wide value = p.c[p.degree], scale = denominator;
   for (int i = p.degree - 1; i >= 0; --i) {
     value = value * numerator + p.c[i] * scale;
@@ -219,69 +221,114 @@ Root root_at_double(double t) {
 }
 }  // namespace
 
-// Only called where Descartes' rule leaves more than one root. If one of them is of even order all roots are
-// fractions. Returns true when that was so.
-bool RootSolver::find_fractions(const Polynomial& p, Root* roots, int& count) {
-  const int bits = p.bits() + 2;
-  Wide numerator[2], denominator[2];
-  int found = 0;
+void RootSolver::add_fraction(Wide numerator, Wide denominator, Root* roots, int& count) {
+  if (denominator.sign() < 0) numerator = -numerator, denominator = -denominator;
+  if (numerator.sign() < 0 || (denominator - numerator).sign() < 0) return;
+  Root& root = roots[count++];
+  root = Root{};
+  root.numerator = numerator;
+  root.denominator = denominator;
+  const Wide::Leading top = numerator.leading(), bottom = denominator.leading();
+  root.low = root.high =
+      top.value == 0
+          ? 0
+          : std::clamp(std::ldexp(top.value / bottom.value, top.exponent - bottom.exponent), 0.0, 1.0);
+  tighten(root);
+}
+
+// Of a quadratic the vertex; of a cubic the root of p modulo p', which is the middle of its Hessian.
+Turn RootSolver::turn_of(const Polynomial& p) {
+  Turn turn;
+  const int bits = p.bits() + 3;
+  const Wide &d = p.c[0], &c = p.c[1], &b = p.c[2], &a = p.c[3];
   if (p.degree == 2) {
-    if (!fits(2 * bits + 4)) return false;
-    if ((squared(p.c[1]) - (p.c[0] * p.c[2] << 2)).sign() != 0) return false;
-    numerator[found] = -p.c[1];
-    denominator[found++] = p.c[2] << 1;
+    if (!fits(2 * bits)) return turn;
+    turn.discriminant = (squared(c) - (d * b << 2)).sign();
+    turn.numerator = -c;
+    turn.denominator = b << 1;
   } else {
-    if (!fits(8 * bits + 16)) return false;
+    if (!fits(4 * bits + 8)) return turn;
+    const Wide three(3), nine(9);
+    const Wide first = squared(b) - three * (a * c), middle = b * c - nine * (a * d),
+               last = squared(c) - three * (b * d);
+    turn.discriminant = ((first * last << 2) - squared(middle)).sign();
+    turn.numerator = -middle;
+    turn.denominator = first << 1;
+  }
+  if (turn.denominator.sign() < 0) turn.numerator = -turn.numerator, turn.denominator = -turn.denominator;
+  return turn;
+}
+
+// All roots, where one of them is of even order, or of order 3.
+void RootSolver::find_fractions(const Polynomial& p, const Turn& turn, Root* roots, int& count) {
+  const Wide &n = turn.numerator, &d = turn.denominator;
+  if (d.sign() == 0) {
+    add_fraction(-p.c[2], p.c[3] + (p.c[3] << 1), roots, count);  // a triple root
+    return;
+  }
+  add_fraction(n, d, roots, count);
+  if (p.degree == 2) return;
+  // The sum of the roots is -c2 / c3.
+  if (!fits(p.bits() + std::max(n.bits(), d.bits()) + 3)) return;
+  add_fraction(-(p.c[2] * d) - (p.c[3] * n << 1), p.c[3] * d, roots, count);
+  if (count < 2 || roots[0].low < roots[1].low) return;
+  // Of two that tighten to the same double either may be the earlier.
+  if (!fits(std::max(roots[0].numerator.bits(), roots[1].numerator.bits()) +
+            std::max(roots[0].denominator.bits(), roots[1].denominator.bits())))
+    return;
+  if (roots[1].low < roots[0].low ||
+      (roots[1].numerator * roots[0].denominator - roots[0].numerator * roots[1].denominator).sign() < 0)
+    std::swap(roots[0], roots[1]);
+}
+
+// Two sign variations between neighbouring doubles: there are two roots if p has the other sign at its turn.
+void RootSolver::cut_in_two(const Polynomial& p, const Turn& turn, double low, double high, int sign_below,
+                            Root* roots, int& count) {
+  const Wide &n = turn.numerator, &d = turn.denominator;
+  if (d.sign() == 0 || compared(n, d, {low}) <= 0 || compared(n, d, {high}) >= 0 || gave_up_) {
+    gave_up_ = true;
+    return;
+  }
+  int sign = 0;
+  if (p.degree == 2) {
+    sign = sign_at_fraction(p, n, d);
+  } else {
+    // There p is p' times (3 c3 x + c2) / (9 c3).
     Polynomial slope;
     slope.c[0] = p.c[1];
     slope.c[1] = p.c[2] << 1;
     slope.c[2] = p.c[3] + (p.c[3] << 1);
     slope.degree = 2;
-    const auto [r0, r1] = remainder(p, slope);
-    if (r1.sign() == 0) {
-      if (r0.sign() != 0) return false;
-      numerator[found] = -p.c[2];  // a triple root
-      denominator[found++] = slope.c[2];
-    } else {
-      Wide n = -r0, d = r1;
-      if (d.sign() < 0) n = -n, d = -d;
-      if (sign_at_fraction(slope, n, d) != 0) return false;
-      numerator[found] = n;
-      denominator[found++] = d;
-      // The sum of the roots is -c2 / c3.
-      numerator[found] = -(p.c[2] * d) - (p.c[3] * n << 1);
-      denominator[found++] = p.c[3] * d;
-    }
+    sign = sign_at_fraction(slope, n, d) * p.c[3].sign();
+    if (gave_up_) return;
+    sign *= (slope.c[2] * n + p.c[2] * d).sign();
   }
-  for (int i = 0; i < found; ++i) {
-    Wide n = numerator[i], d = denominator[i];
-    if (d.sign() < 0) n = -n, d = -d;
-    if (n.sign() < 0 || (d - n).sign() < 0) continue;
+  if (sign != -sign_below) {
+    gave_up_ = true;
+    return;
+  }
+  for (const int side : {-1, 1}) {
     Root& root = roots[count++];
     root = Root{};
+    root.low = low;
+    root.high = high;
+    root.polynomial = &p;
+    root.sign_below = -side * sign_below;
     root.numerator = n;
     root.denominator = d;
-    const Wide::Leading top = n.leading(), bottom = d.leading();
-    const double near =
-        top.value == 0
-            ? 0
-            : std::clamp(std::ldexp(top.value / bottom.value, top.exponent - bottom.exponent), 0.0, 1.0);
-    root.low = root.high = near;
-    tighten(root);
+    root.cut = side;
   }
-  // Two that tighten to the same double are in the right order, too, or nearly: the time is the same.
-  if (count == 2 && roots[1].low < roots[0].low) std::swap(roots[0], roots[1]);
-  if (count == 2 && roots[1].low == roots[0].low &&
-      ((roots[1].numerator * roots[0].denominator) - (roots[0].numerator * roots[1].denominator)).sign() < 0)
-    std::swap(roots[0], roots[1]);
-  return true;
 }
 
-void RootSolver::search(const Polynomial& p, double low, double high, Root* roots, int& count, int depth) {
+void RootSolver::search(const Polynomial& p, const Turn& turn, double low, double high, Root* roots,
+                        int& count, int depth) {
   if (gave_up_) return;
   const Signs signs = bernstein_signs(stretched(p, low, high));
-  if (gave_up_ || signs.variations == 0) return;
-  if (signs.variations == 1) {
+  if (gave_up_) return;
+  int most = signs.variations;
+  if (turn.discriminant < 0 && most > 1) most -= 2;  // there is no pair of them
+  if (most == 0) return;
+  if (most == 1) {
     Root& root = roots[count++];
     root = Root{};
     root.low = low;
@@ -290,40 +337,59 @@ void RootSolver::search(const Polynomial& p, double low, double high, Root* root
     root.sign_below = signs.first;
     return;
   }
+  if (most == 2 && rank_of(high) - rank_of(low) == 1) {
+    cut_in_two(p, turn, low, high, signs.first, roots, count);
+    return;
+  }
   const double middle = low + (high - low) / 2;
   if (depth == kDeepestSearch || !(middle > low && middle < high)) {
     gave_up_ = true;
     return;
   }
-  search(p, low, middle, roots, count, depth + 1);
+  search(p, turn, low, middle, roots, count, depth + 1);
   if (!gave_up_ && sign_at_double(p, middle) == 0) roots[count++] = root_at_double(middle);
-  search(p, middle, high, roots, count, depth + 1);
+  search(p, turn, middle, high, roots, count, depth + 1);
 }
 
 int RootSolver::find_roots(const Polynomial& p, Root* roots) {
   int count = 0;
   if (p.degree == 0) return 0;
   const Signs whole = bernstein_signs(p);
-  if (whole.variations > 1 && find_fractions(p, roots, count)) return count;
-  if (gave_up_) return 0;
+  Turn turn;
+  if (whole.variations > 1) {
+    turn = turn_of(p);
+    if (gave_up_) return 0;
+    if (turn.discriminant == 0) {
+      find_fractions(p, turn, roots, count);
+      return count;
+    }
+  }
   if (p.c[0].sign() == 0) roots[count++] = root_at_double(0);
 
-  // Cut near the critical points.
-  double cut[4] = {0, 1, 1, 1};
+  // Cut near the critical points, and round the turn.
+  double cut[6] = {0, 1};
   int cuts = 1;
-  if (whole.variations > 1) {
+  if (turn.discriminant > 0) {
+    const auto add = [&](double at) {
+      if (!(at > 0 && at < 1) || std::find(cut + 1, cut + cuts, at) != cut + cuts) return;
+      int place = cuts++;
+      for (; place > 1 && cut[place - 1] > at; --place) cut[place] = cut[place - 1];
+      cut[place] = at;
+    };
     const Rounded r = rounded(p);
     const double a = 3 * r.c[3], b = r.c[2], c = r.c[1];  // p' = a s^2 + 2 b s + c
     const double q = -(b + std::copysign(std::sqrt(std::max(0.0, b * b - a * c)), b));
-    double s[2] = {q / a, c / q};
-    if (s[1] < s[0]) std::swap(s[0], s[1]);
-    for (const double at : s)
-      if (at > cut[cuts - 1] && at < 1) cut[cuts++] = at;
+    add(q / a);
+    add(c / q);
+    Root at_turn;
+    int turns = 0;
+    if (turn.denominator.sign() != 0) add_fraction(turn.numerator, turn.denominator, &at_turn, turns);
+    if (turns > 0) add(at_turn.low), add(at_turn.high);
+    cut[cuts] = 1;
   }
-  cut[cuts] = 1;
   for (int i = 0; i < cuts; ++i) {
     if (i > 0 && sign_at_double(p, cut[i]) == 0) roots[count++] = root_at_double(cut[i]);
-    search(p, cut[i], cut[i + 1], roots, count, 0);
+    search(p, turn, cut[i], cut[i + 1], roots, count, 0);
     if (gave_up_) return 0;
   }
   if (sign_at_double(p, 1) == 0) roots[count++] = root_at_double(1);
@@ -378,67 +444,85 @@ void RootSolver::tighten(Root& root) {
   if (low == high) root = root_at_double(root.low);
 }
 
-bool RootSolver::shares_root(const Polynomial& q, const Root& root) {
-  const Polynomial& p = *root.polynomial;
-  if (q.degree == 0) return false;
-  // Is the only common root of p and q, a fraction, this root?
-  const auto inside = [&](Wide numerator, Wide denominator) {
-    if (denominator.sign() < 0) numerator = -numerator, denominator = -denominator;
-    if (sign_at_fraction(q, numerator, denominator) != 0) return false;
-    if (sign_at_fraction(p, numerator, denominator) != 0) return false;
-    const Dyadic low = dyadic(root.low), high = dyadic(root.high);
-    if (!fits(std::max(numerator.bits(), denominator.bits()) + std::max(low.places, high.places) + 2))
-      return false;
-    return compare(numerator, denominator, low) > 0 && compare(numerator, denominator, high) < 0;
-  };
-  if (q.degree == 1) return inside(-q.c[0], q.c[1]);
-  if (!fits(p.bits() + 2 * q.bits() + 8)) return false;
-  if (p.degree == 1) return inside(-p.c[0], p.c[1]);
-  const auto [r0, r1] = remainder(p, q);
-  if (r1.sign() != 0) return inside(-r0, r1);
-  if (r0.sign() != 0) return false;
-  // q divides p.
-  return bernstein_signs(stretched(q, root.low, root.high)).variations == 1;
+// numerator / denominator, which is positive, against a bound: -1, 0 or 1.
+int RootSolver::compared(const Wide& numerator, const Wide& denominator, const Bound& bound) {
+  if (bound.is_fraction) {
+    if (!fits(std::max(numerator.bits() + bound.denominator.bits(),
+                       bound.numerator.bits() + denominator.bits()) +
+              2))
+      return 0;
+    return (numerator * bound.denominator - bound.numerator * denominator).sign();
+  }
+  const Dyadic at = dyadic(bound.at);
+  if (!fits(std::max(numerator.bits() + at.places, denominator.bits() + 64) + 2)) return 0;
+  return compare(numerator, denominator, at);
 }
 
-int RootSolver::sign_at(const Polynomial& q, Root& root) {
+int RootSolver::sign_at_bound(const Polynomial& p, const Bound& bound) {
+  return bound.is_fraction ? sign_at_fraction(p, bound.numerator, bound.denominator)
+                           : sign_at_double(p, bound.at);
+}
+
+// The sign of q at an isolated root between bounds between which, and at
+// which, q has at most one root, and that simple.
+int RootSolver::sign_at_side(const Polynomial& q, const Root& root, const Bound& low, const Bound& high) {
+  const Polynomial& p = *root.polynomial;
+  const int below = sign_at_bound(q, low), above = sign_at_bound(q, high);
+  if (below * above >= 0) return below != 0 ? below : above;
+  // q has a root there, x. What is the sign of p at x?
+  int sign = 0;
+  if (q.degree == 1) {
+    const bool flip = q.c[1].sign() < 0;
+    sign = sign_at_fraction(p, flip ? q.c[0] : -q.c[0], flip ? -q.c[1] : q.c[1]);
+  } else if (p.degree == 1) {
+    const bool flip = p.c[1].sign() < 0;
+    return sign_at_fraction(q, flip ? p.c[0] : -p.c[0], flip ? -p.c[1] : p.c[1]);
+  } else {
+    if (!fits(p.bits() + 2 * q.bits() + 8)) return 0;
+    auto [r0, r1] = remainder(p, q);
+    if (p.degree == 2 && q.c[2].sign() < 0) r0 = -r0, r1 = -r1;  // else the multiple is positive
+    sign = r1.sign();
+    if (sign == 0) {
+      sign = r0.sign();
+    } else {
+      Wide numerator = -r0, denominator = r1;
+      if (sign < 0) numerator = -numerator, denominator = -denominator;
+      // x against the root of the remainder.
+      int side = 0;
+      if (compared(numerator, denominator, low) <= 0) {
+        side = 1;
+      } else if (compared(numerator, denominator, high) >= 0) {
+        side = -1;
+      } else {
+        const int there = sign_at_fraction(q, numerator, denominator);
+        side = there == 0 ? 0 : there == below ? 1 : -1;
+      }
+      sign *= side;
+    }
+  }
+  return sign == 0 ? 0 : sign == root.sign_below ? above : below;
+}
+
+int RootSolver::sign_at(const Polynomial& q, const Root& root) {
   if (q.degree <= 0) return q.is_zero() ? 0 : q.c[0].sign();
   if (root.polynomial == nullptr) return sign_at_fraction(q, root.numerator, root.denominator);
-  if (!root.deep) {
-    const Signs signs = bernstein_signs(stretched(q, root.low, root.high));
-    if (gave_up_) return 0;
-    if (signs.variations == 0) return signs.first;
-    if (shares_root(q, root) || gave_up_) return 0;
-    tighten(root);
-    if (gave_up_) return 0;
-    if (root.polynomial == nullptr) return sign_at_fraction(q, root.numerator, root.denominator);
-    // Neighbouring doubles: one unit apart at the places of their spacing.
-    const Dyadic low = dyadic(root.low), high = dyadic(root.high);
-    root.places = std::max(low.places, high.places);
-    root.numerator = Wide(low.numerator) << root.places - low.places;
-    root.deep = true;
-  } else if (shares_root(q, root) || gave_up_) {
-    return 0;
-  }
-  const Polynomial& p = *root.polynomial;
-  for (int depth = 0; depth < kDeepest; ++depth) {
-    if (!fits(std::max(p.bits(), q.bits()) + 3 * (root.places + 2) + 16)) return 0;
-    const Signs signs = bernstein_signs(stretched_by(q, root.numerator, Wide(1), root.places));
-    if (signs.variations == 0) return signs.first;
-    root.numerator = root.numerator << 1;
-    ++root.places;
-    const Wide middle = root.numerator + Wide(1);
-    const int sign = stretched_by(p, middle, Wide(1), root.places).c[0].sign();
-    if (sign == 0) {
-      root.polynomial = nullptr;
-      root.numerator = middle;
-      root.denominator = Wide(1) << root.places;
-      return sign_at_fraction(q, root.numerator, root.denominator);
+  const Signs signs = bernstein_signs(stretched(q, root.low, root.high));
+  if (gave_up_) return 0;
+  if (signs.variations == 0) return signs.first;
+
+  Bound low{root.low}, high{root.high};
+  if (root.cut != 0) (root.cut > 0 ? low : high) = {0, true, root.numerator, root.denominator};
+  if (q.degree == 2 && (signs.variations == 2 || signs.zero_end)) {
+    Bound vertex{0, true, -q.c[1], q.c[2] << 1};
+    Wide &n = vertex.numerator, &d = vertex.denominator;
+    if (d.sign() < 0) n = -n, d = -d;
+    if (compared(n, d, low) > 0 && compared(n, d, high) < 0 && !gave_up_) {
+      const int sign = sign_at_fraction(*root.polynomial, n, d);
+      if (sign == 0) return gave_up_ ? 0 : sign_at_fraction(q, n, d);
+      (sign == root.sign_below ? low : high) = vertex;
     }
-    if (sign == root.sign_below) root.numerator = middle;
   }
-  gave_up_ = true;
-  return 0;
+  return gave_up_ ? 0 : sign_at_side(q, root, low, high);
 }
 
 }  // namespace cscd::integer

@@ -23,15 +23,27 @@ struct Root {
   // The isolated root of *polynomial, which has this sign just above `low`; null for a fraction.
   const Polynomial* polynomial = nullptr;
   int sign_below = 0;
-  // For a fraction numerator / denominator, denominator > 0. For an isolated root, once `deep` is set, the
-  // root lies strictly between numerator / 2^places and (numerator + 1) / 2^places.
+  // Numerator / denominator, denominator > 0: a fraction itself; or for an isolated root, where `cut` is not
+  // 0, what it is certainly above (1) or below (-1), between neighbouring doubles that enclose two.
   Wide numerator, denominator;
-  int places = 0;
-  bool deep = false;
+  int cut = 0;
 };
 
-// What is asked of the roots. Numbers too long for Wide, and roots closer to each other than neighbouring
-// doubles, are given up: answers after that mean nothing.
+// Where a polynomial of degree 2 or 3 turns between two roots that are close, or would if it had them.
+struct Turn {
+  int discriminant = 0;         // its sign: positive where all roots are real and different
+  Wide numerator, denominator;  // the double root where the discriminant is zero; near a pair that is close
+};
+
+// What a root is above or below: a double, or a fraction.
+struct Bound {
+  double at = 0;
+  bool is_fraction = false;
+  Wide numerator = {}, denominator = {};
+};
+
+// What is asked of the roots. Numbers too long for Wide, and three roots as near to each other as
+// neighbouring doubles, are given up: answers after that mean nothing.
 class RootSolver {
  public:
   bool gave_up() const { return gave_up_; }
@@ -53,16 +65,23 @@ class RootSolver {
   // Makes `low` the largest double that is not above the root.
   void tighten(Root& root);
   // The exact sign of q, of degree 2 at most, at the root. Quicker after `tighten`.
-  int sign_at(const Polynomial& q, Root& root);
+  int sign_at(const Polynomial& q, const Root& root);
 
  private:
   int sign_at_double(const Polynomial& p, double t);
   int sign_at_fraction(const Polynomial& p, const Wide& numerator, const Wide& denominator);
   Polynomial stretched(const Polynomial& p, double low, double high);
   bool fits(int bits);
-  bool find_fractions(const Polynomial& p, Root* roots, int& count);
-  void search(const Polynomial& p, double low, double high, Root* roots, int& count, int depth);
-  bool shares_root(const Polynomial& q, const Root& root);
+  void add_fraction(Wide numerator, Wide denominator, Root* roots, int& count);
+  void find_fractions(const Polynomial& p, const Turn& turn, Root* roots, int& count);
+  void search(const Polynomial& p, const Turn& turn, double low, double high, Root* roots, int& count,
+              int depth);
+  void cut_in_two(const Polynomial& p, const Turn& turn, double low, double high, int sign_below, Root* roots,
+                  int& count);
+  Turn turn_of(const Polynomial& p);
+  int compared(const Wide& numerator, const Wide& denominator, const Bound& bound);
+  int sign_at_bound(const Polynomial& p, const Bound& bound);
+  int sign_at_side(const Polynomial& q, const Root& root, const Bound& low, const Bound& high);
 
   bool gave_up_ = false;
 };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <random>
+#include <string>
 
 #include "core/elementary/algebraic.h"
 
@@ -99,7 +100,7 @@ TEST(IntegerRoots, AgreeWithTheReferees) {
 // A hair's breadth from a common root: resolved only far below the spacing of doubles.
 TEST(IntegerRoots, TellsRootsApartFarBelowTheSpacingOfDoubles) {
   // p = 3 t - 1; q = (3 N) t - (N + e) has its root at 1/3 + e / (3 N).
-  for (const int places : {60, 120, 250}) {
+  for (const int places : {60, 250, 1000}) {
     for (const int e : {-1, 0, 1}) {
       Polynomial p, q;
       p.c[0] = Wide(-1);
@@ -117,11 +118,60 @@ TEST(IntegerRoots, TellsRootsApartFarBelowTheSpacingOfDoubles) {
   }
 }
 
+Wide wide(const mpz_class& value) {
+  Wide result;
+  const std::string digits = mpz_class(abs(value)).get_str(2);
+  for (const char digit : digits) result = (result << 1) + Wide(digit - '0');
+  return sgn(value) < 0 ? -result : result;
+}
+
+// Two roots 2^(-places/2) apart, or none, by as little: between the same two doubles. And signs of
+// polynomials that turn there too.
+TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
+  const auto near_third = [](int degree, int places, int off) {  // a double root at 1/3, or off it
+    const mpz_class one = mpz_class(1) << static_cast<unsigned>(places);
+    Both p;
+    mpz_class c[4] = {one, -6 * one, 9 * one, 0};  // (3 t - 1)^2
+    if (degree == 1) c[0] = -one, c[1] = 3 * one, c[2] = 0;
+    if (degree == 3) c[3] = 9 * one, c[2] = 12 * one, c[1] = -11 * one, c[0] = 2 * one;  // times t + 2
+    c[0] += off;
+    for (int i = 0; i < 4; ++i) p.ours.c[i] = wide(c[i]);
+    p.ours.trim();
+    p.referee = exact::Polynomial(c[0], c[1], c[2], c[3]);
+    return p;
+  };
+  int pairs = 0;
+  for (const int places : {110, 200, 340})
+    for (const int degree : {2, 3})
+      for (const int off : {-2, -1, 1}) {
+        const Both p = near_third(degree, places, off);
+        auto expected = exact::roots_in_unit_interval(p.referee);
+        RootSolver solver;
+        Root roots[3];
+        ASSERT_EQ(solver.find_roots(p.ours, roots), static_cast<int>(expected.size()));
+        ASSERT_FALSE(solver.gave_up());
+        pairs += expected.size() == 2;
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+          EXPECT_EQ(roots[k].low, expected[k].enclosure().lo);
+          for (const int q_places : {80, 110, 160, 200})
+            for (const int q_degree : {1, 2})
+              for (const int q_off : {-3, -1, 0, 1}) {
+                const Both q = near_third(q_degree, q_places, q_off);
+                EXPECT_EQ(solver.sign_at(q.ours, roots[k]), expected[k].sign_of(q.referee))
+                    << places << " " << degree << " " << off << ", root " << k << ": " << q_places << " "
+                    << q_degree << " " << q_off;
+              }
+        }
+        EXPECT_FALSE(solver.gave_up());
+      }
+  EXPECT_EQ(pairs, 12);
+}
+
 TEST(IntegerRoots, GivesUpOnNumbersThatDoNotFit) {
   Polynomial p;
   p.c[0] = Wide(-1);
-  p.c[1] = Wide(1) << 3900;
-  p.c[2] = Wide(3) << 3900;
+  p.c[1] = Wide(1) << Wide::kBits - 196;
+  p.c[2] = Wide(3) << Wide::kBits - 196;
   p.trim();
   RootSolver solver;
   Root roots[3];

@@ -5,14 +5,15 @@
 #include <cmath>
 #include <cstdint>
 
-// Integers of up to 4096 bits that live where they are declared: no allocation, schoolbook products. For the
-// integers of one elementary query, which have one to forty words; there this is faster than GMP, whose
-// numbers each own a block of memory. The caller bounds the bits beforehand (Wide::kBits).
+// Integers of up to 18,432 bits that live where they are declared: no allocation, schoolbook products. For
+// the integers of one elementary query, which have one to forty words, and up to 280 where some coordinates
+// are subnormal; there this is faster than GMP, whose numbers each own a block of memory. Words that are not
+// in use are not touched. The caller bounds the bits beforehand (Wide::kBits).
 namespace cscd {
 
 class Wide {
  public:
-  static constexpr int kWords = 64;
+  static constexpr int kWords = 288;
   static constexpr int kBits = 64 * kWords;
 
   // NOLINTNEXTLINE: words beyond the size are never read, and clearing them would cost more than most sums.
@@ -46,8 +47,9 @@ class Wide {
     assert(a.size_ + b.size_ <= kWords);
     result.negative_ = a.negative_ != b.negative_;
     result.word_[longer.size_] = multiply_word(longer, shorter.word_[0], result.word_);
-    for (int i = 1; i < shorter.size_; ++i)
-      result.word_[longer.size_ + i] = add_product_of_word(longer, shorter.word_[i], result.word_ + i);
+    for (int i = 1; i < shorter.size_; ++i)  // of one large and one tiny part most words are zero
+      result.word_[longer.size_ + i] =
+          shorter.word_[i] == 0 ? 0 : add_product_of_word(longer, shorter.word_[i], result.word_ + i);
     result.size_ = a.size_ + b.size_;
     result.size_ -= result.word_[result.size_ - 1] == 0;
     return result;

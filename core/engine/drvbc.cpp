@@ -29,7 +29,7 @@ class DrvbcCuller : public Culler {
               const DrvbcOptions& options)
       : clusters_(std::move(clusters)),
         hierarchy_(setup.mesh, setup.reference, clusters_),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }

@@ -21,6 +21,7 @@ struct DrvbcOptions {
   bool refinement = true;           // of the atomic clusters by orientation (section 4)
   bool cache = true;                // of triangles that were not positive (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
+  radial::SignTest orientation_sign = radial::SignTest::certain;
   PairFilter filter = PairFilter::certain_sign;
 };
 

@@ -71,24 +71,36 @@ inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
   return normal;
 }
 
-// +1 or -1 where (a x b) . c certainly has that sign for every t in [0, 1], else 0. The components of c may
-// be off by `c_slack`.
-inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
+// Eight BernsteinCubics.
+struct BernsteinLanes {
+  Lane8 c[4];
+  Lane8 error;
+};
+
+// (a x b) . c. The components of c may be off by `c_slack`.
+inline BernsteinLanes triple_products(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
   const auto dot = [&](int n, int end) {
     return normal.control[n][0] * c.at[end][0] + normal.control[n][1] * c.at[end][1] +
            normal.control[n][2] * c.at[end][2];
   };
-  const Lane8 c0 = dot(0, 0), c1 = (dot(1, 0) + dot(0, 1)) / 3, c2 = (dot(1, 1) + dot(2, 0)) / 3,
-              c3 = dot(2, 1);
   const Lane8 volume = normal.area * c.largest_component();
   const Sign8 known = (normal.area >= kTinyProduct) & (normal.area <= kHugeProduct) &
                       (volume >= kTinyProduct) & (volume <= kHugeProduct);
   const Lane8 unknown = Lane8{} + std::numeric_limits<double>::infinity();
-  const Lane8 error = known ? kTripleProductError * volume + 7 * normal.area * c_slack : unknown;
+  return {{dot(0, 0), (dot(1, 0) + dot(0, 1)) / 3, (dot(1, 1) + dot(2, 0)) / 3, dot(2, 1)},
+          known ? kTripleProductError * volume + 7 * normal.area * c_slack : unknown};
+}
+
+// +1 or -1 where the cubic certainly has that sign for every t in [0, 1], else 0.
+inline Sign8 certain_sign(const BernsteinLanes& f) {
+  const Lane8 error = f.error;
   // A true comparison is -1 in its lane. Coefficient by coefficient, because a minimum may forget a NaN.
-  const Sign8 positive = (c0 > error) & (c1 > error) & (c2 > error) & (c3 > error);
-  const Sign8 negative = (c0 < -error) & (c1 < -error) & (c2 < -error) & (c3 < -error);
+  const Sign8 positive = (f.c[0] > error) & (f.c[1] > error) & (f.c[2] > error) & (f.c[3] > error);
+  const Sign8 negative = (f.c[0] < -error) & (f.c[1] < -error) & (f.c[2] < -error) & (f.c[3] < -error);
   return negative - positive;
+}
+inline Sign8 certain_signs(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
+  return certain_sign(triple_products(normal, c, c_slack));
 }
 
 }  // namespace cscd

@@ -26,10 +26,29 @@ MovingVector between(const MovingPoint& from, const MovingPoint& to) {
   return {to.start - from.start, to.end - from.end};
 }
 
+// One cubic, or eight. A half sum is exact but for one rounding, and a control point of a half is up to three
+// of them deep: 3 u of the coefficients, and 4 also pays for the bound itself.
+template <class Cubic>
+auto signs_of(Cubic f, SignTest test) {
+  if (test == SignTest::plain) f.error -= f.error;  // NaN, above and below nothing, where nothing is known
+  const auto whole = certain_sign(f);
+  if (test != SignTest::halved) return whole;
+  const auto size = [](auto x) { return x < 0 ? -x : x; };
+  const auto error =
+      f.error + 4 * kUnitRoundoff * (size(f.c[0]) + size(f.c[1]) + size(f.c[2]) + size(f.c[3]));
+  const auto a = 0.5 * (f.c[0] + f.c[1]), b = 0.5 * (f.c[1] + f.c[2]), c = 0.5 * (f.c[2] + f.c[3]);
+  const auto d = 0.5 * (a + b), e = 0.5 * (b + c), middle = 0.5 * (d + e);
+  const auto first = certain_sign(Cubic{{f.c[0], a, d, middle}, error}),
+             last = certain_sign(Cubic{{middle, e, c, f.c[3]}, error});
+  const decltype(whole + 0) none{};
+  return whole != 0 ? whole : first == last ? first : none;
+}
+
 // Towards the moving point q, itself known up to `slack` in each coordinate.
-Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, double slack) {
-  return from_sign(certain_sign(triple_product(between(corner[0], corner[1]), between(corner[0], corner[2]),
-                                               between(q, corner[0]), slack)));
+Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, double slack, SignTest sign) {
+  return from_sign(signs_of(triple_product(between(corner[0], corner[1]), between(corner[0], corner[2]),
+                                           between(q, corner[0]), slack),
+                            sign));
 }
 
 // What a triangle needs to know of a moving segment, whichever triangle it is.
@@ -88,11 +107,12 @@ std::span<const Corner> looked_at(const Corner (&corner)[3], SegmentTest test) {
   return std::span<const Corner>(corner).first(test == SegmentTest::all_corners ? 3 : 1);
 }
 
-Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment& segment, SegmentTest test) {
+Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment& segment, SegmentTest test,
+                            SignTest sign) {
   const Range range = viewing_range(looked_at(corner, test), segment);
-  const Orientation first = towards_point(corner, segment.at(range.low), segment.slack);
+  const Orientation first = towards_point(corner, segment.at(range.low), segment.slack, sign);
   if (first == Orientation::uncertain || range.low == range.high) return first;
-  const Orientation last = towards_point(corner, segment.at(range.high), segment.slack);
+  const Orientation last = towards_point(corner, segment.at(range.high), segment.slack, sign);
   return last == first ? first : Orientation::uncertain;
 }
 
@@ -146,10 +166,10 @@ VectorLanes viewing_positions(const MovingSegment& segment, Lane8 u) {
 }
 
 Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corner)[3],
-                            const MovingSegment& segment, SegmentTest test) {
+                            const MovingSegment& segment, SegmentTest test, SignTest sign) {
   const RangeLanes range = viewing_range(looked_at(corner, test), segment);
   const auto signs = [&](Lane8 u) {
-    return certain_signs(normal, corner[0] - viewing_positions(segment, u), segment.slack);
+    return signs_of(triple_products(normal, corner[0] - viewing_positions(segment, u), segment.slack), sign);
   };
   const Sign8 first = signs(range.low), last = signs(range.high);
   return first == last ? first : Sign8{};
@@ -157,14 +177,15 @@ Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corne
 
 }  // namespace
 
-Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test) {
-  if (observer.is_segment) return towards_segment(corner, MovingSegment(observer), test);
-  return towards_point(corner, observer.head, 0);
+Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test,
+                        SignTest sign) {
+  if (observer.is_segment) return towards_segment(corner, MovingSegment(observer), test, sign);
+  return towards_point(corner, observer.head, 0, sign);
 }
 
 OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                                   SegmentTest test)
-    : test_(test) {
+                                   SegmentTest test, SignTest sign)
+    : test_(test), sign_(sign) {
   for (const std::vector<TriangleId>& group : groups) {
     first_block_.push_back(lanes_.size());
     for (std::size_t first = 0; first < group.size(); first += kLanes) {
@@ -197,11 +218,13 @@ void OrientationTable::with_signs(const Observer& observer, Use use) const {
     use([&](std::size_t b) {
       const auto& [first, second, third] = lanes_[b].corner;
       const VectorLanes corner[3] = {blocks_[b].corner, gather(*motion_, second), gather(*motion_, third)};
-      return signs_towards_segment(blocks_[b].normal, corner, segment, test_);
+      return signs_towards_segment(blocks_[b].normal, corner, segment, test_, sign_);
     });
   } else {
     const VectorLanes viewed_from = in_all_lanes(observer.head.start, observer.head.end);
-    use([&](std::size_t b) { return certain_signs(blocks_[b].normal, blocks_[b].corner - viewed_from); });
+    use([&](std::size_t b) {
+      return signs_of(triple_products(blocks_[b].normal, blocks_[b].corner - viewed_from), sign_);
+    });
   }
 }
 

@@ -33,9 +33,14 @@ struct Observer {
 // nothing (trap 2); here to count what that costs and loses.
 enum class SegmentTest { all_corners, first_corner };
 
+// How the sign of the cubic behind a class is told. The others are there to measure what certainty costs and
+// what it leaves: a plain sign, without its error bound, proves nothing (trap 4); `halved` cuts [0, 1] once
+// where the whole is not certain.
+enum class SignTest { certain, plain, halved };
+
 // One triangle in double precision, straight from the vertices: the scalar twin of OrientationTable.
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer,
-                        SegmentTest test = SegmentTest::all_corners);
+                        SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
 
 // What the orientation of every triangle needs, gathered once an interval: control vectors of the normal, one
 // corner, and a bound of the normal's rounding. Triangles stand grouped by cluster in blocks of eight lanes,
@@ -44,7 +49,7 @@ class OrientationTable {
  public:
   // `groups`: the triangles of each cluster.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                   SegmentTest test = SegmentTest::all_corners);
+                   SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
 
   // The vertices of `motion` must stay in place until the last classification of the interval.
   void update(const Motion& motion);
@@ -67,6 +72,7 @@ class OrientationTable {
   void with_signs(const Observer& observer, Use use) const;
 
   SegmentTest test_;
+  SignTest sign_;
   std::vector<std::size_t> first_block_;  // of each group, one more at the end
   std::vector<TriangleLanes> lanes_;      // of each block; a short one repeats its last triangle
   std::vector<Block> blocks_;

@@ -99,6 +99,27 @@ TEST(PointObserver, CoefficientsOfOneSignWellAboveTheBoundAreCertain) {
   EXPECT_GT(certain, 1000);
 }
 
+// Mutation: in signs_of, the last half without its first control point.
+TEST(PointObserver, HalvesProveMoreAndNothingWrong) {
+  Dice dice(13);
+  int by_halves = 0;
+  for (int i = 0; i < 12000; ++i) {
+    const Place& place = kPlaces[i % 6];
+    const Corners corner = {place(dice.moving(1, 1)), place(dice.moving(1, 1)), place(dice.moving(1, 1))};
+    const MovingPoint q = i % 2 ? place(dice.moving(1, 1)) : near_plane(corner, dice);
+    const Observer observer = Observer::point(q);
+    const Orientation whole = orientation(corner, observer),
+                      halves = orientation(corner, observer, SegmentTest::all_corners, SignTest::halved);
+    if (whole != Orientation::uncertain) {
+      EXPECT_EQ(halves, whole);
+    } else if (halves != Orientation::uncertain) {
+      ++by_halves;
+      EXPECT_EQ(halves, test::exact_class(corner, q)) << "case " << i;
+    }
+  }
+  EXPECT_GT(by_halves, 100);
+}
+
 // Mutation: kTripleProductError set to zero.
 TEST(Orientation, Trap04SignsBeneathTheErrorBoundAreUncertain) {
   Dice dice(3);
@@ -307,9 +328,9 @@ struct Soup {
 
 // Expects the table and its scalar twin to say the same about every triangle. Returns how many have a sign.
 int expect_twins(const Soup& soup, const std::function<Observer(std::size_t group)>& observer_of,
-                 SegmentTest test = SegmentTest::all_corners) {
+                 SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain) {
   const TriangleMesh mesh(soup.triangles, soup.start.size());
-  OrientationTable table(mesh, soup.groups, test);
+  OrientationTable table(mesh, soup.groups, test, sign);
   const Motion motion(soup.start, soup.end);
   table.update(motion);
   int differences = 0, certain = 0;
@@ -319,7 +340,7 @@ int expect_twins(const Soup& soup, const std::function<Observer(std::size_t grou
     table.classify(g, observer, classes);
     for (std::size_t member = 0; member < classes.size(); ++member) {
       const Triangle& c = mesh.corners(soup.groups[g][member]);
-      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test);
+      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test, sign);
       differences += classes[member] != twin;
       certain += twin != Orientation::uncertain;
       EXPECT_EQ(table.classify(g, member, observer), twin);
@@ -344,7 +365,8 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
           return Observer::segment(place(head),
                                    place({head.start + dice.in_box(length), head.end + dice.in_box(length)}));
         };
-        expect_twins(soup, observer, test);
+        for (const SignTest sign : {SignTest::certain, SignTest::plain, SignTest::halved})
+          expect_twins(soup, observer, test, sign);
       }
   }
 }

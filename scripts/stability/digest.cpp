@@ -1,0 +1,76 @@
+// Prints a digest of what every row of the catalogue of elementary tests answers to files of queries, bit by bit,
+// and of the contacts of meshes made of the same points: scripts/stability/check compares compilers by it.
+//
+//   digest vf.csv ee.csv ...      the kind of a query is in the name of its file
+#include <bit>
+#include <cstdio>
+#include <array>
+#include <memory>
+#include <string>
+
+#include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
+#include "core/elementary/query_file.h"
+#include "core/hierarchy/bounds.h"
+
+using namespace cscd;
+
+namespace {
+
+struct Fnv {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  void add(std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte, word >>= 8) hash = (hash ^ (word & 0xff)) * 0x100000001b3u;
+  }
+};
+
+void ask_all(const std::string& name, const std::vector<Query>& queries, bool vertex_face) {
+  for (const ElementaryTest& test : elementary_tests()) {
+    Fnv sum;
+    int contacts = 0;
+    for (const Query& query : queries) {
+      const Answer answer =
+          vertex_face ? test.vertex_face(as_vertex_face(query)) : test.edge_edge(as_edge_edge(query));
+      sum.add(static_cast<std::uint64_t>(answer.verdict));
+      if (answer.verdict != Verdict::apart) sum.add(std::bit_cast<std::uint64_t>(answer.time + 0.0));
+      contacts += answer.verdict == Verdict::contact;
+    }
+    std::printf("%s %s %d %016llx\n", name.c_str(), std::string(test.name).c_str(), contacts,
+                static_cast<unsigned long long>(sum.hash));
+  }
+}
+
+// A tetrahedron of every query's four points.
+void detect(const std::string& name, const std::vector<Query>& queries) {
+  std::vector<Vec3> start, end;
+  std::vector<Triangle> triangles;
+  for (const Query& query : queries) {
+    const auto first = static_cast<std::int32_t>(start.size());
+    for (const MovingPoint& p : query.points) start.push_back(p.start), end.push_back(p.end);
+    const auto corner = [first](int i) { return VertexId{first + i}; };
+    for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}, std::array{0, 3, 1}, std::array{1, 3, 2}})
+      triangles.push_back({corner(a), corner(b), corner(c)});
+  }
+  const TriangleMesh mesh(triangles, start.size());
+  const Setup setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
+  PairOptions options;
+  options.relative_boxes = true;
+  const auto detector =
+      compose(std::make_unique<PlainCuller<Kdop16>>(setup), mesh, setup.elementary, std::move(options));
+  ContactSet contacts;
+  const Report report = detector->detect(Motion(start, end), nullptr, contacts);
+  contacts.sort();
+  std::printf("%s mesh %zu contacts of %llu pairs %s\n", name.c_str(), contacts.contacts.size(),
+              static_cast<unsigned long long>(report.pairs.elementary_tests), digest(contacts).c_str());
+}
+
+}  // namespace
+
+int main(int count, char** files) {
+  for (int i = 1; i < count; ++i) {
+    const std::string path = files[i], name = path.substr(path.find_last_of('/') + 1);
+    const std::vector<Query> queries = read_queries(path);
+    ask_all(name, queries, name.find("vf") != std::string::npos);
+    detect(name, queries);
+  }
+}
