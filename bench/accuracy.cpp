@@ -128,8 +128,8 @@ class Study {
         published_ += query.truth.has_value();
         contradicted_ += query.truth && *query.truth != truths.back().contact.has_value();
       }
-      // The rows of the sweep are many and slow: they see the first queries alone, of what has no parameter of
-      // its own.
+      // The rows of the sweep are many and slow: they see the first queries alone, of what has no parameter
+      // of its own.
       const bool all = !workload.hardness && queries < options_.sweep_queries;
       const std::size_t rows = all ? tests_.size() : whole_;
       const std::size_t seen = all ? std::min(block.size(), options_.sweep_queries - queries) : block.size();
@@ -311,8 +311,9 @@ void add_accuracy(CLI::App& app) {
       ->add_option("--elementary", options->elementary,
                    "tests with commas between them, or all; NAME@TOLERANCE[:STEPS] chooses parameters")
       ->capture_default_str();
-  command->add_option("--sweep", options->sweep,
-                      "further tests that see the first queries of every workload alone, but for the random families");
+  command->add_option(
+      "--sweep", options->sweep,
+      "further tests that see the first queries of every workload alone, but for the random families");
   command->add_option("--sweep-queries", options->sweep_queries, "how many those are");
   command->add_option("--scene-queries", options->scene_queries, "at most, of each scene and kind");
   command->add_option("--open-queries", options->open_queries, "at most, of each folder and kind");
@@ -340,7 +341,7 @@ void add_accuracy(CLI::App& app) {
       ->check(CLI::Range(1, 1000));
   command->add_option("--seed", options->seed, "of the queries and of the order of the tests")
       ->capture_default_str();
-  command->add_flag("--smoke", options->smoke, "seconds instead of an hour; times mean nothing");
+  command->add_flag("--smoke", options->smoke, "seconds instead of minutes; times mean nothing");
   command->add_option("--json", options->output, "where the record goes");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->callback([options] { run_accuracy(*options); });

@@ -33,6 +33,8 @@ TEST(Statistics, SamplesWithoutSpreadHaveAnIntervalWithoutWidth) {
   EXPECT_EQ(ratio.value, 3);
   EXPECT_EQ(ratio.low, 3);
   EXPECT_EQ(ratio.high, 3);
+  // All over all, where medians would see neither of the large blocks: (1 + 1 + 10) / (2 + 2 + 2).
+  EXPECT_EQ(bootstrap_ratio_of_means(std::vector{1.0, 1.0, 10.0}, std::vector{2.0, 2.0, 2.0}).value, 2);
 }
 
 // With three samples, all resamples can be listed: the median is the smallest with probability 7/27, which
@@ -80,6 +82,9 @@ TEST(Statistics, DriftCommonToAPairCancels) {
   const Estimate ratio = bootstrap_ratio_of_medians(a, b);
   EXPECT_DOUBLE_EQ(ratio.low, 4);
   EXPECT_DOUBLE_EQ(ratio.high, 4);
+  const Estimate of_means = bootstrap_ratio_of_means(a, b);
+  EXPECT_DOUBLE_EQ(of_means.low, 4);
+  EXPECT_DOUBLE_EQ(of_means.high, 4);
   EXPECT_LT(bootstrap_median(a).low, bootstrap_median(a).high);
 }
 

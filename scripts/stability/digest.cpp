@@ -1,10 +1,11 @@
-// Prints a digest of what every row of the catalogue of elementary tests answers to files of queries, bit by bit,
-// and of the contacts of meshes made of the same points: scripts/stability/check compares compilers by it.
+// Prints a digest of what every row of the catalogue of elementary tests answers to files of queries, bit by
+// bit, and of the contacts of meshes made of the same points: scripts/stability/check compares compilers by
+// it.
 //
 //   digest vf.csv ee.csv ...      the kind of a query is in the name of its file
+#include <array>
 #include <bit>
 #include <cstdio>
-#include <array>
 #include <memory>
 #include <string>
 
@@ -48,7 +49,8 @@ void detect(const std::string& name, const std::vector<Query>& queries) {
     const auto first = static_cast<std::int32_t>(start.size());
     for (const MovingPoint& p : query.points) start.push_back(p.start), end.push_back(p.end);
     const auto corner = [first](int i) { return VertexId{first + i}; };
-    for (const auto& [a, b, c] : {std::array{0, 1, 2}, std::array{0, 2, 3}, std::array{0, 3, 1}, std::array{1, 3, 2}})
+    for (const auto& [a, b, c] :
+         {std::array{0, 1, 2}, std::array{0, 2, 3}, std::array{0, 3, 1}, std::array{1, 3, 2}})
       triangles.push_back({corner(a), corner(b), corner(c)});
   }
   const TriangleMesh mesh(triangles, start.size());
