@@ -44,3 +44,21 @@ build() {
     -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_C_COMPILER="$cc" >/dev/null
   ninja -C "$root/$folder" "$@"
 }
+
+# new_results SUFFIX: makes a folder results/DATE-MACHINE-COMMIT[-SUFFIX]... below the working folder, which must be the
+# repository's root. `out` is its name; until `keep_results` it is called $out.part, and goes if the script ends before.
+new_results() {
+  local machine commit folder i
+  machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr '[:upper:]' '[:lower:]' |
+            sed -E 's/\((r|tm)\)//g; s/[^a-z0-9]+/-/g; s/^-|-$//g' | cut -c 1-40)
+  commit=$(git rev-parse --short=10 HEAD 2>/dev/null || echo no-commit)
+  folder=results/$(date -u +%F)-${machine:-unknown}-$(nproc)core-$commit${1:+-$1}
+  out=$folder
+  for ((i = 2; ; i++)); do  # what stands there is never overwritten
+    [ -e "$out" ] || break
+    out=$folder-$i
+  done
+  mkdir -p results "$out.part"
+  trap 'rm -rf "$root/$out.part"' EXIT
+}
+keep_results() { mv "$out.part" "$out"; }

@@ -17,7 +17,7 @@
 #include "core/radial/segmentation.h"
 
 // Radial view based culling after the paper (drvbc.cpp), taken further: one tree over patches of sixteen
-// triangles; two covers whose seams lie inside each other's clusters instead of mega clusters
+// triangles; covers whose seams lie inside one another's clusters instead of mega clusters
 // (certificates.h); bounds of both ends of the interval instead of whole paths (patch_lanes.h); stars of
 // vertices for the neighbours that are left (stars.h). What a "no" proves stands there.
 //
