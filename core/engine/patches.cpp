@@ -5,11 +5,10 @@
 #include <map>
 #include <numeric>
 
+#include "core/engine/corner_cover.h"
+
 namespace cscd::fast {
 namespace {
-
-constexpr std::size_t kCutting = 2;       // covers by which patches are cut
-constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cutting covers miss
 
 // Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
 // inside it, in each of those covers.
@@ -231,7 +230,8 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
   for (std::size_t p = 0; p < tree.patches.size(); ++p)
     for (std::size_t l = 0; l < kLanes16; ++l)
       if (tree.patches[p].lanes >> l & 1)
-        lane_of[+tree.patches[p].triangle[l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
+        lane_of[+tree.patches[p].triangle[l]] = {static_cast<std::uint32_t>(p),
+                                                 static_cast<std::uint32_t>(l)};
   std::vector<TriangleId> around;
   tree.ring_offset.push_back(0);
   for (const Triangle& corners : mesh.triangles()) {
@@ -250,58 +250,10 @@ void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
     for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
       for (std::size_t k = 0; k < 3; ++k)
         for (const TriangleId t : mesh.triangles_at(mesh.corners(patch.triangle[l])[k]))
-          touching[lane_of[+t].patch][l][k] |= static_cast<Mask16>(1U << lane_of[+t].lane);
+          touching[static_cast<std::int32_t>(lane_of[+t].patch)][l][k] |=
+              static_cast<Mask16>(1U << lane_of[+t].lane);
     for (const auto& [other, sharing] : touching) tree.adjacent.push_back({other, sharing});
     tree.adjacent_offset.push_back(static_cast<std::int32_t>(tree.adjacent.size()));
-  }
-}
-
-// The last cover: patches that lie inside no cluster of the others, those that touch each other together, and
-// rings of patches about them.
-void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover) {
-  const auto missed = [](const Patch& patch) {
-    return std::all_of(patch.inside.begin(), patch.inside.end(), [](Mask16 lanes) { return lanes == 0; });
-  };
-  const auto for_each_touching = [&](std::size_t p, const auto& take) {
-    for (auto i = static_cast<std::size_t>(tree.adjacent_offset[p]);
-         i < static_cast<std::size_t>(tree.adjacent_offset[p + 1]); ++i)
-      take(static_cast<std::size_t>(tree.adjacent[i].patch));
-  };
-  std::vector<std::int32_t> cluster(tree.patches.size(), kNone), ring(tree.patches.size(), 0);
-  std::vector<std::size_t> queue;
-  std::int32_t count = 0;
-  for (std::size_t seed = 0; seed < cluster.size(); ++seed) {
-    if (cluster[seed] != kNone || !missed(tree.patches[seed])) continue;
-    std::size_t next = queue.size();
-    cluster[seed] = count;
-    queue.push_back(seed);
-    for (; next < queue.size(); ++next)
-      for_each_touching(queue[next], [&](std::size_t other) {
-        if (cluster[other] != kNone || !missed(tree.patches[other])) return;
-        cluster[other] = count;
-        queue.push_back(other);
-      });
-    ++count;
-  }
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    const std::size_t p = queue[next];
-    if (ring[p] == kCornerRings) continue;
-    for_each_touching(p, [&](std::size_t other) {
-      if (cluster[other] != kNone) return;
-      cluster[other] = cluster[p];
-      ring[other] = ring[p] + 1;
-      queue.push_back(other);
-    });
-  }
-  for (std::size_t p = 0; p < cluster.size(); ++p)
-    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
-      cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
-  place_observers(mesh, reference, cover);
-  const std::vector<bool> all = inside(mesh, cover.cluster_of);
-  for (Patch& patch : tree.patches) {
-    patch.cluster[kCutting] = cover.cluster_of[+patch.triangle[0]];
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      patch.inside[kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
   }
 }
 

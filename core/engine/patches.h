@@ -23,10 +23,10 @@ struct Patch {
   alignas(64) std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
 };
 
-// A triangle's place among the patches.
+// A triangle's place among the patches, in one word, as every triangle keeps those of a dozen others.
 struct Lane {
-  std::int32_t patch;
-  std::int32_t lane;
+  std::uint32_t patch : 28;
+  std::uint32_t lane : 4;
 };
 
 // Which triangles of another patch share each corner of each triangle of this one.
@@ -69,6 +69,8 @@ struct PatchTree {
     return std::span(ring).subspan(first, static_cast<std::size_t>(ring_offset[+triangle + 1]) - first);
   }
 };
+
+inline constexpr std::size_t kCutting = 2;  // covers by which patches are cut
 
 // Cuts by the first two covers and makes the third.
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers);

@@ -1,0 +1,59 @@
+#include "core/engine/corner_cover.h"
+
+#include <algorithm>
+
+namespace cscd::fast {
+namespace {
+
+constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cutting covers miss
+
+}  // namespace
+
+void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover) {
+  const auto missed = [](const Patch& patch) {
+    return std::all_of(patch.inside.begin(), patch.inside.end(), [](Mask16 lanes) { return lanes == 0; });
+  };
+  const auto for_each_touching = [&](std::size_t p, const auto& take) {
+    for (auto i = static_cast<std::size_t>(tree.adjacent_offset[p]);
+         i < static_cast<std::size_t>(tree.adjacent_offset[p + 1]); ++i)
+      take(static_cast<std::size_t>(tree.adjacent[i].patch));
+  };
+  std::vector<std::int32_t> cluster(tree.patches.size(), kNone), ring(tree.patches.size(), 0);
+  std::vector<std::size_t> queue;
+  std::int32_t count = 0;
+  for (std::size_t seed = 0; seed < cluster.size(); ++seed) {
+    if (cluster[seed] != kNone || !missed(tree.patches[seed])) continue;
+    std::size_t next = queue.size();
+    cluster[seed] = count;
+    queue.push_back(seed);
+    for (; next < queue.size(); ++next)
+      for_each_touching(queue[next], [&](std::size_t other) {
+        if (cluster[other] != kNone || !missed(tree.patches[other])) return;
+        cluster[other] = count;
+        queue.push_back(other);
+      });
+    ++count;
+  }
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const std::size_t p = queue[next];
+    if (ring[p] == kCornerRings) continue;
+    for_each_touching(p, [&](std::size_t other) {
+      if (cluster[other] != kNone) return;
+      cluster[other] = cluster[p];
+      ring[other] = ring[p] + 1;
+      queue.push_back(other);
+    });
+  }
+  for (std::size_t p = 0; p < cluster.size(); ++p)
+    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
+      cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
+  place_observers(mesh, reference, cover);
+  const std::vector<bool> all = inside(mesh, cover.cluster_of);
+  for (Patch& patch : tree.patches) {
+    patch.cluster[kCutting] = cover.cluster_of[+patch.triangle[0]];
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
+      patch.inside[kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
+  }
+}
+
+}  // namespace cscd::fast
