@@ -10,9 +10,6 @@
 namespace cscd::scenes {
 namespace {
 
-// Shapes whose surface settles in sweeps: finer ones would need more sweeps than anybody has time for.
-constexpr std::string_view kSettling = "limbed_sphere";
-
 // The scene's own resolution is taken for what lies so near to it.
 constexpr double kOwn = 1.1;
 
@@ -46,7 +43,7 @@ Shape built(const Scene& scene, double factor) {
 Shape resized_shape(const Scene& scene, std::size_t triangles) {
   double share = static_cast<double>(triangles) / static_cast<double>(scene.expected.triangles);
   int steps = 0;
-  if (scene.shape == kSettling)
+  if (shape_row(scene.shape, scene.shape_parameters).settles)
     for (; share > kOwn; share /= 4) ++steps;
   if (share > 1 / kOwn && share < kOwn) share = 1;
   Shape shape = built(scene, std::sqrt(share));

@@ -107,7 +107,9 @@ ShapeRow limbed_sphere_row() {
       {"smooth", ParameterKind::integer, "sweeps that round the creases where limbs begin", false, 0, 1e5},
       {"limbs", ParameterKind::objects, "one object a limb"},
   };
-  return {"limbed_sphere", "body of a cube's grid, patches of which are extruded into limbs", rows,
+  return {"limbed_sphere",
+          "body of a cube's grid, patches of which are extruded into limbs",
+          rows,
           [](const Parameters& parameters) {
             LimbedSphereParameters p;
             p.cells = parameters.integer("cells");
@@ -135,7 +137,8 @@ ShapeRow limbed_sphere_row() {
             for (const Parameters& limb : parameters.objects("limbs"))
               limbs.push_back(scaled_limb(limb, factor, cells, scaled_cells));
             return parameters.with("cells", scaled_cells).with("limbs", std::move(limbs));
-          }};
+          },
+          true};
 }
 
 }  // namespace cscd::scenes

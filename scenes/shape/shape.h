@@ -39,6 +39,9 @@ struct ShapeRow {
   // The same form and skeleton with so many times as many cells along every direction, rounded: about
   // factor^2 times the triangles.
   Parameters (*at_resolution)(const Parameters& parameters, double factor);
+  // The surface settles in sweeps: far more of them the finer it is, so that what is finer than its scene
+  // asks for is had by subdividing.
+  bool settles = false;
 };
 
 std::span<const ShapeRow> shapes();
