@@ -18,8 +18,8 @@ struct Expected {
 };
 
 // One scene file, scenes/NAME.json: a shape, what moves it, and what comes of it. It may name another as its
-// `base` and say only what differs: `patch` (RFC 6902) changes places in it, `/effects/0/weight`; what else is
-// said merges with it if it is an object, and replaces it if not.
+// `base` and say only what differs: `patch` (RFC 6902) changes places in it, `/effects/0/weight`; what else
+// is said merges with it if it is an object, and replaces it if not.
 struct Scene {
   std::string name;
   std::string story;  // two sentences
