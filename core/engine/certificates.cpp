@@ -24,7 +24,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
       covers_(covers),
       count_(count),
       certified_(tree.patches.size()),
-      negative_(tree.patches.size()),
+      own_(tree.patches.size()),
       label_(tree.nodes.size()) {
   for (const Patch& patch : tree_.patches) cell_.push_back({patch.cluster, patch.inside, patch.lanes});
   for (std::size_t c = 0; c < count_; ++c) {
@@ -36,11 +36,10 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
 void Certificates::start(const LocalPositions& positions) {
   positions_ = &positions;
   place_viewpoints(positions.records());
-  for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
 
 void Certificates::finish() {
+  certify_positive();
   certify_negative();
   if (!positions_->known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   label_nodes();
@@ -65,25 +64,32 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   orientations(lanes, patch, from, positions_->error(), seen);
-  for (std::size_t c = 0; c < count_; ++c) {
-    if (from[c] == nullptr) continue;
-    const Signs& signs = seen[c];
-    negative_[p][c] = signs.negative & patch.lanes;
-    for_each_lane(patch.lanes & ~static_cast<unsigned>(signs.positive), [&](std::size_t lane) {
-      for (const Lane& near : tree_.ring_of(patch.triangle[lane]))
-        certified_[static_cast<std::size_t>(near.patch)][c].positive &=
-            static_cast<Mask16>(~(1U << near.lane));
-    });
-  }
+  const unsigned lanes_in_use = patch.lanes;
+  for (std::size_t c = 0; c < count_; ++c)
+    if (from[c] != nullptr)
+      own_[p][c] = {static_cast<Mask16>(lanes_in_use & ~static_cast<unsigned>(seen[c].positive)),
+                    static_cast<Mask16>(lanes_in_use & seen[c].negative)};
+}
+
+void Certificates::certify_positive() {
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for (std::size_t c = 0; c < count_; ++c)
+      for_each_lane(own_[p][c].not_positive, [&](std::size_t lane) {
+        for (const Lane& near : tree_.ring_of(tree_.patches[p].triangle[lane]))
+          certified_[static_cast<std::size_t>(near.patch)][c].positive &=
+              static_cast<Mask16>(~(1U << near.lane));
+      });
 }
 
 void Certificates::certify_negative() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for (std::size_t c = 0; c < count_; ++c)
-      for_each_lane(negative_[p][c] & cell_[p].inside[c], [&](std::size_t lane) {
+      for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
         const std::span<const Lane> ring = tree_.ring_of(tree_.patches[p].triangle[lane]);
         const bool all = std::all_of(ring.begin(), ring.end(), [&](const Lane& near) {
-          return negative_[static_cast<std::size_t>(near.patch)][c] >> near.lane & 1;
+          return own_[static_cast<std::size_t>(near.patch)][c].negative >> near.lane & 1;
         });
         certified_[p][c].negative |= static_cast<Mask16>(all << lane);
       });

@@ -23,7 +23,7 @@ class Certificates {
   // Looks at the first `covers` of them alone.
   Certificates(const PatchTree& tree, const Covers& covers, std::size_t count);
 
-  // One interval: `start`, then `look` at every patch, in any order, then `finish`.
+  // One interval: `start`, then `look` at every patch, in any order and from any thread, then `finish`.
   void start(const LocalPositions& positions);
   void look(std::size_t patch, const PatchLanes& lanes);
   void finish();
@@ -64,6 +64,7 @@ class Certificates {
 
  private:
   void place_viewpoints(std::span<const LocalPositions::Record> records);
+  void certify_positive();
   void certify_negative();
   void label_nodes();
 
@@ -73,6 +74,10 @@ class Certificates {
     Mask16 lanes;
   };
 
+  struct Own {  // of triangles by themselves
+    Mask16 not_positive, negative;
+  };
+
   const PatchTree& tree_;
   const Covers& covers_;
   std::size_t count_;
@@ -80,7 +85,7 @@ class Certificates {
   std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
-  std::vector<std::array<Mask16, kCovers>> negative_;  // of each patch: by themselves
+  std::vector<std::array<Own, kCovers>> own_;          // of each patch
   std::vector<std::array<std::int32_t, kCovers>>
       label_;  // of each node: cluster and sign of all below, or kNone
   RadialCounts counts_;

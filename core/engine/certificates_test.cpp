@@ -117,8 +117,8 @@ void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
       }
 }
 
-// Mutations: classify clears the lane that is not positive instead of all round it; needed compares signs
-// whatever the cluster, or drops what different covers certify; certify_negative does not look around.
+// Mutations: certify_positive clears the lane that is not positive instead of all round it; needed compares
+// signs whatever the cluster, or drops what different covers certify; certify_negative does not look around.
 TEST(Certificates, Trap14APairIsDroppedOnlyByOneFieldAllRoundBoth) {
   for (const auto& [inside_out, bones] :
        {std::pair(false, Scene::Bones::chain), std::pair(true, Scene::Bones::chain),
