@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/engine/corner_cover.h"
+#include "core/engine/patch_cutter.h"
 
 namespace cscd::fast {
 namespace {
@@ -29,110 +30,6 @@ std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
   }
   return cells;
 }
-
-// Cuts a cell into patches: each grows from a triangle with few free neighbours, next the triangle that needs
-// the fewest new vertices and lies nearest to the others.
-class Cutter {
- public:
-  Cutter(const TriangleMesh& mesh, std::span<const Vec3> centroid)
-      : mesh_(mesh), centroid_(centroid), free_(mesh.triangle_count(), false) {}
-
-  std::vector<std::vector<TriangleId>> cut(std::span<const TriangleId> cell) {
-    for (const TriangleId t : cell) free_[+t] = true;
-    std::vector<std::vector<TriangleId>> patches;
-    std::vector<TriangleId> queue;  // neighbours of patches, to begin the next beside them
-    std::size_t next = 0, in_queue = 0;
-    while (true) {
-      while (in_queue < queue.size() && !free_[+queue[in_queue]]) ++in_queue;
-      TriangleId seed;
-      if (in_queue < queue.size()) {
-        seed = queue[in_queue];
-      } else {
-        while (next < cell.size() && !free_[+cell[next]]) ++next;
-        if (next == cell.size()) break;
-        seed = cell[next];
-      }
-      patches.push_back(grow(seed));
-      for (const TriangleId t : patches.back())
-        for (const EdgeId e : mesh_.edges_of(t))
-          for (const TriangleId other : mesh_.triangles_at(e))
-            if (free_[+other]) queue.push_back(other);
-    }
-    join(patches);
-    return patches;
-  }
-
- private:
-  std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const {
-    std::vector<VertexId> vertices;
-    for (const TriangleId t : patch)
-      vertices.insert(vertices.end(), mesh_.corners(t).begin(), mesh_.corners(t).end());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-  }
-
-  // Joins what is left over between patches: the smallest with the largest that it touches and fits.
-  void join(std::vector<std::vector<TriangleId>>& patches) const {
-    std::stable_sort(patches.begin(), patches.end(),
-                     [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      const std::vector<VertexId> own = vertices_of(patches[i]);
-      for (std::size_t j = patches.size(); j-- > i + 1;) {
-        if (patches[i].size() + patches[j].size() > kLanes16) continue;
-        const std::vector<VertexId> other = vertices_of(patches[j]);
-        std::vector<VertexId> both;
-        std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
-        if (both.size() > kLanes16 || both.size() == own.size() + other.size()) continue;
-        patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
-        patches[i].clear();
-        break;
-      }
-    }
-    std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
-  }
-
-  std::vector<TriangleId> grow(TriangleId seed) {
-    std::vector<TriangleId> patch = {seed}, front;
-    std::vector<VertexId> vertices(mesh_.corners(seed).begin(), mesh_.corners(seed).end());
-    Vec3 sum = centroid_[+seed];
-    free_[+seed] = false;
-    const auto new_vertices = [&](TriangleId t) {
-      return std::count_if(mesh_.corners(t).begin(), mesh_.corners(t).end(), [&](VertexId v) {
-        return std::find(vertices.begin(), vertices.end(), v) == vertices.end();
-      });
-    };
-    while (patch.size() < kLanes16) {
-      front.clear();
-      for (const TriangleId t : patch)
-        for (const EdgeId e : mesh_.edges_of(t))
-          for (const TriangleId other : mesh_.triangles_at(e))
-            if (free_[+other]) front.push_back(other);
-      const Vec3 middle = sum / static_cast<double>(patch.size());
-      TriangleId best{-1};
-      std::pair<std::ptrdiff_t, double> least;
-      for (const TriangleId t : front) {
-        const std::pair cost{new_vertices(t), (centroid_[+t] - middle).squaredNorm()};
-        if (static_cast<std::size_t>(cost.first) + vertices.size() > kLanes16) continue;
-        if (best == TriangleId{-1} || cost < least) {
-          best = t;
-          least = cost;
-        }
-      }
-      if (best == TriangleId{-1}) break;
-      free_[+best] = false;
-      patch.push_back(best);
-      sum += centroid_[+best];
-      for (const VertexId v : mesh_.corners(best))
-        if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
-    }
-    return patch;
-  }
-
-  const TriangleMesh& mesh_;
-  std::span<const Vec3> centroid_;
-  std::vector<bool> free_;
-};
 
 Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles, const Cell& cell) {
   Patch patch{};
@@ -271,7 +168,7 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   std::vector<Patch> patches;
   std::vector<Vec3> centre;
   std::vector<std::int32_t> cluster, cell_number;
-  Cutter cutter(mesh, centroid);
+  PatchCutter cutter(mesh, centroid, kLanes16);
   std::int32_t number = 0;
   for (const auto& [cell, triangles] : members) {
     for (const std::vector<TriangleId>& patch : cutter.cut(triangles)) {

@@ -1,0 +1,71 @@
+#include "core/engine/patch_cutter.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+#include "core/mesh/test_shapes.h"
+
+namespace cscd::fast {
+namespace {
+
+struct Surface {
+  test::Shape shape = test::icosphere(4, 1);
+  TriangleMesh mesh = shape.mesh();
+  std::vector<Vec3> centroid;
+  Surface() {
+    for (const Triangle& c : mesh.triangles())
+      centroid.push_back((shape.positions[+c[0]] + shape.positions[+c[1]] + shape.positions[+c[2]]) / 3);
+  }
+  PatchCutter::Patches cut(std::span<const TriangleId> cell) const {
+    return PatchCutter(mesh, centroid, 16).cut(cell);
+  }
+};
+
+void expect_valid(const Surface& surface, const std::vector<TriangleId>& cell,
+                  const PatchCutter::Patches& patches) {
+  std::multiset<TriangleId> met;
+  for (const auto& patch : patches) {
+    EXPECT_GT(patch.size(), 0u);
+    EXPECT_LE(patch.size(), 16u);
+    std::set<VertexId> vertices;
+    for (const TriangleId t : patch) {
+      met.insert(t);
+      vertices.insert(surface.mesh.corners(t).begin(), surface.mesh.corners(t).end());
+    }
+    EXPECT_LE(vertices.size(), 16u);
+  }
+  EXPECT_EQ(met, std::multiset<TriangleId>(cell.begin(), cell.end()));
+}
+
+// Mutations: without repair; without the limit on vertices.
+TEST(PatchCutter, FillsPatches) {
+  const Surface surface;
+  std::vector<TriangleId> all;
+  for (std::size_t t = 0; t < surface.mesh.triangle_count(); ++t)
+    all.push_back(TriangleId{static_cast<std::int32_t>(t)});
+  const PatchCutter::Patches patches = surface.cut(all);
+  expect_valid(surface, all, patches);
+  EXPECT_LE(static_cast<double>(patches.size()), static_cast<double>(all.size()) / (0.92 * 16));
+}
+
+// Mutation: patches grow over edges alone.
+TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
+  const Surface surface;
+  const VertexId centre{0};
+  std::vector<TriangleId> fan;  // every second triangle at a vertex, and none of its edges
+  std::set<VertexId> taken;
+  for (const TriangleId t : surface.mesh.triangles_at(centre)) {
+    const Triangle& c = surface.mesh.corners(t);
+    const auto is_taken = [&](VertexId v) { return v != centre && taken.contains(v); };
+    if (std::any_of(c.begin(), c.end(), is_taken)) continue;
+    taken.insert(c.begin(), c.end());
+    fan.push_back(t);
+  }
+  ASSERT_GE(fan.size(), 2u);
+  const PatchCutter::Patches patches = surface.cut(fan);
+  expect_valid(surface, fan, patches);
+  EXPECT_EQ(patches.size(), 1u);
+}
+
+}  // namespace
+}  // namespace cscd::fast
