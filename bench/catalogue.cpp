@@ -96,12 +96,20 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
              },
              kAblation},
-    Strategy{"drvbc_fast_no_bones", "drvbc_fast, its covers of the surface alone", Guarantee::first_contact,
+    Strategy{"drvbc_fast_bones", "drvbc_fast, its covers of bones without a trial", Guarantee::first_contact,
              false,
              [](const Setup& setup) {
-               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones", .bones = false});
+               return make_drvbc_fast(
+                   setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
              },
              kAblation},
+    Strategy{
+        "drvbc_fast_no_bones", "drvbc_fast, its covers of the surface alone", Guarantee::first_contact, false,
+        [](const Setup& setup) {
+          return make_drvbc_fast(
+              setup, {.name = "drvbc_fast_no_bones", .clusters = DrvbcFastOptions::Clusters::of_surface});
+        },
+        kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
              Guarantee::heuristic, true,
              [](const Setup& setup) {

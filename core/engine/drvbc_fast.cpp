@@ -11,6 +11,7 @@
 #include "core/engine/node_bounds.h"
 #include "core/engine/stars.h"
 #include "core/engine/surface_clusters.h"
+#include "core/engine/trial_poses.h"
 #include "core/radial/distance_field.h"
 #include "core/radial/observer.h"
 #include "core/radial/refinement.h"
@@ -76,6 +77,7 @@ class FastCuller : public Culler {
   }
 
   RadialView radial_view() const override { return certificates_.view(); }
+  std::size_t patch_count() const { return tree_.patches.size(); }
 
  private:
   void self(std::size_t n) {
@@ -219,18 +221,52 @@ bool has_bones(const Setup& setup) {
   return setup.rig != nullptr && !setup.rig->parent.empty();
 }
 
-// Where there are bones, their clusters, made as in drvbc.
-std::vector<std::int32_t> bone_clusters(const Setup& setup, StageClock& clock) {
+// Bones of triangles, made as in drvbc.
+std::vector<BoneId> bones_of(const Setup& setup, StageClock& clock) {
   clock.enter(Stage::distance_and_heat);
   const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
-  std::vector<BoneId> bone_of =
+  const std::vector<BoneId> bone_of =
       radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {std::max(1, full / 4), 5});
   clock.enter(Stage::decomposition);
   const radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
   const std::vector<radial::ObserverKind> kinds = radial::choose_by_rotation_trial(
       setup.mesh, setup.reference, *setup.rig, clusters, 10 * std::numbers::pi / 180);
-  bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
-  return radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
+  return radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
+}
+
+class CountingSink : public TrianglePairSink {
+  void take(const std::vector<TrianglePair>&) override {}
+};
+
+// Work in overlap tests. About so many cost as much as a patch in an interval, or a pair that is left.
+constexpr std::uint64_t kTestsOfPatch = 12, kTestsOfPair = 40;
+constexpr std::size_t kTrials = 6;
+
+std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
+                   std::span<const Trial> trials) {
+  FastCuller culler(setup, make_covers(setup.mesh, setup.reference, cluster_of), {});
+  CountingSink sink;
+  std::uint64_t tests = trials.size() * kTestsOfPatch * culler.patch_count();
+  for (const Trial& trial : trials) {
+    const Motion motion(trial[0], trial[1]);
+    culler.refit(motion);
+    culler.classify(motion, nullptr);
+    tests += *culler.cull(sink).bvot;
+  }
+  return tests + kTestsOfPair * sink.count();
+}
+
+// Clusters of bones or of the surface, whichever make less work where bones turn.
+std::vector<std::int32_t> clusters(const Setup& setup, DrvbcFastOptions::Clusters wanted, StageClock& clock) {
+  using Clusters = DrvbcFastOptions::Clusters;
+  if (!has_bones(setup) || wanted == Clusters::of_surface)
+    return surface_clusters(setup.mesh, setup.reference);
+  const std::vector<BoneId> bone_of = bones_of(setup, clock);
+  std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
+  if (wanted == Clusters::of_bones) return of_bones;
+  std::vector<std::int32_t> of_surface = surface_clusters(setup.mesh, setup.reference);
+  const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
+  return work(setup, of_surface, trials) < work(setup, of_bones, trials) ? of_surface : of_bones;
 }
 
 }  // namespace
@@ -238,19 +274,18 @@ std::vector<std::int32_t> bone_clusters(const Setup& setup, StageClock& clock) {
 
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
-  const bool by_bones = options.bones && fast::has_bones(setup);
   StageClock clock;
   clock.enter(Stage::decomposition);
-  const std::vector<std::int32_t> cluster_of =
-      by_bones ? fast::bone_clusters(setup, clock) : fast::surface_clusters(setup.mesh, setup.reference);
+  std::vector<std::int32_t> cluster_of = fast::clusters(setup, options.clusters, clock);
   fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, cluster_of);
   auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
   clock.stop();
   Preparation preparation;
-  if (by_bones) preparation.distance_and_heat_ms = clock.milliseconds(Stage::distance_and_heat);
+  if (clock.milliseconds(Stage::distance_and_heat) > 0)
+    preparation.distance_and_heat_ms = clock.milliseconds(Stage::distance_and_heat);
   preparation.decomposition_ms = clock.milliseconds(Stage::decomposition);
   preparation.atomic_clusters = 1 + *std::max_element(cluster_of.begin(), cluster_of.end());
-  preparation.atomic_cluster = cluster_of;
+  preparation.atomic_cluster = std::move(cluster_of);
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }
 

@@ -12,11 +12,13 @@ struct DrvbcFastOptions {
   std::size_t covers = 3;  // the first of them
   bool time_linear = true;
   bool stars = true;
-  bool bones = true;  // false: as if there were none
+  enum class Clusters { by_trial, of_bones, of_surface };  // from which covers are made
+  Clusters clusters = Clusters::by_trial;
 };
 
-// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins
-// from the clusters of bones where there are any, else from clusters of the surface.
+// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins from
+// the clusters of bones or from clusters of the surface: where there are bones, from those that a trial
+// prefers.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
 }  // namespace cscd
