@@ -26,6 +26,9 @@ struct Setup {
   std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
   const ElementaryTest& elementary;
+  // On which one interval is answered, at least 1, the caller's among them. Strategies that cannot share
+  // their work run on one. Answers and counters do not depend on it.
+  int threads = 1;
 };
 
 // One-time work before the first interval, as in Table 1 of the paper.
@@ -50,7 +53,8 @@ struct Strategy {
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
   // Rows with a group run only where they or their group is named, the others wherever the input allows it.
   std::string_view group = "";
-  bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
+  bool own_test = false;     // brings its own elementary test, whose answers are compared with the referee's
+  bool shares_work = false;  // among the threads of the setup
 };
 
 }  // namespace cscd

@@ -1,5 +1,6 @@
 #include "core/engine/local_positions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -12,7 +13,8 @@ namespace {
 using Double4 = double __attribute__((vector_size(32)));
 using Float4 = float __attribute__((vector_size(16)));
 
-constexpr float kLargest = 1e9F;  // triple products of three such lengths are far from overflow
+constexpr float kLargest = 1e9F;      // triple products of three such lengths are far from overflow
+constexpr std::size_t kRange = 1024;  // vertices worth another thread
 
 }  // namespace
 
@@ -23,35 +25,48 @@ LocalPositions::LocalPositions(std::span<const Vec3> reference) : scale_(1), rec
   if (std::isnormal(size) && size < 1e300 && size > 1e-300) scale_ = std::ldexp(1.0, -std::ilogb(size));
 }
 
-void LocalPositions::update(const Motion& motion) {
-  const Vec3 first = motion.start()[0];
-  const Double4 origin = {first.x(), first.y(), first.z(), 0};
+void LocalPositions::update(const Motion& motion, const Team& team) {
   const std::size_t count = records_.size();
+  largest_.resize(team.ranges_of(count, kRange));
+  team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
+    largest_[part] = convert(motion, first, last);
+  });
+  const float largest = *std::max_element(largest_.begin(), largest_.end());
+  known_ = largest <= kLargest;
+  error_ = 0x1.00002p-24F * largest + 1e-37F;
+}
+
+// Those of a range of vertices; returns the largest coordinate.
+float LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
+  const Vec3 zeroth = motion.start()[0];
+  const Double4 origin = {zeroth.x(), zeroth.y(), zeroth.z(), 0};
+  const double scale = scale_;
   const Float4 zero = {};
   Float4 most = zero;
   const auto convert = [&](const double* x, float* out) {
     Double4 p;
     std::memcpy(&p, x, sizeof p);
-    Float4 f = __builtin_convertvector((p - origin) * scale_, Float4);
+    Float4 f = __builtin_convertvector((p - origin) * scale, Float4);
     f[3] = 0;
     std::memcpy(out, &f, sizeof f);
     const Float4 size = f < 0 ? -f : f;
     most = most < size ? size : most;
   };
   const double *start = motion.start()[0].data(), *end = motion.end()[0].data();
-  for (std::size_t v = 0; v + 1 < count; ++v) {
-    convert(start + 3 * v, records_[v].at);
-    convert(end + 3 * v, records_[v].at + 4);
+  Record* const records = records_.data();
+  const std::size_t whole = std::min(last, records_.size() - 1);
+  for (std::size_t v = first; v < whole; ++v) {
+    convert(start + 3 * v, records[v].at);
+    convert(end + 3 * v, records[v].at + 4);
   }
   // The fourth number behind the last vertex is not ours to read.
-  for (const auto& [points, at] : {std::pair{start, 0}, std::pair{end, 4}}) {
-    double last[4] = {};
-    std::memcpy(last, points + 3 * (count - 1), 3 * sizeof(double));
-    convert(last, records_[count - 1].at + at);
-  }
-  known_ = most[0] <= kLargest && most[1] <= kLargest && most[2] <= kLargest;
-  const float largest = std::fmax(most[0], std::fmax(most[1], most[2]));
-  error_ = 0x1.00002p-24F * largest + 1e-37F;
+  for (std::size_t v = whole; v < last; ++v)
+    for (const auto& [points, at] : {std::pair{start, 0}, std::pair{end, 4}}) {
+      double point[4] = {};
+      std::memcpy(point, points + 3 * v, 3 * sizeof(double));
+      convert(point, records[v].at + at);
+    }
+  return std::fmax(most[0], std::fmax(most[1], most[2]));
 }
 
 }  // namespace cscd::fast

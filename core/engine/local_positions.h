@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/team.h"
 #include "core/base/vec3.h"
 #include "core/mesh/motion.h"
 
@@ -21,7 +22,7 @@ class LocalPositions {
 
   explicit LocalPositions(std::span<const Vec3> reference);
 
-  void update(const Motion& motion);
+  void update(const Motion& motion, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
   // Every coordinate is off by at most this much.
@@ -30,8 +31,11 @@ class LocalPositions {
   bool known() const { return known_; }
 
  private:
+  float convert(const Motion& motion, std::size_t first, std::size_t last);
+
   double scale_;
   std::vector<Record> records_;
+  std::vector<float> largest_;  // of each range
   float error_ = 0;
   bool known_ = false;
 };

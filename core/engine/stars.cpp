@@ -31,7 +31,7 @@ float sum(Float16 v, std::size_t count) {
 
 }  // namespace
 
-Stars::Stars(const TriangleMesh& mesh) : state_(mesh.vertex_count()) {
+Stars::Stars(const TriangleMesh& mesh) {
   offset_.push_back(0);
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const VertexId vertex{static_cast<std::int32_t>(v)};
@@ -44,16 +44,11 @@ Stars::Stars(const TriangleMesh& mesh) : state_(mesh.vertex_count()) {
   }
 }
 
-void Stars::start_interval(const LocalPositions& positions) {
-  positions_ = &positions;
-  std::fill(state_.begin(), state_.end(), State::unknown);
-}
-
-bool Stars::is_flat(VertexId vertex) const {
+bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
   const auto first = static_cast<std::size_t>(offset_[+vertex]);
   const std::size_t count = static_cast<std::size_t>(offset_[+vertex + 1]) - first;
-  if (count == 0 || count > kLanes16 || !positions_->known()) return false;
-  const std::span<const LocalPositions::Record> records = positions_->records();
+  if (count == 0 || count > kLanes16 || !positions.known()) return false;
+  const std::span<const LocalPositions::Record> records = positions.records();
   const LocalPositions::Record& here = records[+vertex];
 
   std::array<std::int32_t, kLanes16> second, third;
@@ -85,12 +80,12 @@ bool Stars::is_flat(VertexId vertex) const {
   float direction[3];
   for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length, count);
 
-  const Float16 slack = Float16{} + 2 * positions_->error();
+  const Float16 slack = Float16{} + 2 * positions.error();
   const Float16 longest_a = largest_component(a.at) + slack, longest_b = largest_component(b.at) + slack;
   const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
   const Float16 area = longest_a * longest_b;
   const Float16 bound =
-      largest * (12.2F * positions_->error() * (longest_a + longest_b) + 50 * 0x1p-24F * area);
+      largest * (12.2F * positions.error() * (longest_a + longest_b) + 50 * 0x1p-24F * area);
   const auto along = [&](int n) {
     return control[n][0] * direction[0] + control[n][1] * direction[1] + control[n][2] * direction[2];
   };

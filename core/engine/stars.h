@@ -11,8 +11,7 @@ namespace cscd::fast {
 
 // Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two
 // triangles of such a star touch nowhere but in what they share, if they do not at t = 0: a proof for pairs
-// of adjacent triangles that needs no cluster. Asked for few vertices of an interval, and kept until the
-// next.
+// of adjacent triangles that needs no cluster.
 //
 // Why: seen along the plane's normal all triangles of the star have positive area, so the angles under which
 // they are seen at the vertex sum to a multiple of a full turn, which cannot change as long as they stay
@@ -22,27 +21,16 @@ class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
 
-  // `positions` must stay until the last question of the interval.
-  void start_interval(const LocalPositions& positions);
-
-  // False is no statement.
-  bool flat(VertexId vertex) {
-    State& state = state_[+vertex];
-    if (state == State::unknown) state = is_flat(vertex) ? State::flat : State::uncertain;
-    return state == State::flat;
-  }
+  // At the vertex, in the interval of these positions. False is no statement.
+  bool flat(VertexId vertex, const LocalPositions& positions) const;
 
  private:
-  enum class State : std::uint8_t { unknown, flat, uncertain };
   struct Ends {  // the other corners of a triangle at the vertex
     std::int32_t second, third;
   };
-  bool is_flat(VertexId vertex) const;
 
   std::vector<std::int32_t> offset_;
   std::vector<Ends> ends_;
-  std::vector<State> state_;
-  const LocalPositions* positions_ = nullptr;
 };
 
 }  // namespace cscd::fast

@@ -1,0 +1,177 @@
+#include "core/engine/patch_descent.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace cscd::fast {
+
+PatchDescent::PatchDescent(const DescentInput& input)
+    : input_(input),
+      nodes_(input.tree.nodes),
+      patches_(input.tree.patches),
+      star_(input.positions.records().size()),
+      triangle_bounds_at_(input.tree.patches.size(), kNone) {}
+
+void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid) {
+  bounds_ = bounds;
+  grid_ = grid;
+  tests_ = 0;
+  triangle_bounds_used_ = 0;
+  std::fill(triangle_bounds_at_.begin(), triangle_bounds_at_.end(), kNone);
+  std::fill(star_.begin(), star_.end(), Star::unknown);
+}
+
+void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
+  sink_ = &sink;
+  visit<Depth::all>(at);
+}
+
+void PatchDescent::open(NodePair at, std::vector<NodePair>& below) {
+  opened_ = &below;
+  visit<Depth::one>(at);
+}
+
+// Two different nodes have been tested against each other.
+template <PatchDescent::Depth kDepth>
+void PatchDescent::visit(NodePair at) {
+  const auto [a, b] = at;
+  if (a == b) return visit_self<kDepth>(a);
+  const PatchTree::Node first = nodes_[a], second = nodes_[b];
+  if (!first.is_leaf() && !second.is_leaf()) return step<kDepth, 2, 2>(first.left(), second.left());
+  if (!first.is_leaf()) return step<kDepth, 2, 1>(first.left(), b);
+  if (!second.is_leaf()) return step<kDepth, 1, 2>(a, second.left());
+  between(a, b);
+}
+
+template <PatchDescent::Depth kDepth>
+void PatchDescent::visit_self(std::size_t n) {
+  if (input_.certificates.skip(n, n)) return;
+  const PatchTree::Node node = nodes_[n];
+  if (node.is_leaf()) return inside(node.patch());
+  found<kDepth>({node.left(), node.left()});
+  found<kDepth>({node.right(), node.right()});
+  step<kDepth, 1, 1>(node.left(), node.right());
+}
+
+// One node or two siblings against one or two. All are tested before any is descended into.
+template <PatchDescent::Depth kDepth, std::size_t kA, std::size_t kB>
+void PatchDescent::step(std::size_t a, std::size_t b) {
+  unsigned open = 0;
+  for (std::size_t i = 0; i < kA; ++i)
+    for (std::size_t j = 0; j < kB; ++j) {
+      const bool asked = !input_.certificates.skip(a + i, b + j);
+      tests_ += asked;
+      open |= static_cast<unsigned>(asked & !apart(bounds_[a + i], bounds_[b + j])) << (i * kB + j);
+    }
+  for (; open != 0; open &= open - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(open));
+    found<kDepth>({a + k / kB, b + k % kB});
+  }
+}
+
+template <PatchDescent::Depth kDepth>
+void PatchDescent::found(NodePair below) {
+  if constexpr (kDepth == Depth::all)
+    visit<kDepth>(below);
+  else
+    opened_->push_back(below);
+}
+
+// Pairs inside one patch.
+inline void PatchDescent::inside(std::size_t p) {
+  const Certificates::Shared shared = input_.certificates.shared(p, p);
+  const Adjacent* adjacent = input_.tree.adjacent_to(p, p);
+  const Mask16 lanes = patches_[p].lanes;
+  for (std::size_t lane = 0; lanes >> lane > 1; ++lane)
+    row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), adjacent);
+}
+
+// Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
+inline void PatchDescent::between(std::size_t a, std::size_t b) {
+  const std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
+  const Certificates::Shared shared = input_.certificates.shared(p, q);
+  Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;
+  for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
+    if (shared.q[s] == patches_[q].lanes) rows &= static_cast<Mask16>(~shared.p[s]);
+    if (shared.p[s] == patches_[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
+  }
+  if (rows == 0 || columns == 0) return;
+  rows = near_counted(bounds_of_triangles(p), rows, grid_.in_units(bounds_[b]));
+  if (rows == 0) return;
+  columns = near_counted(bounds_of_triangles(q), columns, grid_.in_units(bounds_[a]));
+  if (columns == 0) return;
+  const Adjacent* adjacent = input_.tree.adjacent_to(p, q);
+  for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+    row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), adjacent);
+  }
+}
+
+// One triangle of patch p against some of patch q.
+inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
+                              const Adjacent* adjacent) {
+  if (wanted == 0) return;
+  if (adjacent != nullptr) {
+    wanted = not_flat(p, lane, wanted, adjacent->sharing[lane]);
+    // Adjacent triangles always overlap: they are passed on untested.
+    const auto beside = static_cast<Mask16>(wanted & adjacent->lanes(lane));
+    wanted &= static_cast<Mask16>(~beside);
+    pass_on(p, lane, q, beside);
+    if (wanted == 0) return;
+  }
+  bounds_of_triangles(p);  // before a reference is taken, as they are made on demand
+  const TriangleBounds& others = bounds_of_triangles(q);
+  tests_ += static_cast<unsigned>(std::popcount(wanted));
+  if (input_.positions.known()) wanted = near(others, wanted, bounds_of_triangles(p), lane);
+  pass_on(p, lane, q, wanted);
+}
+
+// Without the pairs that the star of a common corner proves apart. `sharing`: those with each corner.
+inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
+                                     const std::array<Mask16, 3>& sharing) {
+  if (input_.stars == nullptr) return wanted;
+  const Patch& patch = patches_[p];
+  for (std::size_t k = 0; k < 3; ++k)
+    if ((wanted & sharing[k]) != 0 && flat(VertexId{patch.vertex[patch.corner[k][lane]]}))
+      wanted &= static_cast<Mask16>(~sharing[k]);
+  return wanted;
+}
+
+inline void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
+  for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
+    sink_->add(patches_[p].triangle[lane],
+               patches_[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))]);
+}
+
+inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,
+                                         const MovingBounds& other) {
+  if (!input_.positions.known()) return mask;
+  tests_ += static_cast<unsigned>(std::popcount(mask));
+  return near(triangles, mask, other);
+}
+
+const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
+  std::int32_t& at = triangle_bounds_at_[p];
+  if (at == kNone) {
+    if (triangle_bounds_used_ == triangle_bounds_.size()) triangle_bounds_.emplace_back();
+    at = static_cast<std::int32_t>(triangle_bounds_used_++);
+    TriangleBounds& bounds = triangle_bounds_[static_cast<std::size_t>(at)];
+    bounds = triangle_bounds(load(input_.positions.records(), patches_[p].vertex), patches_[p],
+                             input_.positions.error());
+    if (!input_.time_linear)
+      for (std::size_t k = 0; k < kDirections; ++k) {
+        bounds.low[k][0] = bounds.low[k][1] = smaller(bounds.low[k][0], bounds.low[k][1]);
+        bounds.high[k][0] = bounds.high[k][1] = larger(bounds.high[k][0], bounds.high[k][1]);
+      }
+  }
+  return triangle_bounds_[static_cast<std::size_t>(at)];
+}
+
+inline bool PatchDescent::flat(VertexId vertex) {
+  Star& star = star_[+vertex];
+  if (star == Star::unknown)
+    star = input_.stars->flat(vertex, input_.positions) ? Star::flat : Star::uncertain;
+  return star == Star::flat;
+}
+
+}  // namespace cscd::fast

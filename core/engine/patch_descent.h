@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/detect/culler.h"
+#include "core/engine/certificates.h"
+#include "core/engine/node_bounds.h"
+#include "core/engine/stars.h"
+
+namespace cscd::fast {
+
+// Two nodes of a tree over patches: all pairs of triangles, one below each; the same twice: pairs below it.
+struct NodePair {
+  std::size_t a, b;
+};
+
+// What descents of one interval read, several at a time.
+struct DescentInput {
+  const PatchTree& tree;
+  const LocalPositions& positions;
+  const Certificates& certificates;
+  const Stars* stars;  // null: none
+  bool time_linear;
+};
+
+// The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
+// triangles, and which stars are flat. It meets what no cover certifies.
+class alignas(64) PatchDescent {  // no cache line with another thread's
+ public:
+  // What `input` names must outlive the descent.
+  explicit PatchDescent(const DescentInput& input);
+
+  // `bounds`, of each node in steps of `grid`, must stay until the last descent of the interval.
+  void start_interval(std::span<const NodeBounds> bounds, const Grid& grid);
+  // Passes on what is not proven apart.
+  void descend(NodePair at, TrianglePairSink& sink);
+  // Whether there are nodes below one of the two.
+  bool can_open(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
+  // Appends the pairs of nodes into which a descent from two that can be opened falls apart, in its order.
+  void open(NodePair at, std::vector<NodePair>& below);
+  // Overlap tests in this interval.
+  std::uint64_t tests() const { return tests_; }
+
+ private:
+  enum class Star : std::uint8_t { unknown, flat, uncertain };
+
+  enum class Depth { one, all };
+
+  template <Depth kDepth>
+  void visit(NodePair at);
+  template <Depth kDepth>
+  void visit_self(std::size_t n);
+  template <Depth kDepth, std::size_t kA, std::size_t kB>
+  void step(std::size_t a, std::size_t b);
+  template <Depth kDepth>
+  void found(NodePair below);
+  void inside(std::size_t p);
+  void between(std::size_t a, std::size_t b);
+  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Adjacent* adjacent);
+  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const std::array<Mask16, 3>& sharing);
+  bool flat(VertexId vertex);
+  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
+  Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
+  const TriangleBounds& bounds_of_triangles(std::size_t p);
+
+  const DescentInput input_;
+  const std::span<const PatchTree::Node> nodes_;
+  const std::span<const Patch> patches_;
+  std::span<const NodeBounds> bounds_;
+  Grid grid_{1};
+  std::vector<Star> star_;                        // of each vertex
+  std::vector<std::int32_t> triangle_bounds_at_;  // of each patch: where among those below, made on demand
+  std::vector<TriangleBounds> triangle_bounds_;
+  std::size_t triangle_bounds_used_ = 0;
+  TrianglePairSink* sink_ = nullptr;
+  std::vector<NodePair>* opened_ = nullptr;
+  std::uint64_t tests_ = 0;
+};
+
+}  // namespace cscd::fast
