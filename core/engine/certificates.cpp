@@ -26,7 +26,8 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
       certified_(tree.patches.size()),
       own_(tree.patches.size()),
       label_(tree.nodes.size()) {
-  for (const Patch& patch : tree_.patches) cell_.push_back({patch.cluster, patch.inside, patch.lanes});
+  for (const Patch& patch : tree_.patches)
+    cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
   for (std::size_t c = 0; c < count_; ++c) {
     viewpoint_[c].resize(covers_[c].observers.size());
     counts_.clusters += viewpoint_[c].size();
@@ -75,23 +76,24 @@ void Certificates::certify_positive() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
   for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c)
-      for_each_lane(own_[p][c].not_positive, [&](std::size_t lane) {
-        for (const Lane& near : tree_.ring_of(tree_.patches[p].triangle[lane]))
-          certified_[static_cast<std::size_t>(near.patch)][c].positive &=
-              static_cast<Mask16>(~(1U << near.lane));
+    for (std::size_t c = 0; c < count_; ++c) {
+      if (own_[p][c].not_positive == 0) continue;
+      const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
+      tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+        certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
       });
+    }
 }
 
 void Certificates::certify_negative() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for (std::size_t c = 0; c < count_; ++c)
       for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
-        const std::span<const Lane> ring = tree_.ring_of(tree_.patches[p].triangle[lane]);
-        const bool all = std::all_of(ring.begin(), ring.end(), [&](const Lane& near) {
-          return own_[static_cast<std::size_t>(near.patch)][c].negative >> near.lane & 1;
+        unsigned others = 0;
+        tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+          others |= common.beside(tree_.patches[p], lane) & ~static_cast<unsigned>(own_[q][c].negative);
         });
-        certified_[p][c].negative |= static_cast<Mask16>(all << lane);
+        certified_[p][c].negative |= static_cast<Mask16>((others == 0) << lane);
       });
 }
 

@@ -10,25 +10,23 @@ constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cut
 }  // namespace
 
 void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover) {
-  const auto missed = [](const Patch& patch) {
-    return std::all_of(patch.inside.begin(), patch.inside.end(), [](Mask16 lanes) { return lanes == 0; });
+  const auto missed = [&](std::size_t p) {
+    return std::all_of(tree.inside[p].begin(), tree.inside[p].end(), [](Mask16 lanes) { return lanes == 0; });
   };
   const auto for_each_touching = [&](std::size_t p, const auto& take) {
-    for (auto i = static_cast<std::size_t>(tree.adjacent_offset[p]);
-         i < static_cast<std::size_t>(tree.adjacent_offset[p + 1]); ++i)
-      take(static_cast<std::size_t>(tree.adjacent[i].patch));
+    tree.for_each_adjacent(p, [&](std::size_t other, const Common&) { take(other); });
   };
   std::vector<std::int32_t> cluster(tree.patches.size(), kNone), ring(tree.patches.size(), 0);
   std::vector<std::size_t> queue;
   std::int32_t count = 0;
   for (std::size_t seed = 0; seed < cluster.size(); ++seed) {
-    if (cluster[seed] != kNone || !missed(tree.patches[seed])) continue;
+    if (cluster[seed] != kNone || !missed(seed)) continue;
     std::size_t next = queue.size();
     cluster[seed] = count;
     queue.push_back(seed);
     for (; next < queue.size(); ++next)
       for_each_touching(queue[next], [&](std::size_t other) {
-        if (cluster[other] != kNone || !missed(tree.patches[other])) return;
+        if (cluster[other] != kNone || !missed(other)) return;
         cluster[other] = count;
         queue.push_back(other);
       });
@@ -49,10 +47,11 @@ void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, Pa
       cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
   place_observers(mesh, reference, cover);
   const std::vector<bool> all = inside(mesh, cover.cluster_of);
-  for (Patch& patch : tree.patches) {
+  for (std::size_t p = 0; p < tree.patches.size(); ++p) {
+    Patch& patch = tree.patches[p];
     patch.cluster[kCutting] = cover.cluster_of[+patch.triangle[0]];
     for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      patch.inside[kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
+      tree.inside[p][kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
   }
 }
 

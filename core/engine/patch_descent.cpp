@@ -80,10 +80,10 @@ void PatchDescent::found(NodePair below) {
 // Pairs inside one patch.
 inline void PatchDescent::inside(std::size_t p) {
   const Certificates::Shared shared = input_.certificates.shared(p, p);
-  const Adjacent* adjacent = input_.tree.adjacent_to(p, p);
+  const Common* common = input_.tree.common_of(p, p);
   const Mask16 lanes = patches_[p].lanes;
   for (std::size_t lane = 0; lanes >> lane > 1; ++lane)
-    row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), adjacent);
+    row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), common);
 }
 
 // Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
@@ -100,21 +100,21 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
   if (rows == 0) return;
   columns = near_counted(bounds_of_triangles(q), columns, grid_.in_units(bounds_[a]));
   if (columns == 0) return;
-  const Adjacent* adjacent = input_.tree.adjacent_to(p, q);
+  const Common* common = input_.tree.common_of(p, q);
   for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-    row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), adjacent);
+    row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), common);
   }
 }
 
 // One triangle of patch p against some of patch q.
 inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
-                              const Adjacent* adjacent) {
+                              const Common* common) {
   if (wanted == 0) return;
-  if (adjacent != nullptr) {
-    wanted = not_flat(p, lane, wanted, adjacent->sharing[lane]);
+  if (common != nullptr) {
+    wanted = not_flat(p, lane, wanted, *common);
     // Adjacent triangles always overlap: they are passed on untested.
-    const auto beside = static_cast<Mask16>(wanted & adjacent->lanes(lane));
+    const auto beside = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));
     wanted &= static_cast<Mask16>(~beside);
     pass_on(p, lane, q, beside);
     if (wanted == 0) return;
@@ -126,14 +126,15 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
   pass_on(p, lane, q, wanted);
 }
 
-// Without the pairs that the star of a common corner proves apart. `sharing`: those with each corner.
-inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
-                                     const std::array<Mask16, 3>& sharing) {
+// Without the pairs that the star of a common corner proves apart.
+inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common) {
   if (input_.stars == nullptr) return wanted;
   const Patch& patch = patches_[p];
-  for (std::size_t k = 0; k < 3; ++k)
-    if ((wanted & sharing[k]) != 0 && flat(VertexId{patch.vertex[patch.corner[k][lane]]}))
-      wanted &= static_cast<Mask16>(~sharing[k]);
+  for (const Places16& place : patch.corner) {
+    const Mask16 sharing = common.at[place[lane]];
+    if ((wanted & sharing) != 0 && flat(VertexId{patch.vertex[place[lane]]}))
+      wanted &= static_cast<Mask16>(~sharing);
+  }
   return wanted;
 }
 

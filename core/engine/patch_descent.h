@@ -58,8 +58,8 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   void found(NodePair below);
   void inside(std::size_t p);
   void between(std::size_t a, std::size_t b);
-  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Adjacent* adjacent);
-  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const std::array<Mask16, 3>& sharing);
+  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Common* common);
+  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common);
   bool flat(VertexId vertex);
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);

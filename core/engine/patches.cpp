@@ -47,10 +47,7 @@ Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles
     patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
   patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
   patch.cluster.fill(kNone);
-  for (std::size_t c = 0; c < kCutting; ++c) {
-    patch.cluster[c] = cell.cluster[c];
-    patch.inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
-  }
+  for (std::size_t c = 0; c < kCutting; ++c) patch.cluster[c] = cell.cluster[c];
   return patch;
 }
 
@@ -122,36 +119,30 @@ class TreeBuilder {
   PatchTree& tree_;
 };
 
-void find_rings(const TriangleMesh& mesh, PatchTree& tree) {
-  std::vector<Lane> lane_of(mesh.triangle_count());
+void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
+  struct Place {
+    std::int32_t patch, lane;
+  };
+  std::vector<Place> place_of(mesh.triangle_count());
   for (std::size_t p = 0; p < tree.patches.size(); ++p)
-    for (std::size_t l = 0; l < kLanes16; ++l)
-      if (tree.patches[p].lanes >> l & 1)
-        lane_of[+tree.patches[p].triangle[l]] = {static_cast<std::uint32_t>(p),
-                                                 static_cast<std::uint32_t>(l)};
-  std::vector<TriangleId> around;
-  tree.ring_offset.push_back(0);
-  for (const Triangle& corners : mesh.triangles()) {
-    around.clear();
-    for (const VertexId v : corners)
-      around.insert(around.end(), mesh.triangles_at(v).begin(), mesh.triangles_at(v).end());
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (const TriangleId t : around) tree.ring.push_back(lane_of[+t]);
-    tree.ring_offset.push_back(static_cast<std::int32_t>(tree.ring.size()));
-  }
-
+    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
+      place_of[+tree.patches[p].triangle[l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
   tree.adjacent_offset.push_back(0);
   for (const Patch& patch : tree.patches) {
-    std::map<std::int32_t, std::array<std::array<Mask16, 3>, kLanes16>> touching;
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      for (std::size_t k = 0; k < 3; ++k)
-        for (const TriangleId t : mesh.triangles_at(mesh.corners(patch.triangle[l])[k]))
-          touching[static_cast<std::int32_t>(lane_of[+t].patch)][l][k] |=
-              static_cast<Mask16>(1U << lane_of[+t].lane);
-    for (const auto& [other, sharing] : touching) tree.adjacent.push_back({other, sharing});
+    std::map<std::int32_t, Common> touching;
+    for (unsigned places = patch.corners_of(patch.lanes); places != 0; places &= places - 1) {
+      const auto v = static_cast<std::size_t>(std::countr_zero(places));
+      for (const TriangleId t : mesh.triangles_at(VertexId{patch.vertex[v]}))
+        touching[place_of[+t].patch].at[v] |= static_cast<Mask16>(1U << place_of[+t].lane);
+    }
+    for (const auto& [other, common] : touching) {
+      tree.adjacent.push_back(other);
+      tree.common.push_back(common);
+    }
     tree.adjacent_offset.push_back(static_cast<std::int32_t>(tree.adjacent.size()));
   }
+  tree.adjacent.shrink_to_fit();
+  tree.common.shrink_to_fit();
 }
 
 }  // namespace
@@ -183,7 +174,12 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   }
   PatchTree tree;
   TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
-  find_rings(mesh, tree);
+  find_adjacent(mesh, tree);
+  for (const Patch& patch : tree.patches) {
+    const Cell& cell = cell_of[+patch.triangle[0]];
+    std::array<Mask16, kCovers>& inside = tree.inside.emplace_back();
+    for (std::size_t c = 0; c < kCutting; ++c) inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
+  }
   cover_corners(mesh, reference, tree, covers[kCutting]);
   return tree;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,24 +18,36 @@ struct Patch {
   std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
   std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
   std::array<std::int32_t, kCovers> cluster;  // in each cover
-  std::array<Mask16, kCovers> inside;         // triangles whose corners' triangles all belong to that cluster
   Mask16 lanes;                               // those that are triangles
   // Not needed of most patches, and in a cache line of its own.
   alignas(64) std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
+
+  // Places of the corners of some of its triangles.
+  Mask16 corners_of(unsigned triangles) const {
+    unsigned places = 0;
+    for (; triangles != 0; triangles &= triangles - 1)
+      for (const Places16& place : corner) places |= 1U << place[std::countr_zero(triangles)];
+    return static_cast<Mask16>(places);
+  }
 };
+static_assert(sizeof(Patch) == 3 * 64);
 
-// A triangle's place among the patches, in one word, as every triangle keeps those of a dozen others.
-struct Lane {
-  std::uint32_t patch : 28;
-  std::uint32_t lane : 4;
-};
+// Which triangles of another patch have each vertex of this one.
+struct Common {
+  std::array<Mask16, kLanes16> at;
 
-// Which triangles of another patch share each corner of each triangle of this one.
-struct Adjacent {
-  std::int32_t patch;
-  std::array<std::array<Mask16, 3>, kLanes16> sharing;
+  // Triangles that have a corner of one triangle of this patch.
+  Mask16 beside(const Patch& patch, std::size_t lane) const {
+    return static_cast<Mask16>(at[patch.corner[0][lane]] | at[patch.corner[1][lane]] |
+                               at[patch.corner[2][lane]]);
+  }
 
-  Mask16 lanes(std::size_t lane) const { return sharing[lane][0] | sharing[lane][1] | sharing[lane][2]; }
+  // Triangles that have one of the vertices at some places.
+  Mask16 lanes(unsigned places) const {
+    unsigned found = 0;
+    for (; places != 0; places &= places - 1) found |= at[static_cast<std::size_t>(std::countr_zero(places))];
+    return static_cast<Mask16>(found);
+  }
 };
 
 // The surface cut into patches, and a binary tree over them, built once in the reference pose. The children
@@ -50,23 +63,24 @@ struct PatchTree {
   std::vector<Node> nodes;
   std::vector<Patch> patches;
 
-  // The patches that touch a patch, itself among them, in compressed rows.
-  std::vector<std::int32_t> adjacent_offset;
-  std::vector<Adjacent> adjacent;
-  // Null where the two do not touch.
-  const Adjacent* adjacent_to(std::size_t p, std::size_t q) const {
-    for (auto i = static_cast<std::size_t>(adjacent_offset[p]);
-         i < static_cast<std::size_t>(adjacent_offset[p + 1]); ++i)
-      if (static_cast<std::size_t>(adjacent[i].patch) == q) return &adjacent[i];
-    return nullptr;
-  }
+  // Of each patch and cover: triangles whose corners' triangles all belong to the patch's cluster.
+  std::vector<std::array<Mask16, kCovers>> inside;
 
-  // Lanes of the triangles that share a vertex with a triangle, itself among them, in compressed rows.
-  std::vector<std::int32_t> ring_offset;
-  std::vector<Lane> ring;
-  std::span<const Lane> ring_of(TriangleId triangle) const {
-    const auto first = static_cast<std::size_t>(ring_offset[+triangle]);
-    return std::span(ring).subspan(first, static_cast<std::size_t>(ring_offset[+triangle + 1]) - first);
+  // The patches that touch a patch, itself among them, in compressed rows.
+  std::vector<std::int32_t> adjacent_offset, adjacent;
+  std::vector<Common> common;
+  template <class Take>  // (patch, common)
+  void for_each_adjacent(std::size_t p, const Take& take) const {
+    const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
+    for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
+      take(static_cast<std::size_t>(adjacent[i]), common[i]);
+  }
+  // Null where the two do not touch.
+  const Common* common_of(std::size_t p, std::size_t q) const {
+    const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
+    for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
+      if (static_cast<std::size_t>(adjacent[i]) == q) return &common[i];
+    return nullptr;
   }
 };
 

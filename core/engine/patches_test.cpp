@@ -38,37 +38,46 @@ TEST(Patches, EveryTriangleLiesInOneLane) {
 TEST(Patches, InsideMeansAllAroundEveryCorner) {
   const Cut cut;
   std::size_t not_inside = 0;
-  for (const Patch& patch : cut.tree.patches)
+  for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
     for (std::size_t l = 0; l < kLanes16; ++l)
       for (std::size_t c = 0; c < kCovers; ++c) {
+        const Patch& patch = cut.tree.patches[p];
+        const Mask16 inside = cut.tree.inside[p][c];
         if (!(patch.lanes >> l & 1)) {
-          EXPECT_FALSE(patch.inside[c] >> l & 1);
+          EXPECT_FALSE(inside >> l & 1);
           continue;
         }
         bool all = patch.cluster[c] != kNone;
         for (std::size_t t = 0; t < cut.mesh.triangle_count(); ++t)
           if (share_vertex(cut.mesh.triangles()[t], cut.mesh.corners(patch.triangle[l])))
             all = all && cut.covers[c].cluster_of[t] == patch.cluster[c];
-        EXPECT_EQ(patch.inside[c] >> l & 1, all);
+        EXPECT_EQ(inside >> l & 1, all);
         not_inside += !all;
       }
   EXPECT_GT(not_inside, 0u);
 }
 
-TEST(Patches, RingsHoldAllTrianglesWithACommonVertex) {
+TEST(Patches, AllTrianglesWithACommonVertexAreFound) {
   const Cut cut;
-  for (std::size_t t = 0; t < cut.mesh.triangle_count(); t += 7) {
-    std::vector<TriangleId> ring, expected;
-    const TriangleId triangle{static_cast<std::int32_t>(t)};
-    for (const Lane& lane : cut.tree.ring_of(triangle))
-      ring.push_back(cut.tree.patches[static_cast<std::size_t>(lane.patch)]
-                         .triangle[static_cast<std::size_t>(lane.lane)]);
-    std::sort(ring.begin(), ring.end());
-    for (std::size_t u = 0; u < cut.mesh.triangle_count(); ++u)
-      if (share_vertex(cut.mesh.triangles()[u], cut.mesh.triangles()[t]))
-        expected.push_back(TriangleId{static_cast<std::int32_t>(u)});
-    EXPECT_EQ(ring, expected);
-  }
+  for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
+    for (std::size_t l = 0; cut.tree.patches[p].lanes >> l != 0; l += 3) {
+      const Patch& patch = cut.tree.patches[p];
+      const TriangleId triangle = patch.triangle[l];
+      std::set<TriangleId> found, expected;
+      cut.tree.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+        EXPECT_EQ(cut.tree.common_of(p, q), &common);
+        const Mask16 lanes = common.beside(patch, l);
+        EXPECT_EQ(common.lanes(patch.corners_of(1U << l)), lanes);
+        for (std::size_t m = 0; lanes >> m != 0; ++m) {
+          if (!(lanes >> m & 1)) continue;
+          EXPECT_TRUE(found.insert(cut.tree.patches[q].triangle[m]).second);
+        }
+      });
+      for (std::size_t u = 0; u < cut.mesh.triangle_count(); ++u)
+        if (share_vertex(cut.mesh.triangles()[u], cut.mesh.corners(triangle)))
+          expected.insert(TriangleId{static_cast<std::int32_t>(u)});
+      EXPECT_EQ(found, expected);
+    }
 }
 
 // What lies inside no cluster of the first two covers lies inside one of the third, which spans no two
@@ -85,10 +94,10 @@ TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
   const PatchTree tree = make_patches(mesh, two.positions, covers);
   EXPECT_GE(covers[2].observers.size(), 4u);
   std::size_t missed = 0;
-  for (const Patch& patch : tree.patches) {
-    const auto first_two = static_cast<Mask16>(patch.inside[0] | patch.inside[1]);
-    missed += first_two != patch.lanes;
-    EXPECT_EQ(first_two | patch.inside[2], patch.lanes);
+  for (std::size_t p = 0; p < tree.patches.size(); ++p) {
+    const auto first_two = static_cast<Mask16>(tree.inside[p][0] | tree.inside[p][1]);
+    missed += first_two != tree.patches[p].lanes;
+    EXPECT_EQ(first_two | tree.inside[p][2], tree.patches[p].lanes);
   }
   EXPECT_GT(missed, 4u);
   std::map<std::int32_t, std::set<std::int32_t>> components;

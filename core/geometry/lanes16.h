@@ -14,6 +14,7 @@ namespace cscd {
 // and clang lack stands here twice: one instruction where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
 using Float16 = float __attribute__((vector_size(kLanes16 * sizeof(float))));
+using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int32_t))));
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
@@ -24,7 +25,7 @@ inline Float16 larger(Float16 a, Float16 b) {
   return a < b ? b : a;
 }
 inline Float16 absolute(Float16 a) {
-  return larger(a, -a);
+  return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
 }
 
 // Where a > b.

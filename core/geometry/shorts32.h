@@ -12,7 +12,6 @@ namespace cscd {
 // Thirty-two 16-bit integers side by side: sixteen pairs. What the vector types lack stands here twice, as in
 // lanes16.h.
 using Short32 = std::int16_t __attribute__((vector_size(64)));
-using Int16 = std::int32_t __attribute__((vector_size(64)));
 using Mask32 = std::uint32_t;
 
 inline Short32 smaller(Short32 a, Short32 b) {
