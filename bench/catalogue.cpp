@@ -45,6 +45,11 @@ constexpr std::array kStrategies = {
              [](const Setup& setup) { return make_drvbc(setup); }},
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
              false, [](const Setup& setup) { return make_drvbc_fast(setup); }},
+    Strategy{"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters", Guarantee::complete,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+             }},
 #ifdef CSCD_BASELINES_FCL
     Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
              Guarantee::heuristic, false, make_fcl, "checker", true},

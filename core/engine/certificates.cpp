@@ -19,13 +19,16 @@ void for_each_lane(unsigned mask, const Take& take) {
 
 }  // namespace
 
-Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::size_t count)
+Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::size_t count,
+                           std::vector<CappedClusters> capped)
     : tree_(tree),
       covers_(covers),
       count_(count),
       certified_(tree.patches.size()),
       own_(tree.patches.size()),
-      label_(tree.nodes.size()) {
+      label_(tree.nodes.size()),
+      capped_(std::move(capped)),
+      crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
   for (std::size_t c = 0; c < count_; ++c) {
@@ -37,25 +40,24 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
 void Certificates::start(const LocalPositions& positions) {
   positions_ = &positions;
   place_viewpoints(positions.records());
+  for (std::size_t c = 0; c < capped_.size(); ++c) capped_[c].start(positions, viewpoint_[c]);
 }
 
 void Certificates::finish() {
-  certify_positive();
-  certify_negative();
+  if (capped_.empty()) {
+    certify_positive();
+    certify_negative();
+  } else {
+    certify_clear();
+  }
   if (!positions_->known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   label_nodes();
 }
 
 void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
   for (std::size_t c = 0; c < count_; ++c)
-    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i) {
-      const FollowingPoint& from = covers_[c].observers[i];
-      float sum[8] = {};
-      for (std::size_t v = 0; v < from.vertices.size(); ++v)
-        for (std::size_t k = 0; k < 8; ++k) sum[k] += from.weights[v] * records[+from.vertices[v]].at[k];
-      for (std::size_t end = 0; end < 2; ++end)
-        for (std::size_t k = 0; k < 3; ++k) viewpoint_[c][i].at[end][k] = sum[4 * end + k];
-    }
+    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i)
+      viewpoint_[c][i] = placed(covers_[c].observers[i], records);
 }
 
 void Certificates::look(std::size_t p, const PatchLanes& lanes) {
@@ -65,6 +67,9 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   orientations(lanes, patch, from, positions_->error(), seen);
+  for (std::size_t c = 0; c < capped_.size(); ++c)
+    if (from[c] != nullptr)
+      crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
   const unsigned lanes_in_use = patch.lanes;
   for (std::size_t c = 0; c < count_; ++c)
     if (from[c] != nullptr)
@@ -83,6 +88,21 @@ void Certificates::certify_positive() {
         certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
       });
     }
+}
+
+void Certificates::certify_clear() {
+  const auto for_each_seen = [&](const auto& take) {
+    for (std::size_t p = 0; p < certified_.size(); ++p)
+      for (std::size_t c = 0; c < count_; ++c)
+        if (cell_[p].cluster[c] != kNone)
+          take(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own_[p][c].not_positive)));
+  };
+  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
+    if (positive != cell_[p].lanes || crosses_ray_[p][c]) capped_[c].take(tree_.patches[p], positive);
+  });
+  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
+    certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive), 0};
+  });
 }
 
 void Certificates::certify_negative() {

@@ -6,6 +6,7 @@
 
 #include "core/detect/counts.h"
 #include "core/detect/radial_view.h"
+#include "core/engine/capped_clusters.h"
 #include "core/engine/patch_lanes.h"
 
 namespace cscd::fast {
@@ -20,8 +21,10 @@ namespace cscd::fast {
 // the other triangles at a shared vertex might be dropped by the other cover.
 class Certificates {
  public:
-  // Looks at the first `covers` of them alone.
-  Certificates(const PatchTree& tree, const Covers& covers, std::size_t count);
+  // Looks at the first `count` covers alone. With `capped`, one of each of these, no contact is lost
+  // whatever the start; without, the first of an embedded start is kept.
+  Certificates(const PatchTree& tree, const Covers& covers, std::size_t count,
+               std::vector<CappedClusters> capped = {});
 
   // One interval: `start`, then `look` at every patch, in any order and from any thread, then `finish`.
   void start(const LocalPositions& positions);
@@ -50,7 +53,11 @@ class Certificates {
   Shared shared(std::size_t p, std::size_t q) const {
     Shared sets{{}, {}, cell_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
-      if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
+      if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && !capped_.empty()) {
+        // One of both is enough.
+        sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = cell_[q].lanes;
+        sets.p[2 * c + 1] = cell_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
+      } else if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
         const Signs &a = certified_[p][c], &b = certified_[q][c];
         sets.p[2 * c] = a.positive, sets.p[2 * c + 1] = a.negative;
         sets.q[2 * c] = b.positive, sets.q[2 * c + 1] = b.negative;
@@ -66,6 +73,7 @@ class Certificates {
   void place_viewpoints(std::span<const LocalPositions::Record> records);
   void certify_positive();
   void certify_negative();
+  void certify_clear();
   void label_nodes();
 
   struct Cell {  // of a patch: what is needed of all of them, together
@@ -88,6 +96,8 @@ class Certificates {
   std::vector<std::array<Own, kCovers>> own_;          // of each patch
   std::vector<std::array<std::int32_t, kCovers>>
       label_;  // of each node: cluster and sign of all below, or kNone
+  std::vector<CappedClusters> capped_;
+  std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
   RadialCounts counts_;
 };
 

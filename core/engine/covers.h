@@ -5,17 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "core/engine/following_point.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd::fast {
 
 inline constexpr std::int32_t kNone = -1;
-
-// What a cluster is seen from: a point that follows the surface, an affine combination of some vertices.
-struct FollowingPoint {
-  std::vector<VertexId> vertices;
-  std::vector<float> weights;  // sum to about 1: what they sum to exactly is the observer
-};
 
 // Disjoint clusters of triangles, each with its observer. No cluster spans two components (trap 3).
 struct Cover {

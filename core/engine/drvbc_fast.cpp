@@ -29,6 +29,15 @@ namespace {
 
 constexpr std::size_t kRange = 64;  // nodes worth another thread
 
+std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
+                                   const DrvbcFastOptions& options) {
+  std::vector<CappedClusters> capped;
+  if (options.complete)
+    for (std::size_t c = 0; c < options.covers; ++c)
+      capped.emplace_back(setup.mesh, setup.reference, covers[c], c);
+  return capped;
+}
+
 class FastCuller : public Culler {
  public:
   FastCuller(const Setup& setup, Covers covers, const DrvbcFastOptions& options)
@@ -36,7 +45,7 @@ class FastCuller : public Culler {
         options_(options),
         positions_(setup.reference),
         tree_(make_patches(setup.mesh, setup.reference, covers_)),
-        certificates_(tree_, covers_, options.covers),
+        certificates_(tree_, covers_, options.covers, capped(setup, covers_, options)),
         stars_(setup.mesh),
         team_(setup.threads),
         descent_({tree_, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear},
@@ -136,7 +145,7 @@ std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
 // Clusters of bones or of the surface, whichever make less work where bones turn.
 std::vector<std::int32_t> clusters(const Setup& setup, DrvbcFastOptions::Clusters wanted, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  if (!has_bones(setup) || wanted == Clusters::of_surface)
+  if (!has_bones(setup) || wanted == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return surface_clusters(setup.mesh, setup.reference);
   const std::vector<BoneId> bone_of = bones_of(setup, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
@@ -150,7 +159,7 @@ std::vector<std::int32_t> clusters(const Setup& setup, DrvbcFastOptions::Cluster
 }  // namespace fast
 
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
-  require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
+  if (!options.complete) require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
   if (setup.threads < 1)
     throw InputError("strategy " + std::string(options.name) + ": " + std::to_string(setup.threads) +
                      " threads; give at least one");

@@ -14,6 +14,8 @@ struct DrvbcFastOptions {
   bool stars = true;
   enum class Clusters { by_trial, of_bones, of_surface };  // from which covers are made
   Clusters clusters = Clusters::by_trial;
+  // No contact is lost, whatever the surface and the start, by the contour test of capped clusters.
+  bool complete = false;
 };
 
 // Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins from

@@ -37,11 +37,6 @@ TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, floa
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane);
 
-// A viewpoint that moves in a straight line; [end][axis]. These numbers are the observer: it has no error.
-struct Viewpoint {
-  float at[2][3];
-};
-
 // Triangles that certainly are positive, and that certainly are negative, at every t.
 struct Signs {
   Mask16 positive, negative;

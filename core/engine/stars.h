@@ -10,13 +10,13 @@
 namespace cscd::fast {
 
 // Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two
-// triangles of such a star touch nowhere but in what they share, if they do not at t = 0: a proof for pairs
-// of adjacent triangles that needs no cluster.
+// triangles of such a star touch nowhere but in what they share, whatever the start: a proof for pairs of
+// adjacent triangles that needs no cluster.
 //
-// Why: seen along the plane's normal all triangles of the star have positive area, so the angles under which
-// they are seen at the vertex sum to a multiple of a full turn, which cannot change as long as they stay
-// positive. At t = 0 the star is embedded and closed; on a small sphere about the vertex it is a simple
-// closed curve, which winds about an axis at most once. So their sectors never overlap.
+// Why: the star is closed (of others nothing is said). Seen along the plane's normal all its triangles have
+// positive area, so the angles under which they are seen at the vertex sum to a multiple of a full turn,
+// which cannot change as long as they stay positive. At t = 0 some direction lies in one of them alone, hence
+// one turn: their sectors never overlap.
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
@@ -28,6 +28,7 @@ class Stars {
   struct Ends {  // the other corners of a triangle at the vertex
     std::int32_t second, third;
   };
+  static bool closed(std::span<const Ends> ends);
 
   std::vector<std::int32_t> offset_;
   std::vector<Ends> ends_;

@@ -82,5 +82,38 @@ TEST(Stars, DegenerateTrianglesAreNotFlat) {
   EXPECT_TRUE(stars.flat(VertexId{1}, local));
 }
 
+// Mutation: turns not counted.
+TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
+  for (const int turns : {1, 2}) {
+    test::Shape star{{{0, 0, 0}}, {}};
+    constexpr int kCorners = 12;
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = 2 * std::numbers::pi * turns * i / kCorners;
+      const double wave = std::cos(angle / turns), r = 1 + 0.2 * wave;
+      star.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.1 * wave);
+      star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % kCorners));
+    }
+    const TriangleMesh mesh = star.mesh();
+    std::vector<Vec3> end = star.positions;
+    for (Vec3& p : end) p.z() = -p.z();
+    const Motion motion(star.positions, end);
+    LocalPositions local(star.positions);
+    local.update(motion);
+    EXPECT_EQ(contacts_in_star(mesh, motion, VertexId{0}) > 0, turns == 2);
+    EXPECT_EQ(Stars(mesh).flat(VertexId{0}, local), turns == 1);
+  }
+}
+
+// Mutation: open links kept.
+TEST(Stars, AnOpenOneIsNotFlat) {
+  const test::Shape strip = test::ramp(8, 0.5, 1, 2, 0);
+  const TriangleMesh mesh = strip.mesh();
+  LocalPositions local(strip.positions);
+  local.update(Motion(strip.positions, strip.positions));
+  const Stars stars(mesh);
+  for (std::int32_t v = 0; v < 27; ++v)
+    EXPECT_EQ(stars.flat(VertexId{v}, local), v % 3 == 1 && v > 2 && v < 24) << v;
+}
+
 }  // namespace
 }  // namespace cscd::fast
