@@ -122,21 +122,23 @@ void Certificates::label_nodes() {
   for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
     const PatchTree::Node& node = tree_.nodes[n];
     if (!node.is_leaf()) {
-      const auto &left = label_[node.left()], &right = label_[node.right()];
-      for (std::size_t c = 0; c < kCovers; ++c) label_[n][c] = left[c] == right[c] ? left[c] : kNone;
+      const Label left = label_[node.left()], right = label_[node.right()];
+      label_[n] = left == right ? left : Label{} + kNone;
       continue;
     }
     const std::size_t p = node.patch();
     const Cell& patch = cell_[p];
     unsigned some = 0;
+    Label label = Label{} + kNone;
     for (std::size_t c = 0; c < kCovers; ++c) {
       const Signs& signs = certified_[p][c];
-      label_[n][c] = patch.cluster[c] == kNone       ? kNone
-                     : signs.positive == patch.lanes ? 2 * patch.cluster[c]
-                     : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
-                                                     : kNone;
+      label[c] = patch.cluster[c] == kNone       ? kNone
+                 : signs.positive == patch.lanes ? 2 * patch.cluster[c]
+                 : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
+                                                 : kNone;
       some |= signs.positive | signs.negative;
     }
+    label_[n] = label;
     counts_.positive += count(certified_[p][0].positive);
     counts_.negative += count(certified_[p][0].negative);
     counts_.uncertain += count(patch.lanes & ~some);

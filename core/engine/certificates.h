@@ -33,9 +33,9 @@ class Certificates {
 
   // Whether no pair of triangles, one below each node, has to be looked at; a == b: no pair below the node.
   bool skip(std::size_t a, std::size_t b) const {
-    bool any = false;
-    for (std::size_t c = 0; c < kCovers; ++c) any |= label_[a][c] == label_[b][c] && label_[a][c] != kNone;
-    return any;
+    const Label both = (label_[a] == label_[b]) & (label_[a] != kNone);
+    const auto any = reinterpret_cast<Halves>(both);
+    return (any[0] | any[1]) != 0;
   }
   // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one
   // of q in the same set.
@@ -94,8 +94,11 @@ class Certificates {
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
   std::vector<std::array<Own, kCovers>> own_;          // of each patch
-  std::vector<std::array<std::int32_t, kCovers>>
-      label_;  // of each node: cluster and sign of all below, or kNone
+  // Of each node, in each cover: cluster and sign of all below, or kNone. All covers in one register.
+  using Label = std::int32_t __attribute__((vector_size(16)));
+  using Halves = std::int64_t __attribute__((vector_size(16)));
+  static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
+  std::vector<Label> label_;
   std::vector<CappedClusters> capped_;
   std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
   RadialCounts counts_;
