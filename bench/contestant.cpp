@@ -26,6 +26,7 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
     const auto make = [&](const ElementaryTest& test) {
       Prepared prepared = strategy->make(input.setup(test));
       add(prepared.preparation, contestant.preparation);
+      contestant.threads = prepared.preparation.threads;
       progress.advance();
       return std::move(prepared.detector);
     };

@@ -16,6 +16,7 @@ struct Contestant {
   const Strategy* strategy;
   std::unique_ptr<Detector> judged, timed;
   PreparationRecord preparation;
+  int threads = 1;  // on which it answers
 };
 
 // Throws InputError when the input lacks what a strategy needs. The input must outlive the detectors.

@@ -14,8 +14,8 @@ struct Footprint {
   // Resident memory over that before the strategy was made: at most while it was made and answered twice, and
   // what it kept then. Absent where the kernel does not say.
   std::optional<std::uint64_t> peak_bytes, held_bytes;
-  // User-mode instructions of a query, mean over the intervals. Absent where the machine does not count them:
-  // most virtual machines do not.
+  // User-mode instructions of a query, mean over the intervals. Absent where the machine does not count them,
+  // as most virtual machines do not, and where several threads share the work.
   std::optional<double> instructions;
 };
 

@@ -22,9 +22,10 @@ struct Input {
   std::vector<Vec3> reference;  // positions of frame 0
   std::optional<Rig> rig;
   std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
+  int threads = 1;                                            // for whatever can use them
 
   Setup setup(const ElementaryTest& elementary) const {
-    return {mesh, reference, rig ? &*rig : nullptr, elementary};
+    return {mesh, reference, rig ? &*rig : nullptr, elementary, threads};
   }
 };
 

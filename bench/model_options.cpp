@@ -45,4 +45,13 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       ->group(kGroup);
 }
 
+void add_threads_option(CLI::App& command, int& threads) {
+  command
+      .add_option("--threads", threads,
+                  "threads that answer an interval together, where the strategy can share its work\n"
+                  "(drvbc_fast); the others run on one. Answers are the same on any number")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
 }  // namespace cscd::bench

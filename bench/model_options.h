@@ -12,4 +12,7 @@ inline constexpr char kInputHelp[] =
 // The options of every command that takes a model file. `options` must live as long as the command.
 void add_model_options(CLI::App& command, ModelOptions& options);
 
+// --threads, of every command that answers intervals.
+void add_threads_option(CLI::App& command, int& threads);
+
 }  // namespace cscd::bench

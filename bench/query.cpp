@@ -24,6 +24,7 @@ struct QueryOptions {
   std::string input, strategy, elementary = "filtered_exact", frames, output;
   bool force = false, unproven = false, first = false;
   std::optional<double> interval_seconds;
+  int threads = 1;
   ModelOptions model;
 };
 
@@ -70,12 +71,12 @@ void require_right_times(const ElementaryTest& elementary) {
                      "' may be wrong about what touches; choose filtered_exact or exact");
 }
 
-std::unique_ptr<Detector> make_detector(const Strategy& strategy, const Setup& setup, bool first) {
-  std::unique_ptr<Detector> detector = strategy.make(setup).detector;
-  if (first && !look_for_first_only(*detector))
+Prepared make_detector(const Strategy& strategy, const Setup& setup, bool first) {
+  Prepared prepared = strategy.make(setup);
+  if (first && !look_for_first_only(*prepared.detector))
     throw InputError("--first: strategy " + std::string(strategy.name) +
                      " tests pairs by itself and finds all; leave one of the two out");
-  return detector;
+  return prepared;
 }
 
 void query(const QueryOptions& options) {
@@ -85,6 +86,7 @@ void query(const QueryOptions& options) {
   OutputFile output(options.output, options.force);
 
   Input input = open_input(options.input, options.model);
+  input.threads = options.threads;
   if (strategy == nullptr) strategy = &default_strategy(input);
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const double patience = options.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
@@ -92,7 +94,8 @@ void query(const QueryOptions& options) {
                                   ": an interval, or the preparation, took more than " +
                                   json(patience).dump() + " s; raise --interval-seconds to wait longer");
   const Setup setup = input.setup(elementary);
-  const std::unique_ptr<Detector> detector = make_detector(*strategy, setup, options.first);
+  const Prepared prepared = make_detector(*strategy, setup, options.first);
+  const int threads = prepared.preparation.threads;
   const bool may_fall_back = strategy->guarantee == Guarantee::first_contact && !options.unproven;
   std::unique_ptr<Detector> fallback;  // made when it is first needed
 
@@ -106,8 +109,8 @@ void query(const QueryOptions& options) {
     const scenes::ClipInterval interval = input.clip->load(i);
     const bool embedded = embedding.embedded(interval.motion.start());
     const bool fall_back = may_fall_back && !embedded;
-    if (fall_back && !fallback) fallback = make_detector(complete_reference(), setup, options.first);
-    Detector& used = fall_back ? *fallback : *detector;
+    if (fall_back && !fallback) fallback = make_detector(complete_reference(), setup, options.first).detector;
+    Detector& used = fall_back ? *fallback : *prepared.detector;
     const Report report = used.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
     found.sort();
     if (options.first) keep_first(found);
@@ -128,17 +131,19 @@ void query(const QueryOptions& options) {
   }
 
   watchdog.restart();
-  json document = {{"schema", "cscd.query/1"},      {"input", options.input},
-                   {"strategy", strategy->name},    {"guarantee", to_string(strategy->guarantee)},
-                   {"elementary", elementary.name}, {"intervals", std::move(intervals)}};
+  json document = {{"schema", "cscd.query/1"},         {"input", options.input},
+                   {"strategy", strategy->name},       {"guarantee", to_string(strategy->guarantee)},
+                   {"elementary", elementary.name},    {"threads", threads},
+                   {"intervals", std::move(intervals)}};
   if (options.first) document["first_only"] = true;
   if (input.import) document["import"] = import_json(*input.import);
   output.commit(document.dump(1) + "\n");
   std::printf(
-      "%s: %zu intervals, %zu with contacts, %zu with a start that is not embedded (strategy %s, elementary "
-      "test %s)\n",
+      "%s: %zu intervals, %zu with contacts, %zu with a start that is not embedded (strategy %s on %d "
+      "thread%s, elementary test %s)\n",
       options.input.c_str(), range.last - range.first, colliding, not_embedded,
-      std::string(strategy->name).c_str(), std::string(elementary.name).c_str());
+      std::string(strategy->name).c_str(), threads, threads == 1 ? "" : "s",
+      std::string(elementary.name).c_str());
 }
 
 }  // namespace
@@ -170,6 +175,7 @@ void add_query(CLI::App& app) {
       ->add_option("--interval-seconds", options->interval_seconds,
                    "seconds after which an interval is given up; default 60 for model files, else none")
       ->check(CLI::Range(0.01, 1e6));
+  add_threads_option(*command, options->threads);
   add_model_options(*command, options->model);
   command->callback([options] { query(*options); });
 }

@@ -90,6 +90,7 @@ ordered_json to_json(const StrategyRecord& s) {
   ordered_json out = {{"name", s.name},
                       {"source", s.source},
                       {"guarantee", s.guarantee},
+                      {"threads", s.threads},
                       {"preparation", std::move(preparation)},
                       {"footprint", std::move(footprint)},
                       {"counts", s.counts},
@@ -123,6 +124,7 @@ StrategyRecord strategy_from(const ordered_json& s) {
   out.name = s.at("name");
   out.source = s.at("source");
   out.guarantee = s.at("guarantee");
+  out.threads = s.value("threads", 1);
   const ordered_json& preparation = s.at("preparation");
   if (preparation.contains("distance_and_heat_ms"))
     out.preparation.distance_and_heat_ms = preparation["distance_and_heat_ms"].get<std::vector<double>>();

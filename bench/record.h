@@ -34,6 +34,7 @@ struct PreparationRecord {  // one sample for every time that the strategy was m
 
 struct StrategyRecord {
   std::string name, source, guarantee;
+  int threads = 1;
   PreparationRecord preparation;
   Footprint footprint;
   CountColumns counts;

@@ -31,6 +31,7 @@ struct RunOptions {
   std::vector<std::string> strategies;
   std::size_t repetitions = 5, count_every = 1, time_every = 1, verify_every = 1;
   std::uint64_t seed = 2014;
+  int threads = 1;
   bool smoke = false, force = false;
   ModelOptions model;
 };
@@ -53,7 +54,8 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
       "--count-every",  std::to_string(options.count_every),
       "--time-every",   std::to_string(options.time_every),
       "--verify-every", std::to_string(options.verify_every),
-      "--seed",         std::to_string(options.seed)};
+      "--seed",         std::to_string(options.seed),
+      "--threads",      std::to_string(options.threads)};
   if (is_model) {
     const std::vector<std::string> model = to_arguments(options.model.import);
     words.insert(words.end(), model.begin(), model.end());
@@ -85,6 +87,7 @@ StrategyRecord describe(const Contestant& contestant) {
   record.name = contestant.strategy->name;
   record.source = contestant.strategy->source;
   record.guarantee = to_string(contestant.strategy->guarantee);
+  record.threads = contestant.threads;
   record.preparation = contestant.preparation;
   return record;
 }
@@ -124,6 +127,7 @@ bool run_one(RunOptions options, OutputFile& output) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
   Input input = open_input(options.scene, options.model);
+  input.threads = options.threads;
   IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   if (options.smoke) {
     if (range.last - range.first > kSmokeIntervals)  // those in the middle, where more happens
@@ -255,6 +259,7 @@ void add_run(CLI::App& app) {
                    "where the record goes; with --scene all, the folder of the records")
       ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
+  add_threads_option(*command, options->threads);
   add_model_options(*command, options->model);
   command->callback([options] { run(*options); });
 }

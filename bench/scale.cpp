@@ -7,6 +7,7 @@
 #include "bench/data.h"
 #include "bench/environment.h"
 #include "bench/json_text.h"
+#include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/scale_study.h"
@@ -28,6 +29,7 @@ struct ScaleOptions {
   std::vector<double> steps;
   std::size_t intervals = 0, repetitions = 0, reference_limit = 250'000;
   std::uint64_t seed = 2014;
+  int threads = 1;
   bool smoke = false, largest = false, force = false;
   std::string output;
 };
@@ -73,6 +75,7 @@ std::vector<Planned> plan(const ScaleOptions& options) {
   common.repetitions =
       options.repetitions > 0 ? options.repetitions : defaults.at("repetitions").get<std::size_t>();
   common.reference_limit = options.reference_limit;
+  common.threads = options.threads;
 
   std::vector<Planned> all;
   const auto scenes = or_default(options.scenes, "scenes");
@@ -150,6 +153,7 @@ std::vector<std::string> command_line(const ScaleOptions& o, std::span<const Pla
   add("--repetitions", std::vector{all.front().subject.repetitions});
   add("--reference-up-to", std::vector{o.reference_limit});
   add("--seed", std::vector{o.seed});
+  add("--threads", std::vector{o.threads});
   return words;
 }
 
@@ -318,6 +322,7 @@ void add_scale(CLI::App& app) {
                    "triangles up to which the reference answers and is timed on every interval")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the order of the strategies")->capture_default_str();
+  add_threads_option(*command, options->threads);
   command->add_flag("--smoke", options->smoke, "small surfaces, in seconds; times mean nothing");
   command->add_option("--json", options->output, "where the record goes");
   command->add_flag("--force", options->force, "replace the output if it exists");

@@ -88,6 +88,7 @@ Scaled scaled_input(const PosedScene& posed, const ScaleSubject& subject) {
       scenes::ClipHeader{std::move(shape.triangles), shape.positions.size(), rig.parent, false},
       std::move(moments), std::move(intervals));
   Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(rig)};
+  input.threads = subject.threads;
   return {std::move(input), milliseconds_since(begin)};
 }
 
@@ -278,6 +279,7 @@ class Measurement {
   ordered_json preparation_json(const Contestant& c) const {
     ordered_json out = {{"name", c.strategy->name},
                         {"guarantee", to_string(c.strategy->guarantee)},
+                        {"threads", c.made.prepared.preparation.threads},
                         {"make_ms", c.made.make_ms}};
     const Preparation& preparation = c.made.prepared.preparation;
     if (preparation.distance_and_heat_ms) out["distance_and_heat_ms"] = *preparation.distance_and_heat_ms;

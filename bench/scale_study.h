@@ -20,6 +20,7 @@ struct ScaleSubject {
   std::vector<std::size_t> starts;  // frames at which intervals start
   std::vector<const Strategy*> strategies;
   std::size_t repetitions = 5;
+  int threads = 1;  // for the strategies that can share their work
   std::size_t reference_limit =
       0;  // triangles above which the complete reference answers one interval a step
 };

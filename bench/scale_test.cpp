@@ -115,12 +115,15 @@ class ScaleProgram : public testing::Test {
 
 TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
   const auto out =
-      record({"--smoke", "--study", "size", "--scene", "rope", "--sizes", "1000,3000,9000"}, "sizes");
+      record({"--smoke", "--study", "size", "--scene", "rope", "--sizes", "1000,3000,9000", "--threads", "2"},
+             "sizes");
   EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
   ASSERT_EQ(out.at("subjects").size(), 3u);
   for (const auto& subject : out.at("subjects")) {
     EXPECT_EQ(subject.at("study"), "size");
     EXPECT_EQ(subject.at("bones"), 100);
+    for (const auto& strategy : subject.at("strategies"))
+      EXPECT_EQ(strategy.at("threads"), strategy.at("name") == "drvbc_fast" ? 2 : 1);
     const auto& step = subject.at("steps").at(0);
     EXPECT_EQ(step.at("verified").at("by_reference"), 2);
     for (const auto& row : step.at("strategies")) EXPECT_GT(row.at("ms").at("total"), 0);

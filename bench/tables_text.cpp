@@ -61,12 +61,25 @@ std::string text(const ordered_json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+std::string threads(const Record& record) {
+  int most = 1;
+  std::string sharing;
+  for (const StrategyRecord& strategy : record.strategies)
+    if (strategy.threads > 1) {
+      most = strategy.threads;
+      sharing += (sharing.empty() ? "" : ", ") + strategy.name;
+    }
+  return most == 1 ? "one thread"
+                   : std::to_string(most) + " threads for " + sharing + ", one for every other strategy";
+}
+
 ordered_json source_json(const Record& record) {
   const VerificationRecord& v = record.verification;
   return {{"scene", record.scene.name},
           {"digest", record.scene.digest},
           {"command", record.command},
           {"environment", record.environment},
+          {"threads", threads(record)},
           {"intervals", record.intervals},
           {"counted_intervals", record.counted_intervals.size()},
           {"timed_intervals", record.timed_intervals.size()},
@@ -92,8 +105,8 @@ std::string provenance(const Record& record) {
   const ordered_json& e = record.environment;
   const VerificationRecord& v = record.verification;
   const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
-  std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") +
-                    " cores, one thread; " + get("compiler") + ", " + get("build_type") + "; commit " +
+  std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") + " cores, " +
+                    threads(record) + "; " + get("compiler") + ", " + get("build_type") + "; commit " +
                     get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
                     get("date") + ".\n";
   out += "Made by `" + joined(record.command) + "`.\n";

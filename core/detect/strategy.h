@@ -37,6 +37,7 @@ struct Preparation {
   std::optional<double> decomposition_ms;      // clusters from heat weights, observers
   std::vector<std::int32_t> atomic_cluster;    // of each triangle; empty where there are none
   int atomic_clusters = 0;
+  int threads = 1;  // on which intervals are answered, of those of the setup
 };
 
 struct Prepared {
@@ -53,8 +54,7 @@ struct Strategy {
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
   // Rows with a group run only where they or their group is named, the others wherever the input allows it.
   std::string_view group = "";
-  bool own_test = false;     // brings its own elementary test, whose answers are compared with the referee's
-  bool shares_work = false;  // among the threads of the setup
+  bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
 };
 
 }  // namespace cscd

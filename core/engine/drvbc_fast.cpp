@@ -184,6 +184,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   preparation.decomposition_ms = clock.milliseconds(Stage::decomposition);
   preparation.atomic_clusters = 1 + *std::max_element(cluster_of.begin(), cluster_of.end());
   preparation.atomic_cluster = std::move(cluster_of);
+  preparation.threads = setup.threads;
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }
 

@@ -30,12 +30,13 @@ struct Scene {
 // Mutations: lists of pairs joined from the last; tests counted of one thread alone; a pair of nodes that
 // can be opened passed on twice; the last range of nodes not looked at; the largest of one range alone.
 TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
-  for (const double noise : {0.0, 0.1, 0.3}) {
+  for (const auto& [noise, complete] : {std::pair(0.0, false), {0.1, false}, {0.3, false}, {0.1, true}}) {
     const Scene scene(noise);
     ContactSet alone, found;
     Report report;
     for (const int threads : {1, 2, 3, 7}) {
-      const std::unique_ptr<Detector> detector = make_drvbc_fast(scene.setup(threads)).detector;
+      const std::unique_ptr<Detector> detector =
+          make_drvbc_fast(scene.setup(threads), {.complete = complete}).detector;
       for (int again = 0; again < 2; ++again) {
         const Report now = detector->detect(scene.motion(), nullptr, found);
         if (threads == 1) alone = found, report = now;
