@@ -163,6 +163,12 @@ const Strategy& strategy_named(std::string_view name) {
   refuse("strategy", name, kStrategies);
 }
 
+std::vector<const Strategy*> strategies_called(std::string_view name_or_group) {
+  std::vector<const Strategy*> group = strategies_in(name_or_group);
+  if (group.empty()) group.push_back(&strategy_named(name_or_group));
+  return group;
+}
+
 std::vector<const Strategy*> strategies_in(std::string_view group) {
   std::vector<const Strategy*> rows;
   for (const Strategy& strategy : kStrategies)

@@ -15,6 +15,8 @@ std::span<const Strategy> strategies();
 const Strategy& strategy_named(std::string_view name);
 // The rows of a group; those without one for "".
 std::vector<const Strategy*> strategies_in(std::string_view group);
+// The rows of a group, or one row. Throws InputError that lists the known names.
+std::vector<const Strategy*> strategies_called(std::string_view name_or_group);
 
 // All elementary tests: those of the core, and those of packages where they are there.
 std::span<const ElementaryTest> all_elementary_tests();

@@ -24,17 +24,23 @@ constexpr ElementaryTest kPutOff{"put off",
                                    return {Verdict::undecided, 0};
                                  }};
 
+scenes::RandomInterval made(std::uint64_t seed, bool torn) {
+  return torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);
+}
+
 // One random interval, ready for any strategy.
 struct Subject {
   std::uint64_t seed;
+  bool torn;
   scenes::RandomInterval random;
   TriangleMesh mesh;
   std::optional<Rig> rig;
   std::map<FeaturePair, Answer> answers;  // the referee's
 
-  explicit Subject(std::uint64_t seed_in)
+  Subject(std::uint64_t seed_in, bool torn_in)
       : seed(seed_in),
-        random(scenes::make_random_interval(seed)),
+        torn(torn_in),
+        random(made(seed, torn)),
         mesh(random.clip.header().triangles, random.clip.header().vertex_count, "random interval"),
         rig(scenes::rig_of(random.clip)) {}
 
@@ -80,53 +86,61 @@ std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& a
   return static_cast<std::size_t>(attaining_first(reference) - attaining_first(answer));
 }
 
+void judge(Subject subject, bool by_all_pairs, std::span<const Strategy> strategies, RandomSummary& summary) {
+  const ElementaryTest &exact = elementary_test_named("exact"), &inexact = elementary_tests().front();
+  const Strategy& oracle = all_pairs();
+  const Strategy& judge = by_all_pairs ? oracle : complete_reference();
+  const Subject::Result judged = subject.run(judge, exact);
+  const ContactSet& reference = judged.found;
+  const std::span<const Vec3> start = subject.random.clip.frame(0).positions;
+  const bool embedded = EmbeddingTest(subject.mesh, start).embedded(start);
+  const bool at_stake = embedded && !subject.torn && !reference.contacts.empty();
+
+  ++summary.intervals;
+  summary.torn += subject.torn;
+  summary.embedded += embedded;
+  summary.contacts += reference.contacts.size();
+  summary.with_contacts += !reference.contacts.empty();
+  summary.embedded_with_contacts += at_stake;
+  if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
+  summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
+
+  for (const Strategy& strategy : strategies) {
+    if (strategy.name == oracle.name && !by_all_pairs) continue;
+    if (subject.torn && strategy.guarantee != Guarantee::complete) continue;  // promises nothing there
+    const Subject::Result own =
+        strategy.name == judge.name ? Subject::Result{} : subject.run(strategy, exact);
+    const Subject::Result& result = strategy.name == judge.name ? judged : own;
+    const Verification verdict = verify(reference, result.found, strategy.guarantee, embedded);
+    RandomRow& row = summary.rows[std::string(strategy.name)];
+    ++row.intervals;
+    row.contacts_expected += verdict.reference_contacts;
+    row.contacts_found += verdict.found_contacts;
+    row.triangle_pairs += result.report.cull.pctp;
+    row.feature_pairs += result.report.pairs.feature_pairs;
+    if (strategy.own_test) row.invented += result.passed_on.contacts.size() - result.found.contacts.size();
+    if (at_stake) {
+      const std::size_t missing = first_pairs_missing(reference, result.found);
+      row.first_pairs_missing += missing;
+      row.firsts_thinned += missing > 0;
+      row.firsts_lost += missing == first_pairs_missing(reference, ContactSet{});
+    }
+    if (!verdict.ok)
+      summary.failures.push_back({subject.seed, subject.torn, std::string(subject.random.family),
+                                  std::string(strategy.name), verdict.failure});
+  }
+}
+
 }  // namespace
 
 RandomSummary verify_random(const RandomVerification& plan, std::span<const Strategy> strategies,
                             const std::function<void(std::size_t)>& progress) {
-  const ElementaryTest &exact = elementary_test_named("exact"), &inexact = elementary_tests().front();
-  const Strategy &oracle = all_pairs(), &stand_in = complete_reference();
   RandomSummary summary;
   for (std::size_t i = 0; i < plan.intervals; ++i) {
-    Subject subject(plan.first_seed + i);
+    const std::uint64_t seed = plan.first_seed + i;
     const bool by_all_pairs = i % plan.brute_every == 0;
-    const Strategy& judge = by_all_pairs ? oracle : stand_in;
-    const Subject::Result judged = subject.run(judge, exact);
-    const ContactSet& reference = judged.found;
-    const std::span<const Vec3> start = subject.random.clip.frame(0).positions;
-    const bool embedded = EmbeddingTest(subject.mesh, start).embedded(start);
-    const bool at_stake = embedded && !reference.contacts.empty();
-
-    ++summary.intervals;
-    summary.embedded += embedded;
-    summary.contacts += reference.contacts.size();
-    summary.with_contacts += !reference.contacts.empty();
-    summary.embedded_with_contacts += at_stake;
-    if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
-    summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
-
-    for (const Strategy& strategy : strategies) {
-      if (&strategy == &oracle && !by_all_pairs) continue;
-      const Subject::Result own = &strategy == &judge ? Subject::Result{} : subject.run(strategy, exact);
-      const Subject::Result& result = &strategy == &judge ? judged : own;
-      const Verification verdict = verify(reference, result.found, strategy.guarantee, embedded);
-      RandomRow& row = summary.rows[std::string(strategy.name)];
-      ++row.intervals;
-      row.contacts_expected += verdict.reference_contacts;
-      row.contacts_found += verdict.found_contacts;
-      row.triangle_pairs += result.report.cull.pctp;
-      row.feature_pairs += result.report.pairs.feature_pairs;
-      if (strategy.own_test) row.invented += result.passed_on.contacts.size() - result.found.contacts.size();
-      if (at_stake) {
-        const std::size_t missing = first_pairs_missing(reference, result.found);
-        row.first_pairs_missing += missing;
-        row.firsts_thinned += missing > 0;
-        row.firsts_lost += missing == first_pairs_missing(reference, ContactSet{});
-      }
-      if (!verdict.ok)
-        summary.failures.push_back(
-            {subject.seed, std::string(subject.random.family), std::string(strategy.name), verdict.failure});
-    }
+    judge(Subject(seed, false), by_all_pairs, strategies, summary);
+    if (i % plan.torn_every == 0) judge(Subject(seed, true), by_all_pairs, strategies, summary);
     if (progress) progress(i + 1);
   }
   return summary;
@@ -134,8 +148,9 @@ RandomSummary verify_random(const RandomVerification& plan, std::span<const Stra
 
 std::string describe(const RandomSummary& summary) {
   const auto count = [](std::size_t n) { return std::to_string(n); };
-  std::string text = count(summary.intervals) + " random intervals: " + count(summary.embedded) +
-                     " with an embedded start, " + count(summary.with_contacts) + " with contacts, " +
+  std::string text = count(summary.intervals) + " random intervals, " + count(summary.torn) +
+                     " of them torn and backwards: " + count(summary.embedded) + " with an embedded start, " +
+                     count(summary.with_contacts) + " with contacts, " +
                      count(summary.embedded_with_contacts) + " with both (";
   bool first = true;
   for (const auto& [family, hits] : summary.embedded_hits_of) {
@@ -159,14 +174,15 @@ std::string describe(const RandomSummary& summary) {
 }
 
 std::string write_failure(const RandomFailure& failure, const std::filesystem::path& folder) {
-  scenes::RandomInterval random = scenes::make_random_interval(failure.seed);
+  scenes::RandomInterval random = made(failure.seed, failure.torn);
   const std::filesystem::path path =
-      folder / ("failure-" + failure.strategy + "-" + std::to_string(failure.seed) + ".h5");
+      folder / ("failure-" + failure.strategy + "-" + std::to_string(failure.seed) +
+                (failure.torn ? "-torn" : "") + ".h5");
   scenes::PointCacheWriter writer(path, random.clip.header(), true);
   scenes::copy_frames(random.clip, writer);
   writer.finish();
-  return failure.strategy + ", family " + failure.family + ", seed " + std::to_string(failure.seed) + ": " +
-         failure.what + "; replay with cscd query " + path.string();
+  return failure.strategy + ", family " + failure.family + ", seed " + std::to_string(failure.seed) +
+         (failure.torn ? ", torn: " : ": ") + failure.what + "; replay with cscd query " + path.string();
 }
 
 }  // namespace cscd::bench

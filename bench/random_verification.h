@@ -18,10 +18,12 @@ struct RandomVerification {
   std::uint64_t first_seed = 1;
   std::size_t brute_every =
       10;  // otherwise the complete reference stands in for all pairs, itself verified here
+  std::size_t torn_every = 3;  // torn ones beside the whole ones, for what promises to be complete
 };
 
 struct RandomFailure {
   std::uint64_t seed;
+  bool torn;
   std::string family, strategy, what;
 };
 
@@ -30,7 +32,7 @@ struct RandomRow {
   std::size_t intervals = 0;
   std::uint64_t contacts_expected = 0, contacts_found = 0;
   std::uint64_t triangle_pairs = 0, feature_pairs = 0;  // passed on
-  // Over embedded starts with contacts: contacts of the earliest time that are not reported, and the
+  // Over whole embedded starts with contacts: contacts of the earliest time that are not reported, and the
   // intervals that lack some. The guarantee first_contact allows all but one.
   std::size_t first_pairs_missing = 0, firsts_thinned = 0;
   std::size_t firsts_lost = 0;  // intervals among these that lack them all
@@ -38,7 +40,8 @@ struct RandomRow {
 };
 
 struct RandomSummary {
-  std::size_t intervals = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0, contacts = 0;
+  std::size_t intervals = 0, torn = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0,
+              contacts = 0;
   std::map<std::string, RandomRow> rows;                // by strategy
   std::map<std::string, std::size_t> embedded_hits_of;  // embedded starts with contacts, by family
   Accuracy newton;                                      // of the first elementary test, on the same pairs

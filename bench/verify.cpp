@@ -13,6 +13,7 @@ namespace cscd::bench {
 void add_verify(CLI::App& app) {
   struct Options {
     RandomVerification plan;
+    std::vector<std::string> strategies;
     std::string folder = ".";
   };
   auto options = std::make_shared<Options>();
@@ -23,6 +24,10 @@ void add_verify(CLI::App& app) {
       "A failing interval is written as a point cache that `cscd query` replays. Exit status 1 if there is "
       "one.");
   command->add_option("--intervals", options->plan.intervals, "how many")->capture_default_str();
+  command
+      ->add_option("--strategy", options->strategies,
+                   "strategies or groups of them, with commas between; default all")
+      ->delimiter(',');
   command->add_option("--seed", options->plan.first_seed, "the first interval's seed; the next ones count up")
       ->capture_default_str();
   command
@@ -31,9 +36,12 @@ void add_verify(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--failures", options->folder, "folder for failing intervals")->capture_default_str();
   command->callback([options] {
+    std::vector<Strategy> chosen;
+    for (const std::string& name : options->strategies)
+      for (const Strategy* strategy : strategies_called(name)) chosen.push_back(*strategy);
     Progress progress("verify", options->plan.intervals);
-    const RandomSummary summary =
-        verify_random(options->plan, strategies(), [&](std::size_t done) { progress.set(done); });
+    const RandomSummary summary = verify_random(options->plan, chosen.empty() ? strategies() : chosen,
+                                                [&](std::size_t done) { progress.set(done); });
     std::printf("%s", describe(summary).c_str());
     for (const RandomFailure& failure : summary.failures)
       std::printf("FAILED %s\n", write_failure(failure, options->folder).c_str());

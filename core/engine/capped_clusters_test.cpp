@@ -105,7 +105,7 @@ struct OneCluster {
 };
 
 // A strip that winds like a spiral staircase faces its observer all along, and lies twice over some of it.
-// The ray goes through what lies there once. Mutations: caps not looked at, or not what is uncertain of them.
+// The ray goes through what lies there once. Mutation: caps not looked at.
 TEST(CappedClusters, AnOpenSpiralThatIsSqueezedIsNotClear) {
   for (const double turns : {0.2, 1.25, 1.75}) {
     const OneCluster ramp(test::ramp(24, turns, 1, 2, 1), {-1.2, -0.5, -2});

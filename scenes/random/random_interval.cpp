@@ -336,4 +336,23 @@ RandomInterval make_random_interval(std::uint64_t seed) {
   return {family.name, std::move(clip)};
 }
 
+RandomInterval make_torn_interval(std::uint64_t seed) {
+  const RandomInterval whole = make_random_interval(seed);
+  Random random(seed * 0x9e3779b97f4a7c15u + 2);
+  ClipHeader header = whole.clip.header();
+  const int one_in = random.integer(5, 200);
+  std::vector<Triangle> left;
+  for (Triangle corners : header.triangles) {
+    const int fate = random.integer(0, one_in);
+    if (fate == 0 && header.triangles.size() > 1) continue;
+    if (fate == 1) std::swap(corners[0], corners[1]);
+    left.push_back(corners);
+    if (fate == 2) left.push_back(corners);
+  }
+  if (!left.empty()) header.triangles = std::move(left);
+  Clip clip(std::move(header));
+  for (const std::size_t frame : {1u, 0u}) clip.append(whole.clip.frame(frame));
+  return {whole.family, std::move(clip)};
+}
+
 }  // namespace cscd::scenes

@@ -21,4 +21,8 @@ struct RandomInterval {
 // Depends on the seed alone; seeds take turns through the families.
 RandomInterval make_random_interval(std::uint64_t seed);
 
+// The same interval backwards, so that it mostly starts by meeting itself, on what is left of the surface:
+// some of its triangles are missing, turned round or there twice. For what promises to take any input.
+RandomInterval make_torn_interval(std::uint64_t seed);
+
 }  // namespace cscd::scenes
