@@ -138,8 +138,8 @@ constexpr std::uint64_t kTestsOfPatch = 12, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
 
 std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
-                   std::span<const Trial> trials) {
-  FastCuller culler(setup, make_covers(setup.mesh, setup.reference, cluster_of), {});
+                   std::span<const Trial> trials, bool complete) {
+  FastCuller culler(setup, make_covers(setup.mesh, setup.reference, cluster_of), {.complete = complete});
   CountingSink sink;
   std::uint64_t tests = trials.size() * kTestsOfPatch * culler.patch_count();
   for (const Trial& trial : trials) {
@@ -152,8 +152,9 @@ std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
 }
 
 // Clusters of bones or of the surface, whichever make less work where bones turn.
-std::vector<std::int32_t> clusters(const Setup& setup, DrvbcFastOptions::Clusters wanted, StageClock& clock) {
+std::vector<std::int32_t> clusters(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
+  const Clusters wanted = options.clusters;
   if (!has_bones(setup) || wanted == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return surface_clusters(setup.mesh, setup.reference);
   const std::vector<BoneId> bone_of = bones_of(setup, clock);
@@ -161,7 +162,8 @@ std::vector<std::int32_t> clusters(const Setup& setup, DrvbcFastOptions::Cluster
   if (wanted == Clusters::of_bones) return of_bones;
   std::vector<std::int32_t> of_surface = surface_clusters(setup.mesh, setup.reference);
   const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-  return work(setup, of_surface, trials) < work(setup, of_bones, trials) ? of_surface : of_bones;
+  const auto work_of = [&](const auto& some) { return work(setup, some, trials, options.complete); };
+  return work_of(of_surface) < work_of(of_bones) ? of_surface : of_bones;
 }
 
 }  // namespace
@@ -174,7 +176,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
                      " threads; give at least one");
   StageClock clock;
   clock.enter(Stage::decomposition);
-  std::vector<std::int32_t> cluster_of = fast::clusters(setup, options.clusters, clock);
+  std::vector<std::int32_t> cluster_of = fast::clusters(setup, options, clock);
   fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, cluster_of);
   auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
   clock.stop();
