@@ -64,7 +64,7 @@ TEST(Boneless, InspectSaysWhoTakesThem) {
         EXPECT_EQ(row["can"], true) << row;
       }
     }
-    EXPECT_EQ(answer_of(scratch, file)["strategy"], open == 0 ? "drvbc_fast" : "base");
+    EXPECT_EQ(answer_of(scratch, file)["strategy"], open == 0 ? "drvbc_fast" : "drvbc_fast_complete");
   }
 }
 

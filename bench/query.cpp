@@ -109,7 +109,7 @@ void query(const QueryOptions& options) {
     const scenes::ClipInterval interval = input.clip->load(i);
     const bool embedded = embedding.embedded(interval.motion.start());
     const bool fall_back = may_fall_back && !embedded;
-    if (fall_back && !fallback) fallback = make_detector(complete_reference(), setup, options.first).detector;
+    if (fall_back && !fallback) fallback = make_detector(complete_stand_in(), setup, options.first).detector;
     Detector& used = fall_back ? *fallback : *prepared.detector;
     const Report report = used.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
     found.sort();
@@ -118,7 +118,7 @@ void query(const QueryOptions& options) {
     json entry = to_json(found, input.mesh);
     entry["index"] = i;
     entry["starts_embedded"] = embedded;
-    entry["strategy"] = fall_back ? complete_reference().name : strategy->name;
+    entry["strategy"] = fall_back ? complete_stand_in().name : strategy->name;
     entry["proven"] =
         elementary.apart_is_proof && (fall_back || strategy->guarantee == Guarantee::complete ||
                                       (embedded && strategy->guarantee == Guarantee::first_contact));
@@ -157,7 +157,7 @@ void add_query(CLI::App& app) {
                          "  cscd query character.h5 --strategy base --frames 0:10 --json out.json\n"
                          "  cscd query character.glb --clip walk --json out.json\n\n"
                          "Where a start is not embedded, the guarantee first_contact is void, and the "
-                         "complete reference strategy\n"
+                         "fastest complete strategy\n"
                          "answers that interval instead (--unproven: do not). Whoever wants the earliest "
                          "contact and no later ones\n"
                          "has it sooner with --first.");

@@ -11,13 +11,16 @@
 // a sum of two products (four for the middle one, which is twice the control vector) of edges not longer than
 // A and B, hence off by 4 d (A' + B') + 10 u A' B'; its dot product with the direction, which is exact by
 // definition and has components up to D, by D (12 d (A' + B') + 48 u A' B'). 12.2 and 50 also pay for the
-// bound's own roundings. `side` is off a right angle to the direction by less than 40 u, so that what
-// it says of an edge of length A is, with roundings, off by less than 1e-5 A of its own length, and by 2 d.
+// bound's own roundings. A component of `side`, of a direction with components up to D and a sum
+// of edges up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by
+// at most 12 u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge
+// with components up to A is then off by less than 120 sqrt(3) u A of that, by roundings and by 2 d:
+// kOffSide.
 namespace cscd::fast {
 namespace {
 
 constexpr float kTiny = 1e-30F;
-constexpr float kOffSide = 1e-5F;
+constexpr float kLeastSide = 0.1F, kOffSide = 1e-4F;
 
 Float16 largest_component(const Float16 (&a)[2][3]) {
   Float16 most = absolute(a[0][0]);
@@ -118,6 +121,8 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     side[i] = direction[j] * (a.at[0][k][0] + b.at[0][k][0]) - direction[k] * (a.at[0][j][0] + b.at[0][j][0]);
     steepness += std::abs(side[i]);
   }
+  if (!(steepness > kLeastSide * largest * (longest_a[0] + longest_b[0])))
+    return false;  // it is mostly rounding
   const auto from_side = [&](const PatchLanes& edge) {
     return edge.at[0][0] * side[0] + edge.at[0][1] * side[1] + edge.at[0][2] * side[2];
   };

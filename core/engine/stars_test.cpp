@@ -104,6 +104,29 @@ TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
   }
 }
 
+// Goes round twice. The half-line that is looked for in each triangle is the middle of the first one, and
+// that is seen 1e-5 from along the direction of the graph: its cross product with the direction is rounding.
+// Mutation: steepness not compared with the lengths of what it was made of.
+TEST(Stars, OneThatGoesRoundTwiceIsNotFlatThoughItsFirstTriangleIsSteep) {
+  const test::Shape star{{{0, 0, 0},
+                          {0x1.366f6cdbc7008p+0, 0x1.35b6052755bdp-4, 0x1.356d878345b19p-1},
+                          {0x1.8e8275e05a704p-2, 0x1.4dbbc23c065c8p-1, -0x1.1ff156d7a51dep+0},
+                          {0x1.599abe689d6e8p-2, 0x1.24ca7364082f2p+0, 0x1.c2480c9349aap-3},
+                          {0x1.5a470666d66eep+0, -0x1.8164ddf34ed78p-2, -0x1.897c3532aaa44p-1},
+                          {0x1.94d96cfb0358cp-3, 0x1.e9510f478002ap-2, -0x1.c2687261135d9p-1},
+                          {0x1.3f8bb60c30954p-2, 0x1.6a386675acdb6p-1, -0x1.3d8770d5f6b8p-7}},
+                         {test::corners(0, 1, 2), test::corners(0, 2, 3), test::corners(0, 3, 4),
+                          test::corners(0, 4, 5), test::corners(0, 5, 6), test::corners(0, 6, 1)}};
+  const TriangleMesh mesh = star.mesh();
+  std::vector<Vec3> end = star.positions;
+  for (const std::size_t v : {2, 5, 6}) end[v] *= 2;
+  const Motion motion(star.positions, end);
+  LocalPositions local(star.positions);
+  local.update(motion);
+  ASSERT_GT(contacts_in_star(mesh, motion, VertexId{0}), 0u);
+  EXPECT_FALSE(Stars(mesh).flat(VertexId{0}, local));
+}
+
 // Mutation: open links kept.
 TEST(Stars, AnOpenOneIsNotFlat) {
   const test::Shape strip = test::ramp(8, 0.5, 1, 2, 0);
