@@ -137,9 +137,7 @@ class CountingSink : public TrianglePairSink {
 constexpr std::uint64_t kTestsOfPatch = 12, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
 
-std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
-                   std::span<const Trial> trials, bool complete) {
-  FastCuller culler(setup, make_covers(setup.mesh, setup.reference, cluster_of), {.complete = complete});
+std::uint64_t work(FastCuller& culler, std::span<const Trial> trials) {
   CountingSink sink;
   std::uint64_t tests = trials.size() * kTestsOfPatch * culler.patch_count();
   for (const Trial& trial : trials) {
@@ -151,19 +149,33 @@ std::uint64_t work(const Setup& setup, std::span<const std::int32_t> cluster_of,
   return tests + kTestsOfPair * sink.count();
 }
 
-// Clusters of bones or of the surface, whichever make less work where bones turn.
-std::vector<std::int32_t> clusters(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
+struct Candidate {
+  std::vector<std::int32_t> cluster_of;
+  std::unique_ptr<FastCuller> culler;
+};
+
+Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
+  auto culler =
+      std::make_unique<FastCuller>(setup, make_covers(setup.mesh, setup.reference, cluster_of), options);
+  return {std::move(cluster_of), std::move(culler)};
+}
+
+// Of clusters of bones or of the surface, whichever make less work where bones turn.
+Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  const Clusters wanted = options.clusters;
-  if (!has_bones(setup) || wanted == Clusters::of_surface || !setup.mesh.closed_and_oriented())
-    return surface_clusters(setup.mesh, setup.reference);
+  if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
+    return made(setup, surface_clusters(setup.mesh, setup.reference), options);
   const std::vector<BoneId> bone_of = bones_of(setup, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-  if (wanted == Clusters::of_bones) return of_bones;
-  std::vector<std::int32_t> of_surface = surface_clusters(setup.mesh, setup.reference);
+  if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
+
+  // Rows that leave something out take what the whole would, so that nothing else differs.
+  const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
   const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-  const auto work_of = [&](const auto& some) { return work(setup, some, trials, options.complete); };
-  return work_of(of_surface) < work_of(of_bones) ? of_surface : of_bones;
+  Candidate best = made(setup, std::move(of_bones), whole),
+            other = made(setup, surface_clusters(setup.mesh, setup.reference), whole);
+  if (work(*other.culler, trials) < work(*best.culler, trials)) std::swap(best, other);
+  return options == whole ? std::move(best) : made(setup, std::move(best.cluster_of), options);
 }
 
 }  // namespace
@@ -176,9 +188,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
                      " threads; give at least one");
   StageClock clock;
   clock.enter(Stage::decomposition);
-  std::vector<std::int32_t> cluster_of = fast::clusters(setup, options, clock);
-  fast::Covers covers = fast::make_covers(setup.mesh, setup.reference, cluster_of);
-  auto culler = std::make_unique<fast::FastCuller>(setup, std::move(covers), options);
+  auto [cluster_of, culler] = fast::chosen(setup, options, clock);
   clock.stop();
   Preparation preparation;
   if (clock.milliseconds(Stage::distance_and_heat) > 0)

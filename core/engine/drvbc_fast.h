@@ -16,6 +16,8 @@ struct DrvbcFastOptions {
   Clusters clusters = Clusters::by_trial;
   // No contact is lost, whatever the surface and the start, by the contour test of capped clusters.
   bool complete = false;
+
+  bool operator==(const DrvbcFastOptions&) const = default;
 };
 
 // Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins from
