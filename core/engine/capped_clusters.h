@@ -29,6 +29,8 @@ namespace cscd::fast {
 // least once. So do those at b. If a is not b no triangle is at both, as it would hold x inside two of its
 // faces. Then those directions are covered twice, and nothing negative takes from that. So a is b.
 //
+// (Triangles are counted as the mesh lists them: two with the same corners are two.)
+//
 // So a pair of triangles of one cluster carries no contact if one of both is clear: nothing of U is seen in
 // any direction of its own. Observers of clusters, covers and caps may be any.
 class CappedClusters {

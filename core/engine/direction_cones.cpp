@@ -82,6 +82,7 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
     for (std::size_t l = 0; l < kLanes16; ++l) cone.axis[i] += sum[i][l];
     square += cone.axis[i] * cone.axis[i];
   }
+  if (!(square > 0)) return std::nullopt;  // nor where it is not a number
   for (float& component : cone.axis) component /= std::sqrt(square);
   cone.cosine = 1;
   for (const PatchLanes& some : lanes) {

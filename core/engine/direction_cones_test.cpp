@@ -129,5 +129,13 @@ TEST(DirectionCones, AreUnknownAroundAndAtTheViewpoint) {
   EXPECT_FALSE(cone_of({&thrown.lanes, 1}, thrown.from, kError));
 }
 
+// Mutation: the sum of directions not looked at.
+TEST(DirectionCones, ThereIsNoneOfDirectionsThatSumToNothing) {
+  PatchLanes lanes{};
+  for (int end = 0; end < 2; ++end)
+    for (std::size_t l = 0; l < kLanes16; ++l) lanes.at[end][0][l] = l % 2 == 0 ? 1 : -1;
+  EXPECT_FALSE(cone_of({&lanes, 1}, {}, kError));
+}
+
 }  // namespace
 }  // namespace cscd::fast

@@ -20,9 +20,9 @@ struct DrvbcFastOptions {
   bool operator==(const DrvbcFastOptions&) const = default;
 };
 
-// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh; begins from
-// the clusters of bones or from clusters of the surface: where there are bones, from those that a trial
-// prefers.
+// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh unless it is
+// `complete`; begins from the clusters of bones or from clusters of the surface: where there are bones, from
+// those that a trial prefers.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
 }  // namespace cscd

@@ -25,9 +25,10 @@ void cross(const float (&a)[3], const float (&b)[3], float (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
+// Zero where squares underflow: such a ray certainly crosses nothing and lies outside of no cone.
 void normalize(float (&a)[3]) {
   const float length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-  for (float& x : a) x = length > 0 ? std::clamp(x / length, -1.0F, 1.0F) : 0;
+  for (float& x : a) x = length > kLeastError ? std::clamp(x / length, -1.0F, 1.0F) : 0;
 }
 
 }  // namespace
@@ -82,7 +83,8 @@ Ray::Crossed Ray::crossed(const PatchLanes& lanes, const Patch& patch) const {
 // The ray is off its direction `along_` by a few roundings.
 bool Ray::outside(const Cone& cone) const {
   const float between = along_[0] * cone.axis[0] + along_[1] * cone.axis[1] + along_[2] * cone.axis[2];
-  return between < cone.cosine - 1e-5F;
+  const bool has_direction = along_[0] != 0 || along_[1] != 0 || along_[2] != 0;
+  return has_direction && between < cone.cosine - 1e-5F;
 }
 
 }  // namespace cscd::fast

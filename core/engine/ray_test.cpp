@@ -104,6 +104,7 @@ TEST(Ray, LiesInTheConeOfWhatItGoesThrough) {
   EXPECT_FALSE(ray.outside(cone(0.8F, 0.6F, 0.9599F)));
   EXPECT_TRUE(ray.outside(cone(0.8F, 0.6F, 0.9601F)));
   EXPECT_TRUE(ray.outside(cone(-0.6F, -0.8F, 0.2F)));
+  EXPECT_FALSE(Ray(from, {0, 1e-25F, 0}, 1e-6F).outside(cone(-0.6F, -0.8F, 0.2F)));
 }
 
 }  // namespace
