@@ -72,8 +72,7 @@ void CappedClusters::take(const Cap& cap) {
   }
   if (uncertain > kFewUncertain)
     if (const std::optional<Cone> cone = cone_of(loop_, from, positions_->error())) {
-      state.uncertain.push_back(*cone);
-      state.known &= state.ray->outside(*cone);
+      state.add(*cone);
       return;
     }
   for (std::size_t i = 0; i < cap.fans.size(); ++i) take(cap.fans[i], loop_[i], positive_[i], cap.cluster);
@@ -96,16 +95,13 @@ void CappedClusters::take(const Patch& triangles, const PatchLanes& lanes, Mask1
   if (uncertain == 0) return;
   if (std::popcount(uncertain) > kFewUncertain)
     if (const std::optional<Cone> cone = cone_of({&lanes, 1}, viewpoints_[cluster], positions_->error())) {
-      state.uncertain.push_back(*cone);
-      state.known &= state.ray->outside(*cone);
+      state.add(*cone);
       return;
     }
   const Cones cones = cones_of(lanes, triangles, viewpoints_[cluster], positions_->error());
   if ((uncertain & ~cones.known) != 0) state.known = false;
-  for (; uncertain != 0 && state.known; uncertain &= uncertain - 1) {
-    state.uncertain.push_back(cones[static_cast<std::size_t>(std::countr_zero(uncertain))]);
-    if (!state.ray->outside(state.uncertain.back())) state.known = false;
-  }
+  for (; uncertain != 0 && state.known; uncertain &= uncertain - 1)
+    state.add(cones[static_cast<std::size_t>(std::countr_zero(uncertain))]);
 }
 
 Mask16 CappedClusters::clear(const Patch& patch, Mask16 positive) const {

@@ -55,6 +55,11 @@ class CappedClusters {
     int crossings;
     bool known;  // false: nothing is certain
     std::vector<Cone> uncertain;
+
+    void add(const Cone& cone) {
+      uncertain.push_back(cone);
+      known &= ray->outside(cone);
+    }
   };
   void take(const Cap& cap);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);

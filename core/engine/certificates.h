@@ -18,7 +18,8 @@ namespace cscd::fast {
 // everything incident to any vertex or edge of the two, which is what the theorem (soundness contract) asks
 // of each feature pair that they carry. Several covers may each do so; a pair whose triangles are certified
 // by different covers stays (trap 14). So does one whose triangles are certain but not what surrounds them:
-// the other triangles at a shared vertex might be dropped by the other cover.
+// the other triangles at a shared vertex might be dropped by the other cover. With capped clusters none of
+// this is needed (capped_clusters.h).
 class Certificates {
  public:
   // Looks at the first `count` covers alone. With `capped`, one of each of these, no contact is lost
