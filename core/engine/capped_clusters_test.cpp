@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 #include <map>
 
-#include "core/detect/carried_pairs.h"
-#include "core/elementary/elementary_test.h"
 #include "core/engine/test_body.h"
-#include "core/mesh/adjacency.h"
+#include "core/engine/test_touching.h"
 
 namespace cscd::fast {
 namespace {
 
 using test::Shape;
+using test::touching;
 
 // What one cover says of one interval.
 class Seen {
@@ -58,28 +57,6 @@ class Seen {
   LocalPositions local_;
   std::vector<bool> clear_;
 };
-
-// Pairs of triangles that carry a contact.
-std::vector<std::pair<TriangleId, TriangleId>> touching(const TriangleMesh& mesh, const Motion& motion) {
-  const ElementaryTest& exact = *find_elementary_test("exact");
-  std::vector<Eigen::AlignedBox3d> box(mesh.triangle_count());
-  for (std::size_t t = 0; t < box.size(); ++t)
-    for (const VertexId v : mesh.triangles()[t]) box[t].extend(motion.start()[+v]).extend(motion.end()[+v]);
-  std::vector<std::pair<TriangleId, TriangleId>> pairs;
-  for (std::size_t t = 0; t < box.size(); ++t)
-    for (std::size_t u = t + 1; u < box.size(); ++u) {
-      if (!box[t].intersects(box[u])) continue;
-      const TrianglePair pair{TriangleId{static_cast<std::int32_t>(t)},
-                              TriangleId{static_cast<std::int32_t>(u)}};
-      bool contact = false;
-      for_each_carried(mesh, pair, share_vertex(mesh.triangles()[t], mesh.triangles()[u]),
-                       [&](const FeaturePair& features) {
-                         contact = contact || ask(exact, mesh, motion, features).verdict != Verdict::apart;
-                       });
-      if (contact) pairs.emplace_back(pair.a, pair.b);
-    }
-  return pairs;
-}
 
 // An open surface that is one cluster, seen from a vertex of no triangle.
 struct OneCluster {
@@ -177,7 +154,8 @@ TEST(CappedClusters, NoPairThatTouchesIsDropped) {
 // Every edge as often in one direction as in the other. Mutation: a cut-off triangle forgotten.
 TEST(Caps, CloseTheirClusters) {
   const test::Body body(0.1, 2);
-  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
+  Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
+  make_patches(body.mesh, body.shape.positions, covers);
   std::size_t caps_seen = 0;
   for (std::size_t c = 0; c < 2; ++c) {
     std::map<std::size_t, std::map<std::pair<int, int>, int>> passed;  // of each cluster

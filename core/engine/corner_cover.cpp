@@ -9,9 +9,9 @@ constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cut
 
 }  // namespace
 
-void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover) {
+void cover_corners(const PatchTree& tree, Cover& cover) {
   const auto missed = [&](std::size_t p) {
-    return std::all_of(tree.inside[p].begin(), tree.inside[p].end(), [](Mask16 lanes) { return lanes == 0; });
+    return (tree.inside[p][0] | tree.inside[p][1]) != tree.patches[p].lanes;
   };
   const auto for_each_touching = [&](std::size_t p, const auto& take) {
     tree.for_each_adjacent(p, [&](std::size_t other, const Common&) { take(other); });
@@ -45,14 +45,6 @@ void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, Pa
   for (std::size_t p = 0; p < cluster.size(); ++p)
     for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
       cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
-  place_observers(mesh, reference, cover);
-  const std::vector<bool> all = inside(mesh, cover.cluster_of);
-  for (std::size_t p = 0; p < tree.patches.size(); ++p) {
-    Patch& patch = tree.patches[p];
-    patch.cluster[kCutting] = cover.cluster_of[+patch.triangle[0]];
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      tree.inside[p][kCutting] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
-  }
 }
 
 }  // namespace cscd::fast

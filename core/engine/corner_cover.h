@@ -4,8 +4,8 @@
 
 namespace cscd::fast {
 
-// The last cover, made of whole patches: those that lie inside no cluster of the cutting covers, those of
-// them that touch each other together, and rings of patches about them. Fills in `cover` and the patches.
-void cover_corners(const TriangleMesh& mesh, std::span<const Vec3> reference, PatchTree& tree, Cover& cover);
+// The clusters of the last cover, made of whole patches: those with triangles that lie inside no cluster of
+// the others, those of them that touch each other together, and rings of patches about them.
+void cover_corners(const PatchTree& tree, Cover& cover);
 
 }  // namespace cscd::fast

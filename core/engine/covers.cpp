@@ -197,7 +197,6 @@ Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, parts.cluster_of)) seeds.push_back(triangles);
   seams.cluster_of = rings_from(mesh, seeds).seed;
-  place_observers(mesh, reference, seams);
   corners.cluster_of.assign(mesh.triangle_count(), kNone);
   return covers;
 }

@@ -3,15 +3,23 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "core/engine/patches.h"
 #include "core/engine/test_body.h"
 
 namespace cscd::fast {
 namespace {
 
+Covers completed(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                 std::span<const std::int32_t> cluster_of) {
+  Covers covers = make_covers(mesh, positions, cluster_of);
+  make_patches(mesh, positions, covers);
+  return covers;
+}
+
 // Mutation: the second cover takes the labels of the first.
 TEST(Covers, WhatLiesAtASeamOfOneLiesInsideTheOther) {
   const test::Body body(0.01, 0);
-  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
+  const Covers covers = completed(body.mesh, body.shape.positions, body.atomic.of_triangle);
   EXPECT_EQ(covers[0].observers.size(), 5u);
   EXPECT_EQ(covers[1].observers.size(), 4u);
   const std::vector<bool> first = inside(body.mesh, covers[0].cluster_of),
@@ -39,7 +47,7 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
   std::vector<BoneId> bone_of;
   for (const Triangle& t : mesh.triangles()) bone_of.push_back(BoneId{two.positions[+t[0]].x() < 5 ? 0 : 1});
   const Covers covers =
-      make_covers(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of).of_triangle);
+      completed(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of).of_triangle);
   for (const Cover& cover : covers) {
     std::map<std::int32_t, std::set<std::int32_t>> components;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -53,7 +61,7 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
 
 TEST(Covers, ObserversSeeAllOfATubeFromInside) {
   const test::Body body(0, 0);
-  const Covers covers = make_covers(body.mesh, body.shape.positions, body.atomic.of_triangle);
+  const Covers covers = completed(body.mesh, body.shape.positions, body.atomic.of_triangle);
   for (const Cover& cover : covers)
     for (const FollowingPoint& from : cover.observers) {
       Vec3 q = Vec3::Zero();

@@ -11,27 +11,35 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
-// inside it, in each of those covers.
-struct Cell {
-  std::array<std::int32_t, kCutting> cluster;
-  std::array<bool, kCutting> inside;
-  auto operator<=>(const Cell&) const = default;
-};
+constexpr std::size_t kLeast = 32;  // triangles of a cell that the second cover cuts out
 
-std::vector<Cell> cells_of(const TriangleMesh& mesh, const Covers& covers) {
-  std::vector<Cell> cells(mesh.triangle_count());
-  for (std::size_t c = 0; c < kCutting; ++c) {
+// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
+// inside it, in the first cover and, where that leaves enough of them, in the second.
+std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Covers& covers) {
+  using Place = std::pair<std::int32_t, bool>;
+  std::vector<Place> place[2];
+  for (std::size_t c = 0; c < 2; ++c) {
     const std::vector<bool> all = inside(mesh, covers[c].cluster_of);
-    for (std::size_t t = 0; t < cells.size(); ++t) {
-      cells[t].cluster[c] = covers[c].cluster_of[t];
-      cells[t].inside[c] = all[t];
-    }
+    for (std::size_t t = 0; t < all.size(); ++t) place[c].emplace_back(covers[c].cluster_of[t], all[t]);
+  }
+  std::map<Place, std::map<Place, std::vector<TriangleId>>> members;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    members[place[0][t]][place[1][t]].push_back(TriangleId{static_cast<std::int32_t>(t)});
+
+  std::vector<std::vector<TriangleId>> cells;
+  for (auto& [first, parts] : members) {
+    std::vector<TriangleId> rest;
+    for (auto& [second, triangles] : parts)
+      if (triangles.size() >= kLeast)
+        cells.push_back(std::move(triangles));
+      else
+        rest.insert(rest.end(), triangles.begin(), triangles.end());
+    if (!rest.empty()) cells.push_back(std::move(rest));
   }
   return cells;
 }
 
-Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles, const Cell& cell) {
+Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles) {
   Patch patch{};
   std::vector<VertexId> vertices;
   for (std::size_t l = 0; l < kLanes16; ++l) {
@@ -47,7 +55,6 @@ Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles
     patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
   patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
   patch.cluster.fill(kNone);
-  for (std::size_t c = 0; c < kCutting; ++c) patch.cluster[c] = cell.cluster[c];
   return patch;
 }
 
@@ -145,29 +152,47 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
   tree.common.shrink_to_fit();
 }
 
+// Gives all triangles of a patch the cluster that most of them have.
+void round_to_patches(const PatchTree& tree, Cover& cover) {
+  for (const Patch& patch : tree.patches) {
+    std::map<std::int32_t, int> times;
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l) ++times[cover.cluster_of[+patch.triangle[l]]];
+    const auto most = std::max_element(times.begin(), times.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l) cover.cluster_of[+patch.triangle[l]] = most->first;
+  }
+}
+
+// Of a cover of whole patches.
+void enter(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree) {
+  const std::vector<bool> all = inside(mesh, cover.cluster_of);
+  for (std::size_t p = 0; p < tree.patches.size(); ++p) {
+    Patch& patch = tree.patches[p];
+    patch.cluster[number] = cover.cluster_of[+patch.triangle[0]];
+    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
+      tree.inside[p][number] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
+  }
+}
+
 }  // namespace
 
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
-  const std::vector<Cell> cell_of = cells_of(mesh, covers);
-  std::map<Cell, std::vector<TriangleId>> members;
-  for (std::size_t t = 0; t < cell_of.size(); ++t)
-    members[cell_of[t]].push_back(TriangleId{static_cast<std::int32_t>(t)});
 
   std::vector<Patch> patches;
   std::vector<Vec3> centre;
   std::vector<std::int32_t> cluster, cell_number;
   PatchCutter cutter(mesh, centroid, kLanes16);
   std::int32_t number = 0;
-  for (const auto& [cell, triangles] : members) {
-    for (const std::vector<TriangleId>& patch : cutter.cut(triangles)) {
-      patches.push_back(make_patch(mesh, patch, cell));
+  for (const std::vector<TriangleId>& cell : cells_of(mesh, covers)) {
+    for (const std::vector<TriangleId>& patch : cutter.cut(cell)) {
+      patches.push_back(make_patch(mesh, patch));
       Vec3 sum = Vec3::Zero();
       for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
       centre.push_back(sum);
-      cluster.push_back(cell.cluster[0]);
+      cluster.push_back(covers[0].cluster_of[+cell[0]]);
       cell_number.push_back(number);
     }
     ++number;
@@ -175,12 +200,14 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   PatchTree tree;
   TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
   find_adjacent(mesh, tree);
-  for (const Patch& patch : tree.patches) {
-    const Cell& cell = cell_of[+patch.triangle[0]];
-    std::array<Mask16, kCovers>& inside = tree.inside.emplace_back();
-    for (std::size_t c = 0; c < kCutting; ++c) inside[c] = cell.inside[c] ? patch.lanes : Mask16{0};
-  }
-  cover_corners(mesh, reference, tree, covers[kCutting]);
+  tree.inside.resize(tree.patches.size());
+  enter(mesh, covers[0], 0, tree);
+  round_to_patches(tree, covers[1]);
+  place_observers(mesh, reference, covers[1]);
+  enter(mesh, covers[1], 1, tree);
+  cover_corners(tree, covers[2]);
+  place_observers(mesh, reference, covers[2]);
+  enter(mesh, covers[2], 2, tree);
   return tree;
 }
 

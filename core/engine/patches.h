@@ -84,9 +84,7 @@ struct PatchTree {
   }
 };
 
-inline constexpr std::size_t kCutting = 2;  // covers by which patches are cut
-
-// Cuts by the first two covers and makes the third.
+// Completes the covers: they are made of whole patches, of which the first has one of its own clusters each.
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers);
 
 }  // namespace cscd::fast

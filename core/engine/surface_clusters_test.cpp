@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/engine/covers.h"
+#include "core/engine/patches.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {
@@ -55,7 +56,8 @@ TEST(SurfaceClusters, Trap03NoClusterSpansTwoComponents) {
                                   test::together(test::icosphere(3, 3), test::icosphere(3, 1)),
                                   test::together(test::octahedron(2), test::octahedron(1))}) {
     const TriangleMesh mesh = both.mesh();
-    const Covers covers = make_covers(mesh, both.positions, surface_clusters(mesh, both.positions));
+    Covers covers = make_covers(mesh, both.positions, surface_clusters(mesh, both.positions));
+    make_patches(mesh, both.positions, covers);
     for (const Cover& cover : covers) {
       std::map<std::int32_t, std::int32_t> component;
       for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
