@@ -101,6 +101,12 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
              },
              kAblation},
+    Strategy{"drvbc_fast_no_planes", "drvbc_fast without planes of triangles", Guarantee::first_contact,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
+             },
+             kAblation},
     Strategy{"drvbc_fast_bones", "drvbc_fast, its covers of bones without a trial", Guarantee::first_contact,
              false,
              [](const Setup& setup) {

@@ -49,7 +49,8 @@ class FastCuller : public Culler {
         certificates_(tree_, covers_, options.covers, capped(setup, covers_, options)),
         stars_(setup.mesh),
         team_(setup.threads),
-        descent_({tree_, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear},
+        descent_({tree_, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear,
+                  options.planes},
                  team_),
         bounds_(tree_.nodes.size()) {}
 

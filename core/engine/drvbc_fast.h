@@ -12,6 +12,7 @@ struct DrvbcFastOptions {
   std::size_t covers = 3;  // the first of them
   bool time_linear = true;
   bool stars = true;
+  bool planes = true;
   enum class Clusters { by_trial, of_bones, of_surface };  // from which covers are made
   Clusters clusters = Clusters::by_trial;
   // No contact is lost, whatever the surface and the start, by the contour test of capped clusters.

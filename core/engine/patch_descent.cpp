@@ -10,14 +10,15 @@ PatchDescent::PatchDescent(const DescentInput& input)
       nodes_(input.tree.nodes),
       patches_(input.tree.patches),
       star_(input.positions.records().size()),
-      triangle_bounds_at_(input.tree.patches.size(), kNone) {}
+      triangle_bounds_(input.tree.patches.size()),
+      planes_(input.tree.patches.size()) {}
 
 void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid) {
   bounds_ = bounds;
   grid_ = grid;
   tests_ = 0;
-  triangle_bounds_used_ = 0;
-  std::fill(triangle_bounds_at_.begin(), triangle_bounds_at_.end(), kNone);
+  triangle_bounds_.start_interval();
+  planes_.start_interval();
   std::fill(star_.begin(), star_.end(), Star::unknown);
 }
 
@@ -111,19 +112,21 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
 inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
                               const Common* common) {
   if (wanted == 0) return;
+  Mask16 left = 0;
   if (common != nullptr) {
     wanted = not_flat(p, lane, wanted, *common);
-    // Adjacent triangles always overlap: they are passed on untested.
-    const auto beside = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));
-    wanted &= static_cast<Mask16>(~beside);
-    pass_on(p, lane, q, beside);
-    if (wanted == 0) return;
+    left = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));  // they always overlap
+    wanted &= static_cast<Mask16>(~left);
   }
-  bounds_of_triangles(p);  // before a reference is taken, as they are made on demand
-  const TriangleBounds& others = bounds_of_triangles(q);
-  tests_ += static_cast<unsigned>(std::popcount(wanted));
-  if (input_.positions.known()) wanted = near(others, wanted, bounds_of_triangles(p), lane);
-  pass_on(p, lane, q, wanted);
+  if (wanted != 0) {
+    tests_ += static_cast<unsigned>(std::popcount(wanted));
+    left |= input_.positions.known() ? near(bounds_of_triangles(q), wanted, bounds_of_triangles(p), lane)
+                                     : wanted;
+  }
+  if (left != 0 && input_.planes && input_.positions.known())
+    left = not_parted(planes(q), patches_[q], left, {planes(p), patches_[p], lane}, common,
+                      input_.positions.error());
+  pass_on(p, lane, q, left);
 }
 
 // Without the pairs that the star of a common corner proves apart.
@@ -152,20 +155,20 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
 }
 
 const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
-  std::int32_t& at = triangle_bounds_at_[p];
-  if (at == kNone) {
-    if (triangle_bounds_used_ == triangle_bounds_.size()) triangle_bounds_.emplace_back();
-    at = static_cast<std::int32_t>(triangle_bounds_used_++);
-    TriangleBounds& bounds = triangle_bounds_[static_cast<std::size_t>(at)];
-    bounds = triangle_bounds(load(input_.positions.records(), patches_[p].vertex), patches_[p],
-                             input_.positions.error());
+  return triangle_bounds_.of(p, [&] {
+    TriangleBounds bounds = triangle_bounds(load(input_.positions.records(), patches_[p].vertex), patches_[p],
+                                            input_.positions.error());
     if (!input_.time_linear)
       for (std::size_t k = 0; k < kDirections; ++k) {
         bounds.low[k][0] = bounds.low[k][1] = smaller(bounds.low[k][0], bounds.low[k][1]);
         bounds.high[k][0] = bounds.high[k][1] = larger(bounds.high[k][0], bounds.high[k][1]);
       }
-  }
-  return triangle_bounds_[static_cast<std::size_t>(at)];
+    return bounds;
+  });
+}
+
+const PatchPlanes& PatchDescent::planes(std::size_t p) {
+  return planes_.of(p, [&] { return planes_of(input_.positions.records(), patches_[p]); });
 }
 
 inline bool PatchDescent::flat(VertexId vertex) {

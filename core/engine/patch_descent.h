@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
 #include "core/detect/culler.h"
 #include "core/engine/certificates.h"
 #include "core/engine/node_bounds.h"
+#include "core/engine/parting.h"
 #include "core/engine/stars.h"
 
 namespace cscd::fast {
@@ -23,6 +26,33 @@ struct DescentInput {
   const Certificates& certificates;
   const Stars* stars;  // null: none
   bool time_linear;
+  bool planes;  // whether pairs are parted by them
+};
+
+// What an interval makes of few patches, when it is first asked for. References last as long as the interval.
+template <class T>
+class OnDemand {
+ public:
+  explicit OnDemand(std::size_t patches) : at_(patches, kNone) {}
+  void start_interval() {
+    std::fill(at_.begin(), at_.end(), kNone);
+    used_ = 0;
+  }
+  template <class Make>
+  const T& of(std::size_t patch, const Make& make) {
+    std::int32_t& at = at_[patch];
+    if (at == kNone) {
+      at = static_cast<std::int32_t>(used_++);
+      if (used_ > made_.size()) made_.emplace_back();
+      made_[static_cast<std::size_t>(at)] = make();
+    }
+    return made_[static_cast<std::size_t>(at)];
+  }
+
+ private:
+  std::vector<std::int32_t> at_;  // of each patch: where among those made
+  std::deque<T> made_;
+  std::size_t used_ = 0;
 };
 
 // The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
@@ -64,16 +94,16 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
+  const PatchPlanes& planes(std::size_t p);
 
   const DescentInput input_;
   const std::span<const PatchTree::Node> nodes_;
   const std::span<const Patch> patches_;
   std::span<const NodeBounds> bounds_;
   Grid grid_{1};
-  std::vector<Star> star_;                        // of each vertex
-  std::vector<std::int32_t> triangle_bounds_at_;  // of each patch: where among those below, made on demand
-  std::vector<TriangleBounds> triangle_bounds_;
-  std::size_t triangle_bounds_used_ = 0;
+  std::vector<Star> star_;  // of each vertex
+  OnDemand<TriangleBounds> triangle_bounds_;
+  OnDemand<PatchPlanes> planes_;
   TrianglePairSink* sink_ = nullptr;
   std::vector<NodePair>* opened_ = nullptr;
   std::uint64_t tests_ = 0;
