@@ -24,7 +24,7 @@ struct PairCounts {
   std::uint64_t adjacent_pctp = 0;     // pairs whose triangles share a vertex
   std::uint64_t relative_dropped = 0;  // non-adjacent pairs dropped by their relative boxes
   std::uint64_t feature_pairs = 0;     // carried by the others, as often as they are carried
-  std::uint64_t elementary_tests = 0;  // distinct ones that the non-penetration filter left
+  std::uint64_t elementary_tests = 0;  // distinct ones that the filter left
 };
 
 }  // namespace cscd

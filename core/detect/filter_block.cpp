@@ -37,18 +37,60 @@ struct CubicLanes {
   }
 };
 
+// The four points of eight pairs, as sideways.h takes them.
+struct PointLanes {
+  VertexLanes from, to[3];
+  Sign8 vertex_face;
+
+  void set(std::size_t lane, const TriangleMesh& mesh, const FeaturePair& pair) {
+    vertex_face[lane] = pair.kind == FeaturePair::Kind::vertex_face ? -1 : 0;
+    if (vertex_face[lane]) {
+      const auto [p, q, r] = mesh.corners(TriangleId{pair.b});
+      from.set(lane, p), to[0].set(lane, q), to[1].set(lane, r), to[2].set(lane, VertexId{pair.a});
+    } else {
+      const auto [p, q] = mesh.ends(EdgeId{pair.a});
+      const auto [r, s] = mesh.ends(EdgeId{pair.b});
+      from.set(lane, p), to[0].set(lane, q), to[1].set(lane, r), to[2].set(lane, s);
+    }
+  }
+  Sign8 apart(const Motion& motion) const {
+    const VectorLanes origin = gather(motion, from);
+    SeenFromFirst<Lane8> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VectorLanes seen = gather(motion, to[k]) - origin;
+      std::copy(&seen.at[0][0], &seen.at[0][0] + 6, &p[k][0][0]);
+    }
+    return apart_sideways(p, vertex_face);
+  }
+};
+
+// Keeps pairs of which `dropped`, asked about eight at a time, says 0.
+template <class Lanes, class Dropped, class Keep>
+void for_each_left(const TriangleMesh& mesh, std::span<const FeaturePair> pairs, const Dropped& dropped,
+                   const Keep& keep) {
+  Lanes lanes;
+  for (std::size_t first = 0; first < pairs.size(); first += kLanes) {
+    const std::size_t count = std::min(kLanes, pairs.size() - first);
+    for (std::size_t l = 0; l < kLanes; ++l) lanes.set(l, mesh, pairs[first + std::min(l, count - 1)]);
+    const Sign8 drop = dropped(lanes);
+    for (std::size_t l = 0; l < count; ++l)
+      if (drop[l] == 0) keep(pairs[first + l]);
+  }
+}
+
 }  // namespace
 
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left) {
-  CubicLanes cubics;
-  for (std::size_t first = 0; first < pairs.size(); first += kLanes) {
-    const std::size_t count = std::min(kLanes, pairs.size() - first);
-    for (std::size_t l = 0; l < kLanes; ++l) cubics.set(l, mesh, pairs[first + std::min(l, count - 1)]);
-    const Sign8 signs = cubics.signs(motion);
-    for (std::size_t l = 0; l < count; ++l)
-      if (signs[l] == 0) left.push_back(pairs[first + l]);
-  }
+  const std::size_t before = left.size();
+  for_each_left<CubicLanes>(
+      mesh, pairs, [&](const CubicLanes& cubics) { return cubics.signs(motion); },
+      [&](const FeaturePair& pair) { left.push_back(pair); });
+  std::size_t kept = before;
+  for_each_left<PointLanes>(
+      mesh, std::span(left).subspan(before), [&](const PointLanes& points) { return points.apart(motion); },
+      [&](const FeaturePair& pair) { left[kept++] = pair; });
+  left.resize(kept);
 }
 
 void filter_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,

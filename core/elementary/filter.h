@@ -2,12 +2,16 @@
 
 #include "core/geometry/bernstein.h"
 #include "core/geometry/feature_motion.h"
+#include "core/geometry/sideways.h"
 
 // The deforming non-penetration filter (Tang, Manocha and Tong, I3D 2010; section 7.1 of the paper).
 //
-// Features can only touch while their four points are coplanar. If the four Bernstein coefficients of the
-// coplanarity cubic share a sign, they never are. Difference to the published filter: the sign has to exceed
-// a forward error bound, so "apart" is a proof. About 120 floating-point operations.
+// First, features can only touch while their four points are coplanar. If the four Bernstein coefficients of
+// the coplanarity cubic share a sign, they never are. Difference to the published filter: the sign has to
+// exceed a forward error bound, so "apart" is a proof. About 120 floating-point operations.
+//
+// Then, what comes into one plane may stay apart in it (sideways.h). The published filter has no such part;
+// ours is for features that lie on one another in numbers, as where a rope rests on itself.
 namespace cscd {
 
 inline MovingVector difference(const MovingPoint& from, const MovingPoint& to) {
@@ -28,6 +32,24 @@ inline BernsteinCubic coplanarity(const MovingEdgeEdge& q) {
 template <class Query>
 bool never_coplanar(const Query& query) {
   return certain_sign(coplanarity(query)) != 0;
+}
+
+inline bool stay_apart_sideways(const MovingVector (&seen)[3], bool vertex_face) {
+  SeenFromFirst<double> p;
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) p[k][0][i] = seen[k].start[i], p[k][1][i] = seen[k].end[i];
+  return apart_sideways(p, vertex_face);
+}
+// True proves that the features never touch.
+inline bool never_meet_in_plane(const MovingVertexFace& q) {
+  const MovingPoint& from = q.corner[0];
+  return stay_apart_sideways(
+      {difference(from, q.corner[1]), difference(from, q.corner[2]), difference(from, q.vertex)}, true);
+}
+inline bool never_meet_in_plane(const MovingEdgeEdge& q) {
+  const MovingPoint& from = q.first[0];
+  return stay_apart_sideways(
+      {difference(from, q.first[1]), difference(from, q.second[0]), difference(from, q.second[1])}, false);
 }
 
 }  // namespace cscd

@@ -12,25 +12,35 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 
-// True of the filter is a proof: the referee is asked about every query that it drops.
+// True of either part of the filter is a proof: the referee is asked about every query that it drops.
+struct Dropped {
+  int by_coplanarity = 0, sideways = 0;
+};
 template <class Query, class Make>
-int expect_proofs(int queries, const Make& make_points) {
-  int dropped = 0;
+Dropped expect_proofs(int queries, const Make& make_points) {
+  Dropped dropped;
   for (int i = 0; i < queries; ++i) {
     const Query query = query_of<Query>(make_points(i));
-    if (!never_coplanar(query)) continue;
-    ++dropped;
+    const bool coplanar = !never_coplanar(query), sideways = never_meet_in_plane(query);
+    if (coplanar && !sideways) continue;
+    dropped.by_coplanarity += !coplanar;
+    dropped.sideways += coplanar;
     EXPECT_FALSE(exact::first_contact(query)) << i;
   }
   return dropped;
 }
 
+// Mutations: one end alone; all of the features' extent left out; second edge taken for the first.
 TEST(Filter, DropsOnlyWhatTheRefereeCallsApart) {
   QueryMaker make(1);
-  EXPECT_GT(expect_proofs<MovingVertexFace>(5000, [&](int) { return make.any(); }), 100);
-  EXPECT_GT(expect_proofs<MovingEdgeEdge>(5000, [&](int) { return make.any(); }), 100);
-  EXPECT_GT(expect_proofs<MovingVertexFace>(10'000, [&](int) { return make.lattice(3); }), 50);
-  EXPECT_GT(expect_proofs<MovingEdgeEdge>(10'000, [&](int) { return make.lattice(3); }), 50);
+  const auto expect_many = [](const Dropped& dropped) {
+    EXPECT_GT(dropped.by_coplanarity, 50);
+    EXPECT_GT(dropped.sideways, 50);
+  };
+  expect_many(expect_proofs<MovingVertexFace>(5000, [&](int) { return make.any(); }));
+  expect_many(expect_proofs<MovingEdgeEdge>(5000, [&](int) { return make.any(); }));
+  expect_many(expect_proofs<MovingVertexFace>(10'000, [&](int) { return make.lattice(3); }));
+  expect_many(expect_proofs<MovingEdgeEdge>(10'000, [&](int) { return make.lattice(3); }));
 }
 
 // Trap 7: touching in rounded coordinates, in the interior and at borders, at the ends of the interval, far
@@ -81,6 +91,46 @@ TEST(Filter, KnowsZeroFromApart) {
   EXPECT_FALSE(never_coplanar(MovingEdgeEdge{{a, b}, {c, c}}));
   EXPECT_FALSE(never_coplanar(MovingEdgeEdge{{a, b}, {still(1, -1, 0), still(1, 1, 0)}}));
   EXPECT_TRUE(never_coplanar(MovingEdgeEdge{{a, b}, {still(1, -1, 1), still(1, 1, 1)}}));
+}
+
+// Trap 7: exactly on an edge, or crossing at an end of one, at an end of the interval; coordinates of few
+// bits, so that this is exact and the directions are not. Tiny enough for products to underflow, too.
+// Mutations: no bound on rounding; the bound at any size.
+TEST(Filter, KeepsWhatTouchesABorderExactly) {
+  QueryMaker make(4);
+  const auto few_bits = [&] { return std::ldexp(std::round(make.uniform(-1, 1) * 0x1p16), -14); };
+  const auto point = [&] {
+    const double x = few_bits(), y = few_bits(), z = few_bits();
+    return Vec3(x, y, z);
+  };
+  for (const double scale : {1.0, 0x1p-262, 0x1p-263, 0x1p-264, 0x1p250})
+    for (int i = 0; i < 20'000; ++i) {
+      const Vec3 a = point(), b = point(), c = point(), d = point(), on = a + (1 + i % 3) / 4.0 * (b - a);
+      const auto at = [&](const Vec3& p) { return MovingPoint{scale * p, scale * p}; };
+      const auto comes = [&](const Vec3& p) {  // to the edge, or leaves it, in the plane that it has with c
+        const MovingPoint x{scale * p, scale * (p + p - c)};
+        return i % 2 ? x : MovingPoint{x.end, x.start};
+      };
+      EXPECT_FALSE(never_meet_in_plane(MovingVertexFace{comes(on), {at(a), at(b), at(c)}}))
+          << scale << ' ' << i;
+      EXPECT_FALSE(never_meet_in_plane(MovingEdgeEdge{{at(a), at(b)}, {at(on), at(d)}})) << scale << ' ' << i;
+    }
+}
+
+// In one plane throughout: beside each other, and just touching.
+TEST(Filter, KnowsWhatStaysApartInOnePlane) {
+  const MovingPoint a = still(0, 0, 0), b = still(4, 0, 0), c = still(0, 4, 0);
+  for (const MovingPoint& beside : {still(3, 3, 0), still(-1, 1, 0), still(1, -1, 0)})
+    EXPECT_TRUE(never_meet_in_plane(MovingVertexFace{beside, {a, b, c}}));
+  for (const MovingPoint& on : {still(2, 2, 0), still(0, 1, 0), still(1, 0, 0), still(1, 1, 0), a, c})
+    EXPECT_FALSE(never_meet_in_plane(MovingVertexFace{on, {a, b, c}}));
+  EXPECT_FALSE(never_meet_in_plane(MovingVertexFace{{{-1, 1, 0}, {9, 1, 0}}, {a, b, c}}));  // passes through
+  EXPECT_TRUE(never_meet_in_plane(MovingVertexFace{{{-1, 1, 1}, {-2, 1, -1}}, {a, b, c}}));
+  EXPECT_TRUE(never_meet_in_plane(MovingEdgeEdge{{a, b}, {still(1, 1, 0), still(2, 3, 0)}}));
+  EXPECT_FALSE(never_meet_in_plane(MovingEdgeEdge{{a, b}, {still(1, 0, 0), still(2, 3, 0)}}));
+  EXPECT_FALSE(never_meet_in_plane(MovingEdgeEdge{{a, b}, {still(1, -1, 0), still(2, 3, 0)}}));
+  EXPECT_FALSE(never_meet_in_plane(MovingEdgeEdge{{a, b}, {b, still(5, 1, 0)}}));
+  EXPECT_FALSE(never_meet_in_plane(MovingVertexFace{still(1, 1, 1), {a, b, b}}));  // no plane
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "core/base/rounding.h"
+#include "core/geometry/bernstein.h"
+#include "core/geometry/lanes.h"
+
+// Directions along which features that come into one plane stay apart: those of the plane in which an edge
+// has no extent. Along a direction that stays the same, points that move in straight lines keep between their
+// ends, so features that are apart on the same side at both ends are apart throughout.
+//
+// One text for a query and for eight side by side: with doubles and bools, and with lanes.
+namespace cscd {
+
+inline double larger(double a, double b) {
+  return a < b ? b : a;
+}
+inline double smaller(double a, double b) {
+  return a < b ? a : b;
+}
+inline double absolute(double a) {
+  return a < 0 ? -a : a;
+}
+inline Lane8 smaller(Lane8 a, Lane8 b) {
+  return a < b ? a : b;
+}
+
+// Three points seen from a fourth at both ends: [point][end][axis]. Of a vertex and a face: the second and
+// third corner and the vertex, from the first corner. Of two edges: the first's other end and both of the
+// second, from the first's first end.
+template <class Real>
+using SeenFromFirst = Real[3][2][3];
+
+// Whether they certainly are apart at every t in [0, 1]. The points may carry one rounding a coordinate.
+//
+// Error bound: along m, with L the largest coordinate and M = |m_x| + |m_y| + |m_z|, a point is off by at
+// most 4.1 u M L (its own rounding, a product, two sums), two of them by 8.2; 16 also pay for the bound's own
+// roundings. Every m is exact by definition. Below kTinyProduct products may lose more; where something
+// overflows, so does the bound, and nothing exceeds it.
+template <class Real, class Mask>
+Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
+  Real along[3][3], most = {};
+  for (int i = 0; i < 3; ++i) {
+    const auto twice = [&](int k) { return p[k][0][i] + p[k][1][i]; };  // of the middle of the interval
+    along[0][i] = twice(0);
+    along[1][i] = vertex_face ? twice(1) : twice(2) - twice(1);
+    along[2][i] = along[1][i] - along[0][i];
+    for (int k = 0; k < 3; ++k)
+      for (int end = 0; end < 2; ++end) most = larger(most, absolute(p[k][end][i]));
+  }
+  const auto cross = [](const Real(&a)[3], const Real(&b)[3], Real(&out)[3]) {
+    for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  };
+  Real normal[3];
+  cross(along[0], along[1], normal);
+
+  Mask apart = {};
+  for (const Real(&edge)[3] : along) {
+    Real m[3];
+    cross(normal, edge, m);
+    const Real reach = (absolute(m[0]) + absolute(m[1]) + absolute(m[2])) * most;
+    const Real slack = 16 * kUnitRoundoff * reach;
+    Mask above = reach >= kTinyProduct, below = above;
+    for (int end = 0; end < 2; ++end) {
+      const auto at = [&](int k) { return m[0] * p[k][end][0] + m[1] * p[k][end][1] + m[2] * p[k][end][2]; };
+      const Real zero = {}, x = at(0), y = at(1), z = at(2);
+      const Real in_first = vertex_face ? y : zero, in_second = vertex_face ? z : y;
+      above &= smaller(in_second, z) > larger(larger(zero, x), in_first) + slack;
+      below &= larger(in_second, z) < smaller(smaller(zero, x), in_first) - slack;
+    }
+    apart |= above | below;
+  }
+  return apart;
+}
+
+}  // namespace cscd
