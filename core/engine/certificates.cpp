@@ -4,7 +4,7 @@
 #include <bit>
 
 // Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
-// exception: a triangle that is looks whether all around it are.
+// exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
 namespace cscd::fast {
 namespace {
 
@@ -78,10 +78,14 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
 }
 
 void Certificates::certify_positive() {
+  for (std::size_t p = 0; p < certified_.size(); ++p) {
+    const Own& own = own_[p][0];
+    certified_[p][0] = {static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own.not_positive)),
+                        own.negative};
+    for (std::size_t c = 1; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+  }
   for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
-  for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c) {
+    for (std::size_t c = 1; c < count_; ++c) {
       if (own_[p][c].not_positive == 0) continue;
       const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
       tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
@@ -107,7 +111,7 @@ void Certificates::certify_clear() {
 
 void Certificates::certify_negative() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 0; c < count_; ++c)
+    for (std::size_t c = 1; c < count_; ++c)
       for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
         unsigned others = 0;
         tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {

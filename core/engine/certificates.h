@@ -11,15 +11,18 @@
 
 namespace cscd::fast {
 
-// What radial views certify in one interval: of every triangle and cover, whether all triangles at its
-// corners belong to its cluster and all are positive, or all negative, towards the cluster's observer.
+// What radial views certify in one interval: of every triangle, whether it is positive, or negative, towards
+// the observer of its cluster in the first cover; and of every other cover, whether all triangles at its
+// corners belong to its cluster there and all are positive, or all negative.
 //
-// Two triangles that one cover certifies with one sign need not be looked at: then one field certifies
-// everything incident to any vertex or edge of the two, which is what the theorem (soundness contract) asks
-// of each feature pair that they carry. Several covers may each do so; a pair whose triangles are certified
-// by different covers stays (trap 14). So does one whose triangles are certain but not what surrounds them:
-// the other triangles at a shared vertex might be dropped by the other cover. With capped clusters none of
-// this is needed (capped_clusters.h).
+// Two triangles that one cover certifies with one sign need not be looked at. The theorem (soundness
+// contract) asks that one field certifies everything incident to a feature pair that is dropped. A feature
+// pair that touches is dropped only if all pairs of triangles that carry it are. If another cover than the
+// first drops one of them, it certifies all around the corners of both, and so all that is asked for. If none
+// does, the first drops all of them: any triangle at one feature lies in one cluster with any at the other,
+// and has its sign. (They are never one triangle, as features of a pair have no common vertex.) Between two
+// covers neither of which looks at what surrounds a triangle that would not hold: each might drop some of the
+// pairs (trap 14). With capped clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:
   // Looks at the first `count` covers alone. With `capped`, one of each of these, no contact is lost
@@ -67,7 +70,7 @@ class Certificates {
   }
   // Triangles certified by the first cover, and those that no cover certifies.
   const RadialCounts& counts() const { return counts_; }
-  // The first cover; positive with all around it.
+  // The first cover.
   RadialView view() const;
 
  private:

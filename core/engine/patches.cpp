@@ -13,18 +13,14 @@ namespace {
 
 constexpr std::size_t kLeast = 32;  // triangles of a cell that the second cover cuts out
 
-// Triangles that certificates treat alike are kept together: own cluster, and whether the surroundings are
-// inside it, in the first cover and, where that leaves enough of them, in the second.
+// Triangles that certificates treat alike are kept together: those of one cluster of the first cover and,
+// where that leaves enough of them, of one of the second, inside which all around them is or is not.
 std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Covers& covers) {
-  using Place = std::pair<std::int32_t, bool>;
-  std::vector<Place> place[2];
-  for (std::size_t c = 0; c < 2; ++c) {
-    const std::vector<bool> all = inside(mesh, covers[c].cluster_of);
-    for (std::size_t t = 0; t < all.size(); ++t) place[c].emplace_back(covers[c].cluster_of[t], all[t]);
-  }
-  std::map<Place, std::map<Place, std::vector<TriangleId>>> members;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
-    members[place[0][t]][place[1][t]].push_back(TriangleId{static_cast<std::int32_t>(t)});
+  const std::vector<bool> all = inside(mesh, covers[1].cluster_of);
+  std::map<std::int32_t, std::map<std::pair<std::int32_t, bool>, std::vector<TriangleId>>> members;
+  for (std::size_t t = 0; t < all.size(); ++t)
+    members[covers[0].cluster_of[t]][{covers[1].cluster_of[t], all[t]}].push_back(
+        TriangleId{static_cast<std::int32_t>(t)});
 
   std::vector<std::vector<TriangleId>> cells;
   for (auto& [first, parts] : members) {
