@@ -14,6 +14,7 @@ namespace cscd::fast {
 namespace {
 
 constexpr std::size_t kFollowed = 16;  // vertices at most that an observer follows
+constexpr std::int32_t kReach = 6;     // rings of triangles about a seam that belong to its cluster
 constexpr std::int32_t kThin = 4;      // clusters without a triangle so many rings from its seams are merged
 
 // ---- Observers
@@ -196,7 +197,10 @@ Covers make_covers(const TriangleMesh& mesh, std::span<const Vec3> reference,
 
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, parts.cluster_of)) seeds.push_back(triangles);
-  seams.cluster_of = rings_from(mesh, seeds).seed;
+  Rings rings = rings_from(mesh, seeds);
+  for (std::size_t t = 0; t < rings.seed.size(); ++t)
+    if (rings.distance[t] > kReach) rings.seed[t] = kNone;
+  seams.cluster_of = std::move(rings.seed);
   corners.cluster_of.assign(mesh.triangle_count(), kNone);
   return covers;
 }

@@ -20,10 +20,10 @@ struct Cover {
 
 // Covers that overlap, so that what lies at a seam of one lies well inside a cluster of another:
 //   0  the given clusters, thin ones merged
-//   1  every triangle with the nearest seam between two of them, whole patches at a time
+//   1  triangles about a seam between two of them with the nearest one, whole patches at a time
 //   2  where seams of both meet: what has all around it in no cluster of theirs, and its surroundings
-// The last two are completed with the patches (patches.h): until then the second has the nearest seam of each
-// triangle and no observers, the third no cluster.
+// The last two are completed with the patches (patches.h): until then the second has the nearest seam of
+// single triangles and no observers, the third no cluster.
 inline constexpr std::size_t kCovers = 3;
 using Covers = std::array<Cover, kCovers>;
 // Takes the cluster of each triangle, of one component each: of bones (radial/atomic_clusters.h), or of the
