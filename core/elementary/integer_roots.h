@@ -1,21 +1,10 @@
 #pragma once
 
-#include "core/elementary/wide.h"
+#include "core/elementary/integer_polynomial.h"
 
-// Polynomials of degree at most 3 with integer coefficients, their roots in [0, 1], and exact signs at those.
+// Roots of integer polynomials in [0, 1], and exact signs at those. How they are found stands in
+// integer_roots.cpp, how signs are in integer_signs.cpp.
 namespace cscd::integer {
-
-struct Polynomial {
-  Wide c[4];  // by ascending power
-  int degree = -1;
-
-  void trim() {
-    degree = 3;
-    while (degree >= 0 && c[degree].sign() == 0) --degree;
-  }
-  bool is_zero() const { return degree < 0; }
-  int bits() const;  // of the longest coefficient
-};
 
 // An exact root in [0, 1]: a fraction, or the only root, of odd order, of a polynomial between two doubles.
 struct Root {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 // Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
 // exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
@@ -29,6 +30,8 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::siz
       label_(tree.nodes.size()),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
+  // The first cover holds every triangle: certify_positive takes that for granted.
+  assert(count_ > 0 && std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
   for (std::size_t c = 0; c < count_; ++c) {

@@ -17,12 +17,13 @@ namespace cscd::fast {
 //
 // Two triangles that one cover certifies with one sign need not be looked at. The theorem (soundness
 // contract) asks that one field certifies everything incident to a feature pair that is dropped. A feature
-// pair that touches is dropped only if all pairs of triangles that carry it are. If another cover than the
-// first drops one of them, it certifies all around the corners of both, and so all that is asked for. If none
-// does, the first drops all of them: any triangle at one feature lies in one cluster with any at the other,
-// and has its sign. (They are never one triangle, as features of a pair have no common vertex.) Between two
-// covers neither of which looks at what surrounds a triangle that would not hold: each might drop some of the
-// pairs (trap 14). With capped clusters none of this is needed (capped_clusters.h).
+// pair that touches is dropped only if all pairs of triangles that carry it are, and those by covers alone,
+// as bounds, stars and planes drop none that carries a contact. If another cover than the first drops one of
+// them, it certifies all around the corners of both, and so all that is asked for. If none does, the first
+// drops all of them: any triangle at one feature lies in one cluster with any at the other, and has its sign.
+// (They are never one triangle, as features of a pair have no common vertex.) Between two covers neither of
+// which looks at what surrounds a triangle that would not hold: each might drop some of the pairs (trap 14).
+// With capped clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:
   // Looks at the first `count` covers alone. With `capped`, one of each of these, no contact is lost

@@ -16,7 +16,8 @@ struct FollowingPoint {
   Vec3 at(std::span<const Vec3> positions) const;
 };
 
-// A viewpoint that moves in a straight line; [end][axis]. These numbers are the observer: it has no error.
+// A viewpoint that moves in a straight line; [end][axis]. An observer is these numbers and has no error; a
+// vertex is off by the error of its coordinates, which orientations allow for.
 struct Viewpoint {
   float at[2][3];
 };

@@ -5,10 +5,10 @@
 // Pairs that the plane of one of the two triangles parts.
 //
 // If at every t the corners of a triangle A that B does not have lie strictly on one side of B's plane, and
-// there are any, the two meet nowhere but in the corners and the edge that they share, and no feature of A
-// touches one of B that has no vertex in common with it, whatever the start: what A has in common with that
-// plane is the face that the shared corners span, and B, which has a plane, is no degenerate triangle, so no
-// other feature of it meets that face but in a shared corner.
+// there are any, no feature of A touches one of B that has no vertex in common with it, whatever the start.
+// For a point of a feature of A that lies in that plane lies in what its shared corners span; and B, which
+// has a plane, is no degenerate triangle, so a feature of B meets that only where it has one of these
+// corners, too.
 namespace cscd::fast {
 
 // The planes of the triangles of a patch, and its vertices.

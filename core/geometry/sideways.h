@@ -4,9 +4,10 @@
 #include "core/geometry/bernstein.h"
 #include "core/geometry/lanes.h"
 
-// Directions along which features that come into one plane stay apart: those of the plane in which an edge
-// has no extent. Along a direction that stays the same, points that move in straight lines keep between their
-// ends, so features that are apart on the same side at both ends are apart throughout.
+// Directions along which features that come into one plane stay apart: in that plane at the middle of the
+// interval, across an edge or, of two edges, also across their difference. Along a direction that stays the
+// same, points that move in straight lines keep between their ends, so features that are apart on the same
+// side at both ends are apart throughout.
 //
 // One text for a query and for eight side by side: with doubles and bools, and with lanes.
 namespace cscd {
@@ -35,7 +36,7 @@ using SeenFromFirst = Real[3][2][3];
 // Error bound: along m, with L the largest coordinate and M = |m_x| + |m_y| + |m_z|, a point is off by at
 // most 4.1 u M L (its own rounding, a product, two sums), two of them by 8.2; 16 also pay for the bound's own
 // roundings. Every m is exact by definition. Below kTinyProduct products may lose more; where something
-// overflows, so does the bound, and nothing exceeds it.
+// overflows, the bound is infinite or no number, and nothing exceeds it.
 template <class Real, class Mask>
 Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
   Real along[3][3], most = {};
