@@ -84,7 +84,7 @@ struct PatchTree {
   }
 };
 
-// Completes the covers: they are made of whole patches, of which the first has one of its own clusters each.
+// Completes the covers: the second and the third are made of whole patches.
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers);
 
 }  // namespace cscd::fast
