@@ -7,9 +7,9 @@
 
 namespace cscd {
 
-// Appends to `left` the pairs that the non-penetration filter and directions in a plane cannot prove apart, in
-// order. Eight at a time in vector code; pair by pair it is what never_coplanar and never_meet_in_plane (its
-// scalar twins) say.
+// Appends to `left` the pairs that the non-penetration filter and directions in a plane cannot prove apart,
+// in order. Eight at a time in vector code; pair by pair it is what never_coplanar and never_meet_in_plane
+// (its scalar twins) say.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 
