@@ -114,6 +114,9 @@ class ScaleProgram : public testing::Test {
 };
 
 TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a hundred bones take minutes to prepare with sanitizers";
+#endif
   const auto out =
       record({"--smoke", "--study", "size", "--scene", "rope", "--sizes", "1000,3000,9000", "--threads", "2"},
              "sizes");
