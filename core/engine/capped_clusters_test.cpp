@@ -148,7 +148,7 @@ TEST(CappedClusters, NoPairThatTouchesIsDropped) {
     }
   }
   EXPECT_GT(clear, all / 10);
-  EXPECT_GT(touching_in_cluster, 500u);
+  EXPECT_GT(touching_in_cluster, 800u);
 }
 
 // Every edge as often in one direction as in the other. Mutation: a cut-off triangle forgotten.

@@ -12,19 +12,6 @@
 // One text for a query and for eight side by side: with doubles and bools, and with lanes.
 namespace cscd {
 
-inline double larger(double a, double b) {
-  return a < b ? b : a;
-}
-inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-inline double absolute(double a) {
-  return a < 0 ? -a : a;
-}
-inline Lane8 smaller(Lane8 a, Lane8 b) {
-  return a < b ? a : b;
-}
-
 // Three points seen from a fourth at both ends: [point][end][axis]. Of a vertex and a face: the second and
 // third corner and the vertex, from the first corner. Of two edges: the first's other end and both of the
 // second, from the first's first end.

@@ -94,6 +94,7 @@ TEST_P(SceneFiles, HasNearContactsInHalfOfItsIntervals) {
   const TriangleMesh mesh = this->mesh(clip);
   Nearness nearness(mesh, clip.frame(0).positions);
   std::size_t near = 0, looked_at = 0;
+  // A share of fewer samples says nothing.
   for (std::size_t i = 0; i < clip.interval_count(); i += std::min<std::size_t>(stride(), 4), ++looked_at) {
     const auto pair = nearness.closest(clip.frame(i).positions);
     near += pair && pair->distance < kNear;
