@@ -20,30 +20,44 @@ void for_each_lane(unsigned mask, const Take& take) {
 
 }  // namespace
 
-Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::size_t count,
-                           std::vector<CappedClusters> capped)
+Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped)
     : tree_(tree),
       covers_(covers),
-      count_(count),
       certified_(tree.patches.size()),
       own_(tree.patches.size()),
       label_(tree.nodes.size()),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle: certify_positive takes that for granted.
-  assert(count_ > 0 && std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
+  assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
-  for (std::size_t c = 0; c < count_; ++c) {
-    viewpoint_[c].resize(covers_[c].observers.size());
+  use_covers(kCovers);
+}
+
+void Certificates::use_covers(std::size_t count) {
+  assert(0 < count && count <= kCovers);
+  count_ = count;
+  counts_ = {};
+  for (std::size_t c = 0; c < kCovers; ++c) {
+    viewpoint_[c].resize(c < count ? covers_[c].observers.size() : 0);
     counts_.clusters += viewpoint_[c].size();
   }
+  std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+}
+
+std::size_t Certificates::looks() const {
+  std::size_t looks = 0;
+  for (const Cell& cell : cell_)
+    for (std::size_t c = 0; c < count_; ++c) looks += cell.cluster[c] != kNone;
+  return looks;
 }
 
 void Certificates::start(const LocalPositions& positions) {
   positions_ = &positions;
   place_viewpoints(positions.records());
-  for (std::size_t c = 0; c < capped_.size(); ++c) capped_[c].start(positions, viewpoint_[c]);
+  for (std::size_t c = 0; c < std::min(count_, capped_.size()); ++c)
+    capped_[c].start(positions, viewpoint_[c]);
 }
 
 void Certificates::finish() {

@@ -26,10 +26,14 @@ namespace cscd::fast {
 // With capped clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:
-  // Looks at the first `count` covers alone. With `capped`, one of each of these, no contact is lost
-  // whatever the start; without, the first of an embedded start is kept.
-  Certificates(const PatchTree& tree, const Covers& covers, std::size_t count,
-               std::vector<CappedClusters> capped = {});
+  // With `capped`, one of each cover, no contact is lost whatever the start; without, the first of an
+  // embedded start is kept.
+  Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped = {});
+
+  // From the next interval on looks at the first `count` covers alone, at least one.
+  void use_covers(std::size_t count);
+  // How often a patch is looked at in an interval, from one cover each.
+  std::size_t looks() const;
 
   // One interval: `start`, then `look` at every patch, in any order and from any thread, then `finish`.
   void start(const LocalPositions& positions);
@@ -93,7 +97,7 @@ class Certificates {
 
   const PatchTree& tree_;
   const Covers& covers_;
-  std::size_t count_;
+  std::size_t count_ = 0;
   const LocalPositions* positions_ = nullptr;
   std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;

@@ -81,7 +81,7 @@ struct Scene : test::Body {
     // Observers of the surface as it was: that all of it is then seen from behind is the aim.
     covers = make_covers(shape.mesh(), shape.positions, atomic.of_triangle);
     tree = make_patches(mesh, shape.positions, covers);
-    return Certificates(tree, covers, kCovers);
+    return Certificates(tree, covers);
   }
   // A point of the body in the coordinates of the records, hardly rounded.
   MovingPoint at(VertexId v) const {
@@ -229,6 +229,26 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
             ASSERT_EQ(scene.certificates.shared(p, q).needed(i), 0) << "nodes " << a << " and " << b;
     }
   EXPECT_GT(skipped_inner, 10u);
+}
+
+// Mutations: what other covers certified before stays; looks counts every cover.
+TEST(Certificates, CoversThatAreNotUsedDropNothing) {
+  Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
+  const std::size_t looks = scene.certificates.looks();
+  EXPECT_EQ(
+      scene.certificates.counts().clusters,
+      scene.covers[0].observers.size() + scene.covers[1].observers.size() + scene.covers[2].observers.size());
+  scene.certificates.use_covers(1);
+  EXPECT_EQ(scene.certificates.looks(), scene.tree.patches.size());
+  EXPECT_GT(looks, scene.tree.patches.size() * 3 / 2);
+  EXPECT_EQ(scene.certificates.counts().clusters, scene.covers[0].observers.size());
+  scene.certify();
+  std::size_t dropped = 0;
+  for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+    dropped += !needed;
+    EXPECT_TRUE(needed || scene.cluster(0, +t) == scene.cluster(0, +u)) << +t << " and " << +u;
+  });
+  EXPECT_GT(dropped, 10'000u);
 }
 
 TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {

@@ -34,7 +34,7 @@ std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
                                    const DrvbcFastOptions& options) {
   std::vector<CappedClusters> capped;
   if (options.complete)
-    for (std::size_t c = 0; c < options.covers; ++c)
+    for (std::size_t c = 0; c < covers.size(); ++c)
       capped.emplace_back(setup.mesh, setup.reference, covers[c], c);
   return capped;
 }
@@ -46,13 +46,17 @@ class FastCuller : public Culler {
         options_(options),
         positions_(setup.reference),
         tree_(make_patches(setup.mesh, setup.reference, covers_)),
-        certificates_(tree_, covers_, options.covers, capped(setup, covers_, options)),
+        certificates_(tree_, covers_, capped(setup, covers_, options)),
         stars_(setup.mesh),
         team_(setup.threads),
         descent_({tree_, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear,
                   options.planes},
                  team_),
-        bounds_(tree_.nodes.size()) {}
+        bounds_(tree_.nodes.size()) {
+    use_covers(options.covers);
+  }
+
+  void use_covers(std::size_t count) { certificates_.use_covers(count); }
 
   void refit(const Motion& motion) override {
     positions_.update(motion, team_);
@@ -83,6 +87,7 @@ class FastCuller : public Culler {
 
   RadialView radial_view() const override { return certificates_.view(); }
   std::size_t patch_count() const { return tree_.patches.size(); }
+  std::size_t looks() const { return certificates_.looks(); }
 
  private:
   void look(std::size_t leaf) {
@@ -134,18 +139,21 @@ class CountingSink : public TrianglePairSink {
   void take(const std::vector<TrianglePair>&) override {}
 };
 
-// Work in overlap tests. About so many cost as much as a patch in an interval, or a pair that is left.
-constexpr std::uint64_t kTestsOfPatch = 12, kTestsOfPair = 40;
+// Work in overlap tests. About so many cost as much as a patch in an interval, a look at it from one cover,
+// an observer that is placed, or a pair that is left.
+constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
 
 std::uint64_t work(FastCuller& culler, std::span<const Trial> trials) {
   CountingSink sink;
-  std::uint64_t tests = trials.size() * kTestsOfPatch * culler.patch_count();
+  std::uint64_t tests = 0;
   for (const Trial& trial : trials) {
     const Motion motion(trial[0], trial[1]);
     culler.refit(motion);
     culler.classify(motion, nullptr);
-    tests += *culler.cull(sink).bvot;
+    const CullCounts counts = culler.cull(sink);
+    tests += kTestsOfPatch * culler.patch_count() + kTestsOfLook * culler.looks() +
+             kTestsOfObserver * counts.radial->clusters + *counts.bvot;
   }
   return tests + kTestsOfPair * sink.count();
 }
@@ -168,15 +176,28 @@ Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
   const std::vector<BoneId> bone_of = bones_of(setup, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-  if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
-
   // Rows that leave something out take what the whole would, so that nothing else differs.
-  const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
+  const DrvbcFastOptions whole{
+      .name = options.name, .clusters = options.clusters, .complete = options.complete};
+  std::vector<Candidate> candidates;
+  candidates.push_back(made(setup, std::move(of_bones), whole));
+  if (options.clusters == Clusters::by_trial)
+    candidates.push_back(made(setup, surface_clusters(setup.mesh, setup.reference), whole));
+
   const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-  Candidate best = made(setup, std::move(of_bones), whole),
-            other = made(setup, surface_clusters(setup.mesh, setup.reference), whole);
-  if (work(*other.culler, trials) < work(*best.culler, trials)) std::swap(best, other);
-  return options == whole ? std::move(best) : made(setup, std::move(best.cluster_of), options);
+  Candidate* best = nullptr;
+  std::size_t covers = 0;
+  std::uint64_t least = 0;
+  for (Candidate& candidate : candidates)
+    for (std::size_t count = kCovers; count > 0; --count) {
+      candidate.culler->use_covers(count);
+      const std::uint64_t needed = work(*candidate.culler, trials);
+      if (best != nullptr && needed >= least) continue;
+      best = &candidate, covers = count, least = needed;
+    }
+  if (options != whole) *best = made(setup, std::move(best->cluster_of), options);
+  best->culler->use_covers(std::min(covers, options.covers));
+  return std::move(*best);
 }
 
 }  // namespace

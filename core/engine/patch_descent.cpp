@@ -123,10 +123,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
     left |= input_.positions.known() ? near(bounds_of_triangles(q), wanted, bounds_of_triangles(p), lane)
                                      : wanted;
   }
-  if (left != 0 && input_.planes && input_.positions.known())
-    left = not_parted(planes(q), patches_[q], left, {planes(p), patches_[p], lane}, common,
-                      input_.positions.error());
-  pass_on(p, lane, q, left);
+  if (left != 0) pass_on(p, lane, q, left, common);
 }
 
 // Without the pairs that the star of a common corner proves apart.
@@ -141,7 +138,12 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
   return wanted;
 }
 
-inline void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
+// Those that no plane parts. Rare, hence not in the caller.
+[[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes,
+                                             const Common* common) {
+  if (input_.planes && input_.positions.known())
+    lanes = not_parted(planes(q), patches_[q], lanes, {planes(p), patches_[p], lane}, common,
+                       input_.positions.error());
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
     sink_->add(patches_[p].triangle[lane],
                patches_[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))]);

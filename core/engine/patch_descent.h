@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <new>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/detect/culler.h"
@@ -32,6 +34,8 @@ struct DescentInput {
 // What an interval makes of few patches, when it is first asked for. References last as long as the interval.
 template <class T>
 class OnDemand {
+  static_assert(std::is_trivially_destructible_v<T>);
+
  public:
   explicit OnDemand(std::size_t patches) : at_(patches, kNone) {}
   void start_interval() {
@@ -44,7 +48,7 @@ class OnDemand {
     if (at == kNone) {
       at = static_cast<std::int32_t>(used_++);
       if (used_ > made_.size()) made_.emplace_back();
-      made_[static_cast<std::size_t>(at)] = make();
+      ::new (&made_[static_cast<std::size_t>(at)]) T(make());  // in place: there are many, and they are large
     }
     return made_[static_cast<std::size_t>(at)];
   }
@@ -91,7 +95,7 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Common* common);
   Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common);
   bool flat(VertexId vertex);
-  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
+  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes, const Common* common);
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
   const PatchPlanes& planes(std::size_t p);

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "core/engine/patch_lanes.h"
 
@@ -29,38 +30,63 @@ Float16 largest_component(const Float16 (&a)[2][3]) {
   return most;
 }
 
-float sum(Float16 v, std::size_t count) {
-  float total = 0;
-  for (std::size_t l = 0; l < count; ++l) total += v[l];
-  return total;
+float sum(Float16 v) {
+  using Float8 = float __attribute__((vector_size(32)));
+  using Float4 = float __attribute__((vector_size(16)));
+  Float8 eight[2];
+  std::memcpy(&eight, &v, sizeof v);
+  eight[0] += eight[1];
+  Float4 four[2];
+  std::memcpy(&four, &eight[0], sizeof four);
+  four[0] += four[1];
+  return (four[0][0] + four[0][1]) + (four[0][2] + four[0][3]);
+}
+
+// Of rings that are repeated over all lanes: the lane of the vertex after each, by length of the ring.
+constexpr std::array<Places16, kLanes16 + 1> kNext = [] {
+  std::array<Places16, kLanes16 + 1> next{};
+  for (std::size_t count = 1; count <= kLanes16; ++count)
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      next[count][l] = static_cast<std::uint8_t>((l % count + 1) % count);
+  return next;
+}();
+
+// The other corners of a triangle at a vertex, in the triangle's order.
+struct Ends {
+  VertexId second, third;
+};
+
+// The second corners, each triangle's third being the next one's second; empty if not all are one closed fan.
+std::vector<std::int32_t> ring_of(std::span<const Ends> ends) {
+  std::vector<std::int32_t> ring;
+  if (ends.empty()) return ring;
+  VertexId at = ends[0].second;
+  do {
+    const auto next = std::ranges::find(ends, at, &Ends::second);
+    if (next == ends.end() || ring.size() == ends.size()) return {};
+    ring.push_back(static_cast<std::int32_t>(at));
+    at = next->third;
+  } while (at != ends[0].second);
+  if (ring.size() < ends.size()) return {};
+  return ring;
 }
 
 }  // namespace
 
-// Whether triangles go to each other corner as often as from it.
-bool Stars::closed(std::span<const Ends> ends) {
-  std::vector<std::int32_t> second, third;
-  for (const Ends& e : ends) {
-    second.push_back(e.second);
-    third.push_back(e.third);
-  }
-  std::sort(second.begin(), second.end());
-  std::sort(third.begin(), third.end());
-  return second == third;
-}
-
 Stars::Stars(const TriangleMesh& mesh) {
   offset_.push_back(0);
+  std::vector<Ends> ends;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const VertexId vertex{static_cast<std::int32_t>(v)};
+    ends.clear();
     for (const TriangleId t : mesh.triangles_at(vertex)) {
       const Triangle& c = mesh.corners(t);
       const std::size_t k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
-      ends_.push_back({static_cast<std::int32_t>(c[(k + 1) % 3]), static_cast<std::int32_t>(c[(k + 2) % 3])});
+      ends.push_back({c[(k + 1) % 3], c[(k + 2) % 3]});
     }
-    const auto first = static_cast<std::size_t>(offset_.back());
-    if (!closed(std::span(ends_).subspan(first))) ends_.resize(first);
-    offset_.push_back(static_cast<std::int32_t>(ends_.size()));
+    const std::vector<std::int32_t> ring = ring_of(ends);
+    ring_.insert(ring_.end(), ring.begin(), ring.end());
+    offset_.push_back(static_cast<std::int32_t>(ring_.size()));
   }
 }
 
@@ -71,17 +97,14 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
   const std::span<const LocalPositions::Record> records = positions.records();
   const LocalPositions::Record& here = records[+vertex];
 
-  std::array<std::int32_t, kLanes16> second, third;
-  for (std::size_t l = 0; l < kLanes16; ++l) {
-    const Ends& ends = ends_[first + std::min(l, count - 1)];
-    second[l] = ends.second;
-    third[l] = ends.third;
-  }
-  PatchLanes edges[2] = {load(records, second), load(records, third)};
-  auto& [a, b] = edges;
-  for (PatchLanes& edge : edges)
-    for (std::size_t end = 0; end < 2; ++end)
-      for (std::size_t i = 0; i < 3; ++i) edge.at[end][i] -= here.at[4 * end + i];
+  std::array<std::int32_t, kLanes16> ring;
+  for (std::size_t l = 0; l < kLanes16; ++l) ring[l] = l < count ? ring_[first + l] : ring[l - count];
+  PatchLanes a = load(records, ring), b;
+  for (std::size_t end = 0; end < 2; ++end)
+    for (std::size_t i = 0; i < 3; ++i) {
+      a.at[end][i] -= here.at[4 * end + i];
+      b.at[end][i] = permuted(a.at[end][i], kNext[count]);
+    }
   Float16 control[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -91,14 +114,14 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
   }
   // The direction: the mean of the normals about the middle of the interval.
-  Float16 middle[3], length = {};
+  Float16 middle[3], squared = {};
   for (std::size_t i = 0; i < 3; ++i) {
     middle[i] = control[0][i] + control[1][i] + control[2][i];
-    length += middle[i] * middle[i];
+    squared += middle[i] * middle[i];
   }
-  for (std::size_t l = 0; l < count; ++l) length[l] = std::sqrt(length[l]) + kTiny;
+  const Float16 length = square_root(squared) + kTiny;
   float direction[3];
-  for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length, count);
+  for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length);
 
   const Float16 slack = Float16{} + 2 * positions.error();
   const Float16 longest_a = largest_component(a.at) + slack, longest_b = largest_component(b.at) + slack;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/engine/local_positions.h"
@@ -13,10 +12,10 @@ namespace cscd::fast {
 // triangles of such a star touch nowhere but in what they share, whatever the start: a proof for pairs of
 // adjacent triangles that needs no cluster.
 //
-// Why: the star is closed (of others nothing is said). Seen along the plane's normal all its triangles have
-// positive area, so the angles under which they are seen at the vertex sum to a multiple of a full turn,
-// which cannot change as long as they stay positive. At t = 0 some direction lies in one of them alone, hence
-// one turn: their sectors never overlap.
+// Why: the star is one closed fan (of others nothing is said). Seen along the plane's normal all its
+// triangles have positive area, so the angles under which they are seen at the vertex sum to a multiple of a
+// full turn, which cannot change as long as they stay positive. At t = 0 some direction lies in one of them
+// alone, hence one turn: their sectors never overlap.
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
@@ -25,13 +24,8 @@ class Stars {
   bool flat(VertexId vertex, const LocalPositions& positions) const;
 
  private:
-  struct Ends {  // the other corners of a triangle at the vertex
-    std::int32_t second, third;
-  };
-  static bool closed(std::span<const Ends> ends);
-
-  std::vector<std::int32_t> offset_;
-  std::vector<Ends> ends_;
+  std::vector<std::int32_t> offset_;  // of each vertex, in `ring_`
+  std::vector<std::int32_t> ring_;  // the vertices round it, in the triangles' order; none where it is no fan
 };
 
 }  // namespace cscd::fast

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/elementary/elementary_test.h"
+#include "core/engine/covers.h"
 #include "core/engine/drvbc_fast.h"
 #include "core/engine/test_body.h"
 
@@ -54,6 +55,61 @@ TEST(TrialPoses, DecideWhichClustersAreTaken) {
     EXPECT_NE(of_bones, of_surface);
     EXPECT_EQ(clusters(tube, rig, Clusters::by_trial), bones == 1 ? of_surface : of_bones) << bones;
   }
+}
+
+// A spike on each face of a sphere, with a bone.
+struct Spikes {
+  test::Shape shape;
+  Rig rig;
+
+  explicit Spikes(int rings) {
+    const test::Shape sphere = test::icosphere(1);
+    shape.positions = sphere.positions;
+    for (const Triangle& face : sphere.triangles) {
+      const Vec3 middle =
+          (sphere.positions[+face[0]] + sphere.positions[+face[1]] + sphere.positions[+face[2]]) / 3;
+      const Vec3 tip = 3 * middle;
+      rig.parent.push_back(BoneId{-1});
+      rig.reference.push_back({0.8 * middle, tip});
+      int below[3] = {static_cast<int>(face[0]), static_cast<int>(face[1]), static_cast<int>(face[2])};
+      for (int r = 1; r < rings; ++r) {
+        const auto next = static_cast<int>(shape.positions.size());
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec3& foot = sphere.positions[+face[k]];
+          shape.positions.push_back(foot + (tip - foot) * r / rings);
+        }
+        for (int k = 0; k < 3; ++k) {
+          const int l = (k + 1) % 3;
+          shape.triangles.push_back(test::corners(below[k], below[l], next + l));
+          shape.triangles.push_back(test::corners(below[k], next + l, next + k));
+        }
+        for (int k = 0; k < 3; ++k) below[k] = next + k;
+      }
+      shape.positions.push_back(tip);
+      for (int k = 0; k < 3; ++k)
+        shape.triangles.push_back(
+            test::corners(below[k], below[(k + 1) % 3], static_cast<int>(shape.positions.size()) - 1));
+    }
+  }
+};
+
+// Where clusters are a few patches, seams are everywhere, and other covers cost more than they save.
+// Mutation: all of them are used always.
+TEST(TrialPoses, DecideHowManyCoversAreUsed) {
+  const auto observers = [](const test::Shape& shape, const Rig& rig, std::size_t covers) {
+    const TriangleMesh mesh = shape.mesh();
+    const cscd::Setup setup{mesh, shape.positions, &rig, elementary_tests().front()};
+    ContactSet found;
+    return make_drvbc_fast(setup, {.covers = covers, .clusters = DrvbcFastOptions::Clusters::of_bones})
+        .detector->detect(Motion(shape.positions, shape.positions), nullptr, found)
+        .cull.radial->clusters;
+  };
+  const Spikes spikes(7);
+  EXPECT_EQ(observers(spikes.shape, spikes.rig, 1), 80u);
+  EXPECT_EQ(observers(spikes.shape, spikes.rig, kCovers), 80u);
+  const test::Body tube(0, 0);
+  EXPECT_EQ(observers(tube.shape, tube.rig, 1), 5u);
+  EXPECT_EQ(observers(tube.shape, tube.rig, kCovers), 9u);
 }
 
 }  // namespace

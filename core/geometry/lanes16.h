@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -26,6 +27,15 @@ inline Float16 larger(Float16 a, Float16 b) {
 }
 inline Float16 absolute(Float16 a) {
   return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
+}
+
+inline Float16 square_root(Float16 v) {
+#ifdef __AVX512F__
+  return _mm512_maskz_sqrt_ps(0xffff, v);
+#else
+  for (std::size_t l = 0; l < kLanes16; ++l) v[l] = std::sqrt(v[l]);
+  return v;
+#endif
 }
 
 // Where a > b.
