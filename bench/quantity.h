@@ -22,6 +22,7 @@ struct Measured {
 //              preparation.distance_and_heat_ms, .decomposition_ms, .atomic_clusters
 //              counts.A+B...      a statistic over all intervals of the sum of counters
 //              ms.A+B...          a statistic over the timed intervals of the sum of stages, one a repetition
+//              ms.streaming       the same of streaming all positions once from memory
 //              verification.recall, .first_contacts
 //              footprint.peak_bytes, .held_bytes, .instructions
 //   strategy   whose; absent for scene.*

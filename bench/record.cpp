@@ -34,11 +34,15 @@ void append_counts(const Report& report, const ContactSet& found, CountColumns& 
   columns["undecided"].push_back(undecided);
 }
 
+void append_time(const char* stage, double milliseconds, TimeColumns& columns, std::size_t repetition) {
+  auto& repetitions = columns[stage];
+  repetitions.resize(repetition + 1);
+  repetitions.back().push_back(std::round(milliseconds * 1e6) / 1e6);  // the clock ticks in nanoseconds
+}
+
 void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repetition) {
   const auto add = [&](const char* stage, double milliseconds) {
-    auto& repetitions = columns[stage];
-    repetitions.resize(repetition + 1);
-    repetitions.back().push_back(std::round(milliseconds * 1e6) / 1e6);  // the clock ticks in nanoseconds
+    append_time(stage, milliseconds, columns, repetition);
   };
   add("refit", ms.refit);
   if (ms.rv_update) add("rv_update", *ms.rv_update);

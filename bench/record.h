@@ -25,6 +25,7 @@ inline constexpr std::string_view kRunSchema = "cscd.run/2";
 // One number an interval. A counter that a strategy does not have has no column.
 using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
 // [repetition][timed interval], milliseconds. A stage that a strategy does not have has no column.
+// `streaming` is no stage: it is what streaming all positions once from memory took before the query.
 using TimeColumns = std::map<std::string, std::vector<std::vector<double>>>;
 
 struct PreparationRecord {  // one sample for every time that the strategy was made
@@ -89,7 +90,8 @@ struct Record {
 
 // Adds one interval's counters as one row.
 void append_counts(const Report& report, const ContactSet& found, CountColumns& columns);
-// Adds one interval's stage times to the last repetition.
+// Adds one interval's time, or all of its stages', to the last repetition.
+void append_time(const char* stage, double milliseconds, TimeColumns& columns, std::size_t repetition);
 void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repetition);
 
 nlohmann::ordered_json to_json(const Record& record);

@@ -13,6 +13,7 @@
 #include "bench/record.h"
 #include "bench/scaling.h"
 #include "bench/statistics.h"
+#include "bench/timing.h"
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
 #include "core/detect/verify.h"
@@ -195,6 +196,7 @@ class Measurement {
           if (is_timed(c) && !c.digests[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
         for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
         for (Contestant* c : order) {
+          stream_positions(interval.motion);
           const Report report = answer(*c, interval, found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
           if (digest(found) != c->digests[i]) {

@@ -1,10 +1,16 @@
 #include "bench/timing.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstring>
 #include <numeric>
 #include <random>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #include "bench/progress.h"
+#include "core/geometry/lanes.h"
 
 namespace cscd::bench {
 namespace {
@@ -38,6 +44,27 @@ void shuffle(std::vector<std::size_t>& order, std::mt19937_64& random) {
 }
 
 }  // namespace
+
+double stream_positions(const Motion& motion) {
+  const std::span<const Vec3> ends[] = {motion.start(), motion.end()};
+#ifdef __SSE2__
+  for (const std::span<const Vec3> points : ends)
+    for (const Vec3& p : points) _mm_clflush(&p);
+  _mm_mfence();
+#endif
+  const auto begin = std::chrono::steady_clock::now();
+  Lane8 sum = {};
+  for (const std::span<const Vec3> points : ends) {
+    const auto* const first = reinterpret_cast<const std::byte*>(points.data());
+    for (std::size_t i = 0; i + sizeof sum <= points.size_bytes(); i += sizeof sum) {
+      Lane8 some;
+      std::memcpy(&some, first + i, sizeof some);
+      sum += some;
+    }
+  }
+  [[maybe_unused]] const volatile double kept = sum[0];  // or nothing would be read
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
 
 std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
                                              const TimingPlan& plan, const VerificationOutcome& verified,
@@ -74,6 +101,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {
+        append_time("streaming", stream_positions(interval.motion), records[c].ms, repetition);
         const Answer timed = answer(contestants[c], interval, found);
         append_times(timed.report.ms, records[c].ms, repetition);
         if (timed.digest != records[c].digests[row] || !same_culling(timed.report, warm_ups[c][row]))

@@ -149,6 +149,7 @@ TEST(Verification, HonestStrategiesPassAndAreTimed) {
         << strategy.name;
     EXPECT_EQ(outcome.verified.record.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
     EXPECT_EQ(outcome.verified.record.colliding, std::vector<std::size_t>{0});
+    EXPECT_TRUE(outcome.records[1].ms.contains("streaming"));
     for (const auto& [stage, repetitions] : outcome.records[1].ms) {
       ASSERT_EQ(repetitions.size(), 3u) << stage;
       for (const std::vector<double>& row : repetitions) EXPECT_EQ(row.size(), 1u) << stage;
