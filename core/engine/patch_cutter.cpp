@@ -24,7 +24,9 @@ PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroi
       centroid_(centroid),
       most_(most),
       free_(mesh.triangle_count(), false),
-      patch_of_(mesh.triangle_count(), -1) {}
+      patch_of_(mesh.triangle_count(), -1),
+      corners_taken_(mesh.triangle_count(), 0),
+      taken_(mesh.vertex_count(), false) {}
 
 PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
   Patches patches = pieces(cell);
@@ -76,36 +78,42 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
 // Next the triangle that needs the fewest new vertices and lies nearest to the others. One vertex in common
 // is enough: what hangs at a zigzag seam by its corners would else be patches of one triangle.
 std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
-  std::vector<TriangleId> patch = {seed};
-  std::vector<VertexId> vertices(mesh_.corners(seed).begin(), mesh_.corners(seed).end());
-  Vec3 sum = centroid_[+seed];
-  free_[+seed] = false;
-  const auto is_new = [&](VertexId v) {
-    return std::find(vertices.begin(), vertices.end(), v) == vertices.end();
+  std::vector<TriangleId> patch;
+  std::size_t vertices = 0;
+  Vec3 sum = Vec3::Zero();
+  const auto take = [&](TriangleId triangle) {
+    vertices += 3 - corners_taken_[+triangle];
+    patch.push_back(triangle);
+    sum += centroid_[+triangle];
+    free_[+triangle] = false;
+    for (const VertexId v : mesh_.corners(triangle)) {
+      if (taken_[+v]) continue;
+      taken_[+v] = true;
+      for (const TriangleId t : mesh_.triangles_at(v))
+        if (free_[+t] && corners_taken_[+t]++ == 0) touched_.push_back(t);
+    }
   };
+  touched_.clear();
+  take(seed);
   while (patch.size() < most_) {
     const Vec3 middle = sum / static_cast<double>(patch.size());
     TriangleId best{-1};
-    std::pair<std::ptrdiff_t, double> least;
-    for (const VertexId v : vertices)
-      for (const TriangleId t : mesh_.triangles_at(v)) {
-        if (!free_[+t]) continue;
-        const Triangle& corners = mesh_.corners(t);
-        const std::pair cost{std::count_if(corners.begin(), corners.end(), is_new),
-                             (centroid_[+t] - middle).squaredNorm()};
-        if (static_cast<std::size_t>(cost.first) + vertices.size() > most_) continue;
-        if (best == TriangleId{-1} || cost < least) {
-          best = t;
-          least = cost;
-        }
+    std::pair<int, double> least;
+    for (const TriangleId t : touched_) {
+      const int needed = 3 - corners_taken_[+t];
+      if (!free_[+t] || static_cast<std::size_t>(needed) + vertices > most_) continue;
+      const std::pair cost{needed, (centroid_[+t] - middle).squaredNorm()};
+      if (best == TriangleId{-1} || cost < least) {
+        best = t;
+        least = cost;
       }
+    }
     if (best == TriangleId{-1}) break;
-    free_[+best] = false;
-    patch.push_back(best);
-    sum += centroid_[+best];
-    std::copy_if(mesh_.corners(best).begin(), mesh_.corners(best).end(), std::back_inserter(vertices),
-                 is_new);
+    take(best);
   }
+  for (const TriangleId t : touched_) corners_taken_[+t] = 0;
+  for (const TriangleId t : patch)
+    for (const VertexId v : mesh_.corners(t)) taken_[+v] = false;
   return patch;
 }
 

@@ -32,6 +32,10 @@ class PatchCutter {
   std::size_t most_;
   std::vector<bool> free_;              // triangles that are in no patch yet
   std::vector<std::int32_t> patch_of_;  // of triangles under repair, else -1
+  // Of the patch that grows; else empty.
+  std::vector<std::uint8_t> corners_taken_;  // of each triangle: how many of its corners are in it
+  std::vector<bool> taken_;                  // whether a vertex is in it
+  std::vector<TriangleId> touched_;          // triangles that were free and have a corner in it, in order
 };
 
 }  // namespace cscd::fast
