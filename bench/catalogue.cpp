@@ -84,8 +84,7 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
              },
              kAblation},
-    Strategy{"drvbc_fast_two_covers", "drvbc_fast with the first two of its covers", Guarantee::first_contact,
-             false,
+    Strategy{"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact, false,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
              },
@@ -107,20 +106,20 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
              },
              kAblation},
-    Strategy{"drvbc_fast_bones", "drvbc_fast, its covers of bones without a trial", Guarantee::first_contact,
+    Strategy{"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
              false,
              [](const Setup& setup) {
                return make_drvbc_fast(
                    setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
              },
              kAblation},
-    Strategy{
-        "drvbc_fast_no_bones", "drvbc_fast, its covers of the surface alone", Guarantee::first_contact, false,
-        [](const Setup& setup) {
-          return make_drvbc_fast(
-              setup, {.name = "drvbc_fast_no_bones", .clusters = DrvbcFastOptions::Clusters::of_surface});
-        },
-        kAblation},
+    Strategy{"drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
+             Guarantee::first_contact, false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones",
+                                              .clusters = DrvbcFastOptions::Clusters::of_surface});
+             },
+             kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
              Guarantee::heuristic, true,
              [](const Setup& setup) {

@@ -169,21 +169,19 @@ Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const D
   return {std::move(cluster_of), std::move(culler)};
 }
 
-// Of clusters of bones or of the surface, whichever make less work where bones turn.
+// Of clusters of bones or of the surface, and with as many covers, as make the least work where bones turn.
 Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
   const std::vector<BoneId> bone_of = bones_of(setup, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-  // Rows that leave something out take what the whole would, so that nothing else differs.
-  const DrvbcFastOptions whole{
-      .name = options.name, .clusters = options.clusters, .complete = options.complete};
-  std::vector<Candidate> candidates;
-  candidates.push_back(made(setup, std::move(of_bones), whole));
-  if (options.clusters == Clusters::by_trial)
-    candidates.push_back(made(setup, surface_clusters(setup.mesh, setup.reference), whole));
+  if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
 
+  // Rows that leave something out take what the whole would, so that nothing else differs.
+  const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
+  Candidate candidates[] = {made(setup, std::move(of_bones), whole),
+                            made(setup, surface_clusters(setup.mesh, setup.reference), whole)};
   const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
   Candidate* best = nullptr;
   std::size_t covers = 0;

@@ -9,7 +9,7 @@ namespace cscd {
 struct DrvbcFastOptions {
   std::string_view name = "drvbc_fast";  // begins error texts
   // For the ablation.
-  std::size_t covers = 3;  // the first of them
+  std::size_t covers = 3;  // at most
   bool time_linear = true;
   bool stars = true;
   bool planes = true;
@@ -22,8 +22,8 @@ struct DrvbcFastOptions {
 };
 
 // Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh unless it is
-// `complete`; begins from the clusters of bones or from clusters of the surface: where there are bones, from
-// those that a trial prefers.
+// `complete`; begins from the clusters of bones or from clusters of the surface, and looks from one cover or
+// more: where there are bones, as a trial prefers.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
 }  // namespace cscd

@@ -96,20 +96,20 @@ struct Spikes {
 // Where clusters are a few patches, seams are everywhere, and other covers cost more than they save.
 // Mutation: all of them are used always.
 TEST(TrialPoses, DecideHowManyCoversAreUsed) {
-  const auto observers = [](const test::Shape& shape, const Rig& rig, std::size_t covers) {
+  const auto observers = [](const test::Shape& shape, const Rig& rig, DrvbcFastOptions options) {
     const TriangleMesh mesh = shape.mesh();
     const cscd::Setup setup{mesh, shape.positions, &rig, elementary_tests().front()};
     ContactSet found;
-    return make_drvbc_fast(setup, {.covers = covers, .clusters = DrvbcFastOptions::Clusters::of_bones})
+    return make_drvbc_fast(setup, options)
         .detector->detect(Motion(shape.positions, shape.positions), nullptr, found)
         .cull.radial->clusters;
   };
   const Spikes spikes(7);
-  EXPECT_EQ(observers(spikes.shape, spikes.rig, 1), 80u);
-  EXPECT_EQ(observers(spikes.shape, spikes.rig, kCovers), 80u);
+  EXPECT_EQ(observers(spikes.shape, spikes.rig, {}), observers(spikes.shape, spikes.rig, {.covers = 1}));
+  EXPECT_GT(observers(spikes.shape, spikes.rig, {.clusters = DrvbcFastOptions::Clusters::of_bones}), 100u)
+      << "there are others";
   const test::Body tube(0, 0);
-  EXPECT_EQ(observers(tube.shape, tube.rig, 1), 5u);
-  EXPECT_EQ(observers(tube.shape, tube.rig, kCovers), 9u);
+  EXPECT_GT(observers(tube.shape, tube.rig, {}), observers(tube.shape, tube.rig, {.covers = 1}));
 }
 
 }  // namespace
