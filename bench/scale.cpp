@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <thread>
 
 #include "bench/catalogue.h"
 #include "bench/command.h"
@@ -34,7 +35,7 @@ struct ScaleOptions {
   std::string output;
 };
 
-constexpr const char* kStudies[] = {"size", "step", "bones"};
+constexpr const char* kStudies[] = {"size", "step", "bones", "threads"};
 
 // One subject and the scene that it is of.
 struct Planned {
@@ -65,7 +66,7 @@ std::vector<Planned> plan(const ScaleOptions& options) {
   };
   for (const std::string& study : options.studies)
     if (std::ranges::find(kStudies, study) == std::end(kStudies))
-      throw InputError("--study " + study + ": is not known; choose among size, step, bones");
+      throw InputError("--study " + study + ": is not known; choose among size, step, bones, threads");
   const auto wanted = [&](const char* study) {
     return options.studies.empty() || std::ranges::find(options.studies, study) != options.studies.end();
   };
@@ -92,6 +93,9 @@ std::vector<Planned> plan(const ScaleOptions& options) {
     subject.starts = spread_starts(scenes::load_scene(scene).frames, intervals, subject.steps.back());
     all.push_back({scene, std::move(subject)});
   };
+  const auto named = [&](const char* key, const std::string& scene) {
+    return std::ranges::find(defaults.at(key), ordered_json(scene)) != defaults.at(key).end();
+  };
   for (const std::string& scene : scenes) {
     ScaleSubject subject = common;
     if (wanted("size")) {
@@ -107,12 +111,21 @@ std::vector<Planned> plan(const ScaleOptions& options) {
       subject.strategies = chosen_rows(options, defaults.at("step_strategies"));
       add(scene, subject);
     }
-    const auto bone_scenes = defaults.at("bone_scenes").get<std::vector<std::string>>();
-    if (wanted("bones") && std::ranges::find(bone_scenes, scene) != bone_scenes.end()) {
+    if (wanted("bones") && named("bone_scenes", scene)) {
       subject.study = "bones";
       subject.steps = {1};
       subject.strategies = chosen_rows(options, defaults.at("bone_strategies"));
       for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(scene, subject);
+      subject.bones = 0;
+    }
+    if (wanted("threads") && named("thread_scenes", scene)) {
+      subject.study = "threads";
+      subject.steps = {1};
+      subject.triangles = defaults.at("thread_triangles");
+      subject.strategies = chosen_rows(options, defaults.at("thread_strategies"));
+      for (const int threads : defaults.at("threads"))
+        if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
+          subject.threads = threads, add(scene, subject);
     }
   }
   return all;
@@ -163,7 +176,7 @@ const ordered_json* row_named(const ordered_json& rows, const std::string& name)
   return nullptr;
 }
 
-// Exponents over the triangles of the study of sizes, or the bones of that of bones.
+// Exponents over what a study varies: triangles, bones, threads.
 ordered_json fits(const ordered_json& subjects) {
   struct Series {
     std::vector<double> x, y;
@@ -173,7 +186,7 @@ ordered_json fits(const ordered_json& subjects) {
   for (const ordered_json& subject : subjects) {
     const std::string study = subject.at("study");
     if (study == "step") continue;
-    const double x = subject.at(study == "size" ? "triangles" : "bones");
+    const double x = subject.at(study == "size" ? "triangles" : study);
     const auto add = [&](const std::string& strategy, const std::string& quantity, double y) {
       const std::array<std::string, 4> key = {study, subject.at("scene"), strategy, quantity};
       auto place = std::ranges::find(series, key, [](const auto& entry) { return entry.first; });
@@ -234,9 +247,10 @@ ordered_json step_ratios(const ordered_json& subjects) {
 }
 
 void print(const ordered_json& subject) {
-  std::printf("%s %s: %zu triangles, %zu bones%s\n", subject.at("study").get<std::string>().c_str(),
-              subject.at("scene").get<std::string>().c_str(), subject.at("triangles").get<std::size_t>(),
-              subject.at("bones").get<std::size_t>(), subject.at("ok") ? "" : ", NOT VERIFIED");
+  std::printf("%s %s: %zu triangles, %zu bones, threads: %d%s\n",
+              subject.at("study").get<std::string>().c_str(), subject.at("scene").get<std::string>().c_str(),
+              subject.at("triangles").get<std::size_t>(), subject.at("bones").get<std::size_t>(),
+              subject.at("threads").get<int>(), subject.at("ok") ? "" : ", NOT VERIFIED");
   for (const ordered_json& step : subject.at("steps")) {
     for (const ordered_json& failure : step.at("verified").at("failures"))
       std::printf("  %s\n", failure.get<std::string>().c_str());
@@ -291,17 +305,18 @@ void add_scale(CLI::App& app) {
   auto options = std::make_shared<ScaleOptions>();
   CLI::App* command = app.add_subcommand(
       "scale",
-      "Measure how cost grows: with triangles, with the length of the step, with bones.\n\n"
+      "Measure how cost grows: with triangles, with the length of the step, with bones, with threads.\n\n"
       "  cscd scale --json scale.json\n"
       "  cscd scale --smoke\n"
       "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
       "size   the scenes with other numbers of triangles in the same motion, and memory a triangle\n"
       "step   intervals between frames that lie further apart, or nearer\n"
-      "bones  chains of bones merged or cut, on the same surface\n\n"
+      "bones  chains of bones merged or cut, on the same surface\n"
+      "threads  the same surface on one thread and more, up to those of the machine\n\n"
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong.");
-  command->add_option("--study", options->studies, "size, step, bones, with commas; default all")
+  command->add_option("--study", options->studies, "size, step, bones, threads, with commas; default all")
       ->delimiter(',');
   command->add_option("--scene", options->scenes, "scenes with commas; default the six")->delimiter(',');
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")

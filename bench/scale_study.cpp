@@ -222,6 +222,7 @@ class Measurement {
             {"triangles", input().mesh.triangle_count()},
             {"vertices", input().mesh.vertex_count()},
             {"bones", input().rig->parent.size()},
+            {"threads", subject_.threads},
             {"build_ms", scaled_.build_ms},
             {"ok", ok()},
             {"strategies", std::move(strategies)},

@@ -13,7 +13,7 @@
 namespace cscd::bench {
 
 struct ScaleSubject {
-  std::string study;                // size, step or bones
+  std::string study;                // size, step, bones or threads
   std::size_t triangles = 0;        // asked for; 0 for the scene's own
   std::size_t bones = 0;            // of the chain; 0 for the scene's own
   std::vector<double> steps;        // in frame steps: a whole number, or a share of one

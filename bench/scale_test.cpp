@@ -1,6 +1,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "bench/scale_study.h"
 #include "bench/scaling.h"
@@ -146,6 +147,23 @@ TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
   EXPECT_NE(schema_violation(damaged, "scale.schema.json"), "") << "no time without a verified answer";
 }
 
+TEST_F(ScaleProgram, TakesAsManyThreadsAsTheMachineHas) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "a hundred bones take minutes to prepare with sanitizers";
+#endif
+  const auto out = record({"--smoke", "--study", "threads", "--scene", "rope,urchin"}, "threads");
+  const unsigned machine = std::thread::hardware_concurrency();
+  ASSERT_EQ(out.at("subjects").size(), machine >= 2 ? 2u : 1u) << "the rope alone";
+  int threads = 0;
+  for (const auto& subject : out.at("subjects")) {
+    EXPECT_EQ(subject.at("study"), "threads");
+    EXPECT_EQ(subject.at("threads"), ++threads);
+    for (const auto& strategy : subject.at("strategies")) EXPECT_EQ(strategy.at("threads"), threads);
+    EXPECT_EQ(subject.at("steps")[0].at("strategies")[0].at("counts"),
+              out.at("subjects")[0].at("steps")[0].at("strategies")[0].at("counts"));
+  }
+}
+
 TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {
   const auto steps = record(
       {"--smoke", "--study", "step", "--scene", "urchin", "--steps", "0.5,1,3", "--strategy", "base,drvbc"},
@@ -177,7 +195,8 @@ TEST_F(ScaleProgram, RefusesInOneLine) {
     EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
     return outcome.errors;
   };
-  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones"), std::string::npos);
+  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones, threads"),
+            std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,2.5"}).find("round it"), std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,500"}).find("does not fit"), std::string::npos);
   EXPECT_NE(refusal({"--scene", "nosuch"}).find("unknown scene"), std::string::npos);
