@@ -6,6 +6,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -119,22 +120,36 @@ TEST_P(Characters, AreInspectedAndQueried) {
   EXPECT_GT(embedded, 0u);
 }
 
+// Of the processor, which other work on the machine does not lengthen much; all of it runs on one thread.
+double seconds_of_children() {
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
 // From the program's start to its end, with one interval between.
 TEST(Models, ALargeCharacterIsAnsweredWithinTwoSeconds) {
   if (absent("eagle.fbx")) GTEST_SKIP();
   const Scratch scratch;
-  double least = 1e9;
+  double least = 1e9, least_wall = 1e9;
   for (int i = 0; i < 3; ++i) {
+    const double before = seconds_of_children();
     const Outcome asked =
         cscd({"query", model("eagle.fbx"), "--frames", "0:1", "--json", scratch / "out.json", "--force"});
     ASSERT_EQ(asked.code, 0) << asked.errors;
-    least = std::min(least, asked.seconds);
+    least = std::min(least, seconds_of_children() - before);
+    least_wall = std::min(least_wall, asked.seconds);
   }
   const auto answer = nlohmann::json::parse(read(scratch / "out.json"));
   EXPECT_EQ(answer["intervals"].size(), 1u);
-  std::printf("%d triangles: %.2f s from the file to the first interval's answer, by %s\n",
-              answer["import"]["chosen_triangles"].get<int>(), least,
-              answer["strategy"].get<std::string>().c_str());
+  std::printf(
+      "%d triangles: %.2f s (%.2f s of the processor) from the file to the first interval's answer, by %s\n",
+      answer["import"]["chosen_triangles"].get<int>(), least_wall, least,
+      answer["strategy"].get<std::string>().c_str());
+  EXPECT_GT(least, 0.05) << "else it was not the program's";
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
   EXPECT_LT(least, 2);
 #endif
