@@ -12,24 +12,17 @@ inline constexpr std::size_t kLanes = 8;
 using Lane8 = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Sign8 = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
-inline Lane8 smaller(Lane8 a, Lane8 b) {
+// Of one number too, for code that is written once for both.
+template <class Real>
+Real smaller(Real a, Real b) {
   return a < b ? a : b;
 }
-inline Lane8 larger(Lane8 a, Lane8 b) {
+template <class Real>
+Real larger(Real a, Real b) {
   return a < b ? b : a;
 }
-inline Lane8 absolute(Lane8 a) {
-  return a < 0 ? -a : a;
-}
-
-// The same of one number, for code that is written once for both.
-inline double smaller(double a, double b) {
-  return a < b ? a : b;
-}
-inline double larger(double a, double b) {
-  return a < b ? b : a;
-}
-inline double absolute(double a) {
+template <class Real>
+Real absolute(Real a) {
   return a < 0 ? -a : a;
 }
 
