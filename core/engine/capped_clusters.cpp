@@ -65,7 +65,7 @@ void CappedClusters::take(const Cap& cap) {
         const float apex = cap.opposite ? 2 * from.at[end][i] - towards.at[end][i] : towards.at[end][i];
         lanes.at[end][i][kLanes16 - 1] = apex;
       }
-    const Signs signs = orientation(normals_of(lanes, fan), from, positions_->error());
+    const Signs signs = orientation(lanes, fan, from, positions_->error());
     positive_.push_back(signs.positive & fan.lanes);
     uncertain += std::popcount(static_cast<unsigned>(fan.lanes & ~positive_.back()));
     loop_.push_back(lanes);

@@ -24,24 +24,27 @@ class Seen {
     CappedClusters capped(mesh, reference, cover, number);
     capped.start(local_, from);
     const auto for_each = [&](const auto& take) {
-      for (const Patch& patch : tree.patches) {
+      for (std::size_t p = 0; p < tree.patches.size(); ++p) {
+        const Patch& patch = tree.patches[p];
         if (patch.cluster[number] == kNone) continue;
         const PatchLanes lanes = load(local_.records(), patch.vertex);
         const Viewpoint& viewpoint = from[static_cast<std::size_t>(patch.cluster[number])];
-        take(patch, lanes,
-             static_cast<Mask16>(orientation(normals_of(lanes, patch), viewpoint, local_.error()).positive &
-                                 patch.lanes));
+        take(
+            p, lanes,
+            static_cast<Mask16>(orientation(lanes, patch, viewpoint, local_.error()).positive & patch.lanes));
       }
     };
-    for_each([&](const Patch& patch, const PatchLanes& lanes, Mask16 positive) {
+    for_each([&](std::size_t p, const PatchLanes& lanes, Mask16 positive) {
+      const Patch& patch = tree.patches[p];
       if (positive != patch.lanes ||
           capped.may_cross_ray(static_cast<std::size_t>(patch.cluster[number]), lanes))
         capped.take(patch, positive);
     });
-    for_each([&](const Patch& patch, const PatchLanes&, Mask16 positive) {
-      const Mask16 clear = capped.clear(patch, positive);
+    for_each([&](std::size_t p, const PatchLanes&, Mask16 positive) {
+      const Mask16 clear = capped.clear(tree.patches[p], positive);
       EXPECT_EQ(clear & ~positive, 0);
-      for (std::size_t l = 0; patch.lanes >> l != 0; ++l) clear_[+patch.triangle[l]] = (clear >> l & 1) != 0;
+      const std::span<const TriangleId> triangles = tree.triangles_of(p);
+      for (std::size_t l = 0; l < triangles.size(); ++l) clear_[+triangles[l]] = (clear >> l & 1) != 0;
     });
   }
   bool dropped(TriangleId a, TriangleId b) const {
@@ -69,7 +72,8 @@ struct OneCluster {
       : shape(with_vertex(std::move(surface), from)), mesh(shape.mesh()) {
     for (Cover& cover : covers) cover.cluster_of.assign(mesh.triangle_count(), kNone);
     covers[0].cluster_of.assign(mesh.triangle_count(), 0);
-    covers[0].observers = {{{VertexId{static_cast<std::int32_t>(shape.positions.size()) - 1}}, {1}}};
+    covers[0].observers.resize(1);
+    covers[0].observers[0].add(VertexId{static_cast<std::int32_t>(shape.positions.size()) - 1}, 1);
     tree = make_patches(mesh, shape.positions, covers);
   }
   Seen seen(const Motion& motion) const { return {mesh, shape.positions, tree, covers[0], 0, motion}; }

@@ -33,10 +33,8 @@ std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
 FollowingPoint middle(const Loop& loop) {
   const std::size_t count = std::min(kFollowed, loop.size());
   FollowingPoint point;
-  for (std::size_t i = 0; i < count; ++i) {
-    point.vertices.push_back(loop[i * loop.size() / count]);
-    point.weights.push_back(1 / static_cast<float>(count));
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    point.add(loop[i * loop.size() / count], 1 / static_cast<float>(count));
   return point;
 }
 

@@ -28,7 +28,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       label_(tree.nodes.size()),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
-  // The first cover holds every triangle: certify_positive takes that for granted.
+  // The first cover holds every triangle: `look` takes that for granted.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
@@ -61,12 +61,10 @@ void Certificates::start(const LocalPositions& positions) {
 }
 
 void Certificates::finish() {
-  if (capped_.empty()) {
-    certify_positive();
-    certify_negative();
-  } else {
+  if (capped_.empty())
+    certify_all_round();
+  else
     certify_clear();
-  }
   if (!positions_->known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   label_nodes();
 }
@@ -87,28 +85,38 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   for (std::size_t c = 0; c < capped_.size(); ++c)
     if (from[c] != nullptr)
       crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
-  const unsigned lanes_in_use = patch.lanes;
   for (std::size_t c = 0; c < count_; ++c)
     if (from[c] != nullptr)
-      own_[p][c] = {static_cast<Mask16>(lanes_in_use & ~static_cast<unsigned>(seen[c].positive)),
-                    static_cast<Mask16>(lanes_in_use & seen[c].negative)};
+      own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
+                    static_cast<Mask16>(patch.lanes & seen[c].negative)};
+  // The first cover holds every triangle. The others are certified unless `finish` finds something around.
+  certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive), own_[p][0].negative};
+  for (std::size_t c = 1; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
 
-void Certificates::certify_positive() {
-  for (std::size_t p = 0; p < certified_.size(); ++p) {
-    const Own& own = own_[p][0];
-    certified_[p][0] = {static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own.not_positive)),
-                        own.negative};
-    for (std::size_t c = 1; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
-  }
+void Certificates::certify_all_round() {
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for (std::size_t c = 1; c < count_; ++c) {
-      if (own_[p][c].not_positive == 0) continue;
-      const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
-      tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
-        certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
+      if (own_[p][c].not_positive != 0) spoil_round(p, c);
+      for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
+        certified_[p][c].negative |= static_cast<Mask16>(negative_all_round(p, lane, c) << lane);
       });
     }
+}
+
+void Certificates::spoil_round(std::size_t p, std::size_t c) {
+  const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
+  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+    certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
+  });
+}
+
+bool Certificates::negative_all_round(std::size_t p, std::size_t lane, std::size_t c) const {
+  unsigned others = 0;
+  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+    others |= common.beside(tree_.patches[p], lane) & ~static_cast<unsigned>(own_[q][c].negative);
+  });
+  return others == 0;
 }
 
 void Certificates::certify_clear() {
@@ -126,28 +134,9 @@ void Certificates::certify_clear() {
   });
 }
 
-void Certificates::certify_negative() {
-  for (std::size_t p = 0; p < certified_.size(); ++p)
-    for (std::size_t c = 1; c < count_; ++c)
-      for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
-        unsigned others = 0;
-        tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
-          others |= common.beside(tree_.patches[p], lane) & ~static_cast<unsigned>(own_[q][c].negative);
-        });
-        certified_[p][c].negative |= static_cast<Mask16>((others == 0) << lane);
-      });
-}
-
 void Certificates::label_nodes() {
   counts_.positive = counts_.negative = counts_.uncertain = 0;
-  for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
-    const PatchTree::Node& node = tree_.nodes[n];
-    if (!node.is_leaf()) {
-      const Label left = label_[node.left()], right = label_[node.right()];
-      label_[n] = left == right ? left : Label{} + kNone;
-      continue;
-    }
-    const std::size_t p = node.patch();
+  for (std::size_t p = 0; p < cell_.size(); ++p) {
     const Cell& patch = cell_[p];
     unsigned some = 0;
     Label label = Label{} + kNone;
@@ -159,18 +148,22 @@ void Certificates::label_nodes() {
                                                  : kNone;
       some |= signs.positive | signs.negative;
     }
-    label_[n] = label;
+    label_[static_cast<std::size_t>(tree_.leaf[p])] = label;
     counts_.positive += count(certified_[p][0].positive);
     counts_.negative += count(certified_[p][0].negative);
     counts_.uncertain += count(patch.lanes & ~some);
   }
+  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+    const Label left = label_[node.left()], right = label_[node.right()];
+    label_[n] = left == right ? left : Label{} + kNone;
+  });
 }
 
 RadialView Certificates::view() const {
   RadialView view{covers_[0].cluster_of, std::vector<bool>(covers_[0].cluster_of.size())};
   for (std::size_t p = 0; p < certified_.size(); ++p)
     for_each_lane(certified_[p][0].positive,
-                  [&](std::size_t lane) { view.positive[+tree_.patches[p].triangle[lane]] = true; });
+                  [&](std::size_t lane) { view.positive[+tree_.triangles[p][lane]] = true; });
   return view;
 }
 

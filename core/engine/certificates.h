@@ -80,8 +80,9 @@ class Certificates {
 
  private:
   void place_viewpoints(std::span<const LocalPositions::Record> records);
-  void certify_positive();
-  void certify_negative();
+  void certify_all_round();
+  void spoil_round(std::size_t patch, std::size_t cover);
+  bool negative_all_round(std::size_t patch, std::size_t lane, std::size_t cover) const;
   void certify_clear();
   void label_nodes();
 

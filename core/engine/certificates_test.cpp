@@ -95,9 +95,9 @@ struct Scene : test::Body {
   }
   radial::Observer observer(const FollowingPoint& from) const {
     float sum[8] = {};
-    for (std::size_t i = 0; i < from.vertices.size(); ++i)
+    for (std::size_t i = 0; i < from.vertices().size(); ++i)
       for (std::size_t k = 0; k < 8; ++k)
-        sum[k] += from.weights[i] * local.records()[+from.vertices[i]].at[k];
+        sum[k] += from.weights()[i] * local.records()[+from.vertices()[i]].at[k];
     return radial::Observer::point({Vec3(sum[0], sum[1], sum[2]), Vec3(sum[4], sum[5], sum[6])});
   }
   void find_all_round() {
@@ -129,7 +129,7 @@ void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
       for (std::size_t i = 0; patches[p].lanes >> i != 0; ++i) {
         const Mask16 needed = scene.certificates.shared(p, q).needed(i);
         for (std::size_t j = 0; patches[q].lanes >> j != 0; ++j)
-          visit(patches[p].triangle[i], patches[q].triangle[j], (needed >> j & 1) != 0);
+          visit(scene.tree.triangles[p][i], scene.tree.triangles[q][j], (needed >> j & 1) != 0);
       }
 }
 

@@ -43,8 +43,7 @@ void cover_corners(const PatchTree& tree, Cover& cover) {
     });
   }
   for (std::size_t p = 0; p < cluster.size(); ++p)
-    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
-      cover.cluster_of[+tree.patches[p].triangle[l]] = cluster[p];
+    for (const TriangleId t : tree.triangles_of(p)) cover.cluster_of[+t] = cluster[p];
 }
 
 }  // namespace cscd::fast

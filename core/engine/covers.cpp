@@ -13,9 +13,8 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kFollowed = 16;  // vertices at most that an observer follows
-constexpr std::int32_t kReach = 6;     // rings of triangles about a seam that belong to its cluster
-constexpr std::int32_t kThin = 4;      // clusters without a triangle so many rings from its seams are merged
+constexpr std::int32_t kReach = 6;  // rings of triangles about a seam that belong to its cluster
+constexpr std::int32_t kThin = 4;   // clusters without a triangle so many rings from its seams are merged
 
 // ---- Observers
 
@@ -27,7 +26,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
     vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const std::size_t count = std::min(kFollowed, vertices.size());
+  const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
   std::mt19937 random(20140314);
   FollowingPoint best;
   double least = std::numeric_limits<double>::infinity();
@@ -52,18 +51,16 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
     double largest = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const double weight = 1 / n + slope.dot(positions[+vertices[i]] - mean);
-      point.vertices.push_back(vertices[i]);
-      point.weights.push_back(static_cast<float>(weight));
+      point.add(vertices[i], static_cast<float>(weight));
       got += weight * positions[+vertices[i]];
       largest = std::max(largest, n * std::abs(weight));
     }
     const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
     if (!(cost < least)) continue;
     least = cost;
-    best = std::move(point);
+    best = point;
   }
-  if (best.vertices.empty())  // a cluster of no extent
-    best = {{vertices.front()}, {1}};
+  if (best.vertices().empty()) best.add(vertices.front(), 1);  // a cluster of no extent
   return best;
 }
 

@@ -66,9 +66,9 @@ TEST(Covers, ObserversSeeAllOfATubeFromInside) {
     for (const FollowingPoint& from : cover.observers) {
       Vec3 q = Vec3::Zero();
       double sum = 0;
-      for (std::size_t i = 0; i < from.vertices.size(); ++i) {
-        q += static_cast<double>(from.weights[i]) * body.shape.positions[+from.vertices[i]];
-        sum += static_cast<double>(from.weights[i]);
+      for (std::size_t i = 0; i < from.vertices().size(); ++i) {
+        q += static_cast<double>(from.weights()[i]) * body.shape.positions[+from.vertices()[i]];
+        sum += static_cast<double>(from.weights()[i]);
       }
       EXPECT_NEAR(sum, 1, 1e-5);
       EXPECT_LT(std::hypot(q.y(), q.z()), 0.6);

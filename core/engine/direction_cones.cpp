@@ -13,12 +13,6 @@ constexpr float kRounding = 4e-6F;
 constexpr float kLeastCosine = 0.1F;
 constexpr float kLeastLength = 100;  // in errors
 
-Float16 square_root(Float16 v) {
-  Float16 out;
-  for (std::size_t l = 0; l < kLanes16; ++l) out[l] = std::sqrt(v[l]);
-  return out;
-}
-
 Float16 dot(const Float16 (&a)[3], const Float16 (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

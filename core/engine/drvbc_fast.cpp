@@ -27,7 +27,7 @@ namespace cscd {
 namespace fast {
 namespace {
 
-constexpr std::size_t kRange = 64;  // nodes worth another thread
+constexpr std::size_t kRange = 32;  // patches worth another thread
 constexpr std::size_t kAhead = 2;   // patches by which positions are fetched before they are looked at
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
@@ -66,13 +66,12 @@ class FastCuller : public Culler {
   // Bounds too, as a patch is loaded once for both.
   bool classify(const Motion&, const Rig::Interval*) override {
     certificates_.start(positions_);
-    team_.ranges(tree_.nodes.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
-      for (std::size_t n = first; n < last; ++n)
-        if (tree_.nodes[n].is_leaf()) look(n);
+    team_.ranges(tree_.patches.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
+      for (std::size_t p = first; p < last; ++p) look(p);
     });
-    for (std::size_t n = tree_.nodes.size(); n-- > 0;)
-      if (const PatchTree::Node& node = tree_.nodes[n]; !node.is_leaf())
-        bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
+    tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+      bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
+    });
     certificates_.finish();
     if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
     return true;
@@ -90,16 +89,15 @@ class FastCuller : public Culler {
   std::size_t looks() const { return certificates_.looks(); }
 
  private:
-  void look(std::size_t leaf) {
-    const std::size_t patch = tree_.nodes[leaf].patch();
+  void look(std::size_t patch) {
     fetch(patch + kAhead);
     const PatchLanes lanes = load(positions_.records(), tree_.patches[patch].vertex);
-    bounds_[leaf] = grid_.bounds_of(lanes);
-    if (!options_.time_linear) bounds_[leaf] = swept(bounds_[leaf]);
+    NodeBounds& bounds = bounds_[static_cast<std::size_t>(tree_.leaf[patch])];
+    bounds = grid_.bounds_of(lanes);
+    if (!options_.time_linear) bounds = swept(bounds);
     certificates_.look(patch, lanes);
   }
 
-  // Leaves follow one another nearly as their patches do.
   void fetch(std::size_t patch) const {
     if (patch >= tree_.patches.size()) return;
     for (const std::int32_t v : tree_.patches[patch].vertex)

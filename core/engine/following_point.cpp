@@ -1,18 +1,30 @@
 #include "core/engine/following_point.h"
 
+#include <cassert>
+#include <cstring>
+
 namespace cscd::fast {
+
+void FollowingPoint::add(VertexId vertex, float weight) {
+  assert(count_ < kMost);
+  vertices_[count_] = vertex;
+  weights_[count_++] = weight;
+}
 
 Vec3 FollowingPoint::at(std::span<const Vec3> positions) const {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    sum += static_cast<double>(weights[v]) * positions[+vertices[v]];
+  for (std::size_t i = 0; i < count_; ++i) sum += static_cast<double>(weights_[i]) * positions[+vertices_[i]];
   return sum;
 }
 
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {
-  float sum[8] = {};
-  for (std::size_t v = 0; v < point.vertices.size(); ++v)
-    for (std::size_t k = 0; k < 8; ++k) sum[k] += point.weights[v] * records[+point.vertices[v]].at[k];
+  using Float8 = float __attribute__((vector_size(sizeof(LocalPositions::Record))));
+  Float8 sum = {};
+  for (std::size_t i = 0; i < point.vertices().size(); ++i) {
+    Float8 record;
+    std::memcpy(&record, records[+point.vertices()[i]].at, sizeof record);
+    sum += point.weights()[i] * record;
+  }
   Viewpoint out;
   for (std::size_t end = 0; end < 2; ++end)
     for (std::size_t k = 0; k < 3; ++k) out.at[end][k] = sum[4 * end + k];

@@ -1,19 +1,31 @@
 #pragma once
 
+#include <array>
 #include <span>
-#include <vector>
 
 #include "core/base/ids.h"
 #include "core/engine/local_positions.h"
 
 namespace cscd::fast {
 
-// A point that follows the surface: an affine combination of some vertices.
-struct FollowingPoint {
-  std::vector<VertexId> vertices;
-  std::vector<float> weights;  // sum to about 1: what they sum to exactly is the point
+// A point that follows the surface: an affine combination of a few vertices. Held by value, as hundreds are
+// placed one after the other in every interval.
+class FollowingPoint {
+ public:
+  static constexpr std::size_t kMost = 16;
+
+  // At most `kMost` times.
+  void add(VertexId vertex, float weight);
+  std::span<const VertexId> vertices() const { return std::span(vertices_).first(count_); }
+  // They sum to about 1: what they sum to exactly is the point.
+  std::span<const float> weights() const { return std::span(weights_).first(count_); }
 
   Vec3 at(std::span<const Vec3> positions) const;
+
+ private:
+  std::array<VertexId, kMost> vertices_{};
+  std::array<float, kMost> weights_{};
+  std::size_t count_ = 0;
 };
 
 // A viewpoint that moves in a straight line; [end][axis]. An observer is these numbers and has no error; a

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 // A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
@@ -11,7 +12,9 @@ namespace cscd::fast {
 namespace {
 
 using Double4 = double __attribute__((vector_size(32)));
-using Float4 = float __attribute__((vector_size(16)));
+using Double8 = double __attribute__((vector_size(64)));
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
 
 constexpr float kLargest = 1e9F;      // triple products of three such lengths are far from overflow
 constexpr std::size_t kRange = 1024;  // vertices worth another thread
@@ -38,35 +41,34 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
 
 // Those of a range of vertices; returns the largest coordinate.
 float LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
-  const Vec3 zeroth = motion.start()[0];
-  const Double4 origin = {zeroth.x(), zeroth.y(), zeroth.z(), 0};
-  const double scale = scale_;
-  const Float4 zero = {};
-  Float4 most = zero;
-  const auto convert = [&](const double* x, float* out) {
-    Double4 p;
-    std::memcpy(&p, x, sizeof p);
-    Float4 f = __builtin_convertvector((p - origin) * scale, Float4);
-    f[3] = 0;
+  const Vec3 o = motion.start()[0];
+  const Double8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
+  const Double8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
+  Float8 most = {};
+  const auto convert = [&](const double* start, const double* end, float* out) {
+    Double4 p, q;
+    std::memcpy(&p, start, sizeof p);
+    std::memcpy(&q, end, sizeof q);
+    const Double8 both = __builtin_shufflevector(p, q, 0, 1, 2, 3, 4, 5, 6, 7);
+    const Float8 f = __builtin_convertvector((both - origin) * scale, Float8);
     std::memcpy(out, &f, sizeof f);
-    const Float4 size = f < 0 ? -f : f;
-    most = most < size ? size : most;
+    const Float8 size = reinterpret_cast<Float8>(reinterpret_cast<Int8>(f) & 0x7fffffff);
+    most = size > most ? size : most;
   };
   const double *start = motion.start()[0].data(), *end = motion.end()[0].data();
   Record* const records = records_.data();
   const std::size_t whole = std::min(last, records_.size() - 1);
-  for (std::size_t v = first; v < whole; ++v) {
-    convert(start + 3 * v, records[v].at);
-    convert(end + 3 * v, records[v].at + 4);
-  }
+  for (std::size_t v = first; v < whole; ++v) convert(start + 3 * v, end + 3 * v, records[v].at);
   // The fourth number behind the last vertex is not ours to read.
-  for (std::size_t v = whole; v < last; ++v)
-    for (const auto& [points, at] : {std::pair{start, 0}, std::pair{end, 4}}) {
-      double point[4] = {};
-      std::memcpy(point, points + 3 * v, 3 * sizeof(double));
-      convert(point, records[v].at + at);
-    }
-  return std::fmax(most[0], std::fmax(most[1], most[2]));
+  for (std::size_t v = whole; v < last; ++v) {
+    double points[2][4] = {};
+    std::memcpy(points[0], start + 3 * v, 3 * sizeof(double));
+    std::memcpy(points[1], end + 3 * v, 3 * sizeof(double));
+    convert(points[0], points[1], records[v].at);
+  }
+  float largest = 0;
+  for (const int i : {0, 1, 2, 4, 5, 6}) largest = std::fmax(largest, most[i]);
+  return largest;
 }
 
 }  // namespace cscd::fast

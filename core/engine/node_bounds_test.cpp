@@ -53,15 +53,18 @@ TEST(NodeBounds, NothingIsApartFromTheUnbounded) {
 TEST(NodeBounds, TheSmallestPairsOfRowsAreThoseOfALoop) {
   std::mt19937 random(5);
   for (int round = 0; round < 100; ++round) {
-    Short32 row[kLanes16], expected = {};
-    for (std::size_t r = 0; r < kLanes16; ++r)
+    Short32 row[8], expected = {};
+    for (std::size_t r = 0; r < 8; ++r)
       for (std::size_t half = 0; half < 2; ++half) {
-        std::int16_t least = 32767;
+        std::int16_t least = 32767, least_negative = 32767;
         for (std::size_t l = 0; l < kLanes16; ++l) {
-          row[r][2 * l + half] = static_cast<std::int16_t>(static_cast<int>(random() % 60001) - 30000);
-          least = std::min<std::int16_t>(least, row[r][2 * l + half]);
+          const auto number = static_cast<std::int16_t>(static_cast<int>(random() % 60001) - 30000);
+          row[r][2 * l + half] = number;
+          least = std::min(least, number);
+          least_negative = std::min<std::int16_t>(least_negative, static_cast<std::int16_t>(-number));
         }
         expected[2 * r + half] = least;
+        expected[16 + 2 * r + half] = least_negative;
       }
     const Short32 got = smallest_pairs_of_rows(row);
     for (std::size_t l = 0; l < 32; ++l) EXPECT_EQ(got[l], expected[l]);

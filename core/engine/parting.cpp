@@ -20,8 +20,7 @@ Signs sides_of(const PatchLanes& vertices, const PlaneOf& of, float error) {
     for (std::size_t i = 0; i < 3; ++i)
       same.control[n][i] = Float16{} + of.planes.normals.control[n][i][of.lane];
   for (std::size_t e = 0; e < 2; ++e) same.longest[e] = Float16{} + of.planes.normals.longest[e][of.lane];
-  same.corner = vertices;
-  return orientation(same, corner_of(of, 0), error);
+  return orientation(same, vertices, corner_of(of, 0), error);
 }
 
 // Triangles in `mask` with a corner in `some` and no corner that is in neither.
@@ -47,8 +46,9 @@ unsigned places_in(const Patch& patch, const PlaneOf& other) {
 }  // namespace
 
 PatchPlanes planes_of(std::span<const LocalPositions::Record> records, const Patch& patch) {
-  const PatchLanes vertices = load(records, patch.vertex);
-  return {vertices, normals_of(vertices, patch)};
+  PatchPlanes planes{load(records, patch.vertex), {}, {}};
+  find_normals(planes.vertices, patch, planes.normals, planes.corner);
+  return planes;
 }
 
 Mask16 not_parted(const PatchPlanes& planes, const Patch& patch, Mask16 mask, const PlaneOf& other,
@@ -61,7 +61,7 @@ Mask16 not_parted(const PatchPlanes& planes, const Patch& patch, Mask16 mask, co
 
   unsigned above = 0xffff, below = 0xffff, any = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Signs signs = orientation(planes.normals, corner_of(other, k), error);
+    const Signs signs = orientation(planes.normals, planes.corner, corner_of(other, k), error);
     const unsigned has = common == nullptr ? 0 : common->at[other.patch.corner[k][other.lane]];
     above &= signs.positive | has;
     below &= signs.negative | has;

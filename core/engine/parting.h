@@ -11,9 +11,9 @@
 // corners, too.
 namespace cscd::fast {
 
-// The planes of the triangles of a patch, and its vertices.
+// The planes of the triangles of a patch, a corner of each, and its vertices.
 struct PatchPlanes {
-  PatchLanes vertices;
+  PatchLanes vertices, corner;
   PatchNormals normals;
 };
 PatchPlanes planes_of(std::span<const LocalPositions::Record> records, const Patch& patch);

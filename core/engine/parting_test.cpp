@@ -21,7 +21,7 @@ std::set<std::pair<TriangleId, TriangleId>> parted(const PatchTree& tree, const 
         const Mask16 left = not_parted(of_b, b, asked, {of_a, a, l}, tree.common_of(p, q), local.error());
         EXPECT_EQ(left & ~asked, 0);
         for (std::size_t m = 0; b.lanes >> m != 0; ++m)
-          if ((asked & ~left) >> m & 1) found.emplace(a.triangle[l], b.triangle[m]);
+          if ((asked & ~left) >> m & 1) found.emplace(tree.triangles[p][l], tree.triangles[q][m]);
       }
     }
   return found;

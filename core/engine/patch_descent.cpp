@@ -145,8 +145,8 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
     lanes = not_parted(planes(q), patches_[q], lanes, {planes(p), patches_[p], lane}, common,
                        input_.positions.error());
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
-    sink_->add(patches_[p].triangle[lane],
-               patches_[q].triangle[static_cast<std::size_t>(std::countr_zero(rest))]);
+    sink_->add(input_.tree.triangles[p][lane],
+               input_.tree.triangles[q][static_cast<std::size_t>(std::countr_zero(rest))]);
 }
 
 inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,

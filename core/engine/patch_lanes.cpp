@@ -30,25 +30,17 @@ void directions(const Float16 (&p)[3], Float16* out) {
   out[6] = p[0] - p[1], out[7] = p[0] - p[2];
 }
 
-[[gnu::always_inline]] inline Float16 largest_component(const PatchLanes& v) {
-  const auto largest = [&](int end) {
-    return larger(larger(absolute(v.at[end][0]), absolute(v.at[end][1])), absolute(v.at[end][2]));
-  };
-  return larger(largest(0), largest(1));
-}
-
-[[gnu::always_inline]] inline PatchLanes corner_of(const PatchLanes& lanes, const Places16& place) {
-  PatchLanes out;
+// Written in place, register by register: gcc copies a struct of lanes by halves, and a load of a whole
+// register waits long for the stores of two.
+[[gnu::always_inline]] inline void corner_of(const PatchLanes& lanes, const Places16& place,
+                                             PatchLanes& out) {
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) out.at[end][i] = permuted(lanes.at[end][i], place);
-  return out;
 }
 
-[[gnu::always_inline]] inline PatchLanes operator-(const PatchLanes& to, const PatchLanes& from) {
-  PatchLanes out;
+[[gnu::always_inline]] inline void subtract(PatchLanes& to, const PatchLanes& from) {
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
-  return out;
+    for (int i = 0; i < 3; ++i) to.at[end][i] -= from.at[end][i];
 }
 
 }  // namespace
@@ -135,11 +127,14 @@ Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& 
 
 namespace {
 
-[[gnu::always_inline]] inline PatchNormals make_normals(const PatchLanes& lanes, const Patch& patch) {
-  PatchNormals out;
-  out.corner = corner_of(lanes, patch.corner[0]);
-  const PatchLanes a = corner_of(lanes, patch.corner[1]) - out.corner,
-                   b = corner_of(lanes, patch.corner[2]) - out.corner;
+[[gnu::always_inline]] inline void make_normals(const PatchLanes& lanes, const Patch& patch,
+                                                PatchNormals& out, PatchLanes& corner) {
+  PatchLanes a, b;
+  corner_of(lanes, patch.corner[0], corner);
+  corner_of(lanes, patch.corner[1], a);
+  corner_of(lanes, patch.corner[2], b);
+  subtract(a, corner);
+  subtract(b, corner);
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     out.control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
@@ -149,47 +144,65 @@ namespace {
   }
   out.longest[0] = largest_component(a);
   out.longest[1] = largest_component(b);
-  return out;
 }
 
-[[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const Viewpoint& viewpoint,
-                                         float error) {
+// Bounds of the edges' components, with their errors: the product of both, and the sum.
+struct EdgeBounds {
+  Float16 area, sum;
+};
+[[gnu::always_inline]] inline EdgeBounds edge_bounds(const PatchNormals& normals, float error) {
+  const Float16 a = normals.longest[0] + broadcast(2 * error), b = normals.longest[1] + broadcast(2 * error);
+  return {a * b, a + b};
+}
+
+[[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const PatchLanes& corner,
+                                         const EdgeBounds& edges, const Viewpoint& viewpoint, float error) {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) c.at[end][i] = normals.corner.at[end][i] - broadcast(viewpoint.at[end][i]);
+    for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - broadcast(viewpoint.at[end][i]);
   const auto dot = [&](int n, int end) {
     return normals.control[n][0] * c.at[end][0] + normals.control[n][1] * c.at[end][1] +
            normals.control[n][2] * c.at[end][2];
   };
-  const Float16 slack = broadcast(2 * error);
-  const Float16 a = normals.longest[0] + slack, b = normals.longest[1] + slack,
-                reach = largest_component(c) + slack;
-  const Float16 area = a * b, volume = area * reach;
+  const Float16 reach = largest_component(c) + broadcast(2 * error), volume = edges.area * reach;
   const Float16 bound =
-      broadcast(12.1F * error) * (area + (a + b) * reach) + broadcast(68 * 0x1p-24F) * volume;
+      broadcast(12.1F * error) * (edges.area + edges.sum * reach) + broadcast(68 * 0x1p-24F) * volume;
   const Float16 bound3 = 3 * bound;
 
   const Float16 c0 = dot(0, 0), c1 = dot(1, 0) + dot(0, 1), c2 = dot(1, 1) + dot(2, 0), c3 = dot(2, 1);
-  const unsigned known = above(area, broadcast(kTiny)) & above(volume, broadcast(kTiny));
+  const unsigned known = above(edges.area, broadcast(kTiny)) & above(volume, broadcast(kTiny));
   const unsigned positive = above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
+  if ((positive & known) == 0xffffU) return {0xffff, 0};  // as nearly always
   const unsigned negative = above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
   return {static_cast<Mask16>(positive & known), static_cast<Mask16>(negative & known)};
 }
 
 }  // namespace
 
-PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch) {
-  return make_normals(lanes, patch);
+void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& normals, PatchLanes& corner) {
+  make_normals(lanes, patch, normals, corner);
 }
 
-Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error) {
-  return look(normals, viewpoint, error);
+Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
+                  float error) {
+  return look(normals, corner, edge_bounds(normals, error), viewpoint, error);
+}
+
+Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
+  PatchNormals normals;
+  PatchLanes corner;
+  make_normals(lanes, patch, normals, corner);
+  return orientation(normals, corner, viewpoint, error);
 }
 
 void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
                   float error, Signs (&out)[kCovers]) {
-  const PatchNormals normals = make_normals(lanes, patch);
-  for (std::size_t c = 0; c < kCovers; ++c) out[c] = from[c] ? look(normals, *from[c], error) : Signs{};
+  PatchNormals normals;
+  PatchLanes corner;
+  make_normals(lanes, patch, normals, corner);
+  const EdgeBounds edges = edge_bounds(normals, error);
+  for (std::size_t c = 0; c < kCovers; ++c)
+    out[c] = from[c] ? look(normals, corner, edges, *from[c], error) : Signs{};
 }
 
 }  // namespace cscd::fast

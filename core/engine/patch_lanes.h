@@ -16,6 +16,14 @@ struct PatchLanes {
 PatchLanes load(std::span<const LocalPositions::Record> records,
                 const std::array<std::int32_t, kLanes16>& vertex);
 
+// Of each vertex, over both ends and all axes.
+inline Float16 largest_component(const PatchLanes& v) {
+  const auto largest = [&](int end) {
+    return larger_size(larger_size(v.at[end][0], v.at[end][1]), v.at[end][2]);
+  };
+  return larger_size(largest(0), largest(1));
+}
+
 // Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
 inline constexpr std::size_t kDirections = 8;
 
@@ -42,14 +50,18 @@ struct Signs {
   Mask16 positive, negative;
 };
 
-// Control vectors of the normals, one corner, and what bounds their rounding.
+// Control vectors of the normals, and what bounds their rounding.
 struct PatchNormals {
   Float16 control[3][3];
-  PatchLanes corner;
   Float16 longest[2];  // largest component of the two edges
 };
-PatchNormals normals_of(const PatchLanes& lanes, const Patch& patch);
-Signs orientation(const PatchNormals& normals, const Viewpoint& viewpoint, float error);
+// Of the triangles of a patch; `corner` is one of each.
+void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& normals, PatchLanes& corner);
+// Of triangles with these normals and these corners.
+Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
+                  float error);
+// Of the triangles of a patch.
+Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error);
 // The same towards several viewpoints, in one go; null gives none.
 void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
                   float error, Signs (&out)[kCovers]);

@@ -75,7 +75,7 @@ TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
       const MovingBounds bounds = grid.in_units(grid.bounds_of(lanes));
       const TriangleBounds triangles = triangle_bounds(lanes, patch, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l)
-        for (const VertexId v : scene.mesh.corners(patch.triangle[l]))
+        for (const VertexId v : scene.mesh.corners(scene.tree.triangles[p][l]))
           for (std::size_t end = 0; end < 2; ++end) {
             const test::Exact3 x = scene.exact_local((end == 0 ? scene.start : scene.end)[+v]);
             for (std::size_t k = 0; k < kDirections; ++k) {
@@ -161,9 +161,9 @@ TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
             from.at[end][i] = std::numeric_limits<float>::quiet_NaN();
         }
       ++turn;
-      const Signs signs = orientation(normals_of(lanes, patch), from, scene.local.error());
+      const Signs signs = orientation(lanes, patch, from, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l) {
-        const Triangle& c = scene.mesh.corners(patch.triangle[l]);
+        const Triangle& c = scene.mesh.corners(scene.tree.triangles[p][l]);
         const Motion motion = scene.motion();
         const MovingPoint corner[3] = {motion[c[0]], motion[c[1]], motion[c[2]]};
         const radial::Orientation truth = test::exact_class(corner, q);
@@ -218,7 +218,7 @@ TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
     for (const Patch& patch : scene.tree.patches) {
       const PatchLanes lanes = load(scene.local.records(), patch.vertex);
       const Viewpoint from = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
-      const Signs signs = orientation(normals_of(lanes, patch), from, scene.local.error());
+      const Signs signs = orientation(lanes, patch, from, scene.local.error());
       for (std::size_t l = 0; l < kLanes16; ++l) {
         float x[3][2][3];
         for (std::size_t k = 0; k < 3; ++k)

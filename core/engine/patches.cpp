@@ -35,13 +35,20 @@ std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Co
   return cells;
 }
 
-Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles) {
+using Triangles = std::array<TriangleId, kLanes16>;
+
+Triangles padded(std::span<const TriangleId> triangles) {
+  Triangles out;
+  for (std::size_t l = 0; l < kLanes16; ++l) out[l] = triangles[std::min(l, triangles.size() - 1)];
+  return out;
+}
+
+Patch make_patch(const TriangleMesh& mesh, const Triangles& triangles, std::size_t count) {
   Patch patch{};
   std::vector<VertexId> vertices;
   for (std::size_t l = 0; l < kLanes16; ++l) {
-    patch.triangle[l] = triangles[std::min(l, triangles.size() - 1)];
     for (std::size_t k = 0; k < 3; ++k) {
-      const VertexId v = mesh.corners(patch.triangle[l])[k];
+      const VertexId v = mesh.corners(triangles[l])[k];
       auto place = std::find(vertices.begin(), vertices.end(), v);
       if (place == vertices.end()) place = vertices.insert(vertices.end(), v);
       patch.corner[k][l] = static_cast<std::uint8_t>(place - vertices.begin());
@@ -49,7 +56,7 @@ Patch make_patch(const TriangleMesh& mesh, std::span<const TriangleId> triangles
   }
   for (std::size_t l = 0; l < kLanes16; ++l)
     patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
-  patch.lanes = static_cast<Mask16>((1U << triangles.size()) - 1);
+  patch.lanes = static_cast<Mask16>((1U << count) - 1);
   patch.cluster.fill(kNone);
   return patch;
 }
@@ -62,8 +69,9 @@ struct Item {
 
 class TreeBuilder {
  public:
-  TreeBuilder(const std::vector<Patch>& patches, const std::vector<Vec3>& centre, PatchTree& tree)
-      : patches_(patches), centre_(centre), tree_(tree) {}
+  TreeBuilder(const std::vector<Patch>& patches, const std::vector<Triangles>& triangles,
+              const std::vector<Vec3>& centre, PatchTree& tree)
+      : patches_(patches), triangles_(triangles), centre_(centre), tree_(tree) {}
 
   // Over clusters of the first cover, below over the cells of each, below over patches.
   void build(std::size_t count, const std::vector<std::int32_t>& cluster,
@@ -77,10 +85,14 @@ class TreeBuilder {
         for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
         split(single, cell_node, [&](const Item& patch, std::size_t leaf) {
           tree_.nodes[leaf].child = ~static_cast<std::int32_t>(tree_.patches.size());
+          tree_.leaf.push_back(static_cast<std::int32_t>(leaf));
           tree_.patches.push_back(patches_[patch.patches[0]]);
+          tree_.triangles.push_back(triangles_[patch.patches[0]]);
         });
       });
     });
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n)
+      if (!tree_.nodes[n].is_leaf()) tree_.inner.push_back(static_cast<std::int32_t>(n));
   }
 
  private:
@@ -118,6 +130,7 @@ class TreeBuilder {
   }
 
   const std::vector<Patch>& patches_;
+  const std::vector<Triangles>& triangles_;
   const std::vector<Vec3>& centre_;
   PatchTree& tree_;
 };
@@ -129,7 +142,7 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
   std::vector<Place> place_of(mesh.triangle_count());
   for (std::size_t p = 0; p < tree.patches.size(); ++p)
     for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
-      place_of[+tree.patches[p].triangle[l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
+      place_of[+tree.triangles[p][l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
   tree.adjacent_offset.push_back(0);
   for (const Patch& patch : tree.patches) {
     std::map<std::int32_t, Common> touching;
@@ -150,12 +163,12 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
 
 // Gives all triangles of a patch the cluster that most of them have.
 void round_to_patches(const PatchTree& tree, Cover& cover) {
-  for (const Patch& patch : tree.patches) {
+  for (std::size_t p = 0; p < tree.patches.size(); ++p) {
     std::map<std::int32_t, int> times;
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l) ++times[cover.cluster_of[+patch.triangle[l]]];
+    for (const TriangleId t : tree.triangles_of(p)) ++times[cover.cluster_of[+t]];
     const auto most = std::max_element(times.begin(), times.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l) cover.cluster_of[+patch.triangle[l]] = most->first;
+    for (const TriangleId t : tree.triangles_of(p)) cover.cluster_of[+t] = most->first;
   }
 }
 
@@ -163,10 +176,10 @@ void round_to_patches(const PatchTree& tree, Cover& cover) {
 void enter(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree) {
   const std::vector<bool> all = inside(mesh, cover.cluster_of);
   for (std::size_t p = 0; p < tree.patches.size(); ++p) {
-    Patch& patch = tree.patches[p];
-    patch.cluster[number] = cover.cluster_of[+patch.triangle[0]];
-    for (std::size_t l = 0; patch.lanes >> l != 0; ++l)
-      tree.inside[p][number] |= static_cast<Mask16>(all[+patch.triangle[l]] << l);
+    const std::span<const TriangleId> triangles = tree.triangles_of(p);
+    tree.patches[p].cluster[number] = cover.cluster_of[+triangles[0]];
+    for (std::size_t l = 0; l < triangles.size(); ++l)
+      tree.inside[p][number] |= static_cast<Mask16>(all[+triangles[l]] << l);
   }
 }
 
@@ -178,13 +191,15 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
 
   std::vector<Patch> patches;
+  std::vector<Triangles> triangles;
   std::vector<Vec3> centre;
   std::vector<std::int32_t> cluster, cell_number;
   PatchCutter cutter(mesh, centroid, kLanes16);
   std::int32_t number = 0;
   for (const std::vector<TriangleId>& cell : cells_of(mesh, covers)) {
     for (const std::vector<TriangleId>& patch : cutter.cut(cell)) {
-      patches.push_back(make_patch(mesh, patch));
+      triangles.push_back(padded(patch));
+      patches.push_back(make_patch(mesh, triangles.back(), patch.size()));
       Vec3 sum = Vec3::Zero();
       for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
       centre.push_back(sum);
@@ -194,7 +209,7 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
     ++number;
   }
   PatchTree tree;
-  TreeBuilder(patches, centre, tree).build(patches.size(), cluster, cell_number);
+  TreeBuilder(patches, triangles, centre, tree).build(patches.size(), cluster, cell_number);
   find_adjacent(mesh, tree);
   tree.inside.resize(tree.patches.size());
   enter(mesh, covers[0], 0, tree);

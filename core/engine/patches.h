@@ -14,13 +14,11 @@ namespace cscd::fast {
 
 // Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
 // All belong to one cluster in each cover, or to none.
-struct Patch {
+struct alignas(64) Patch {
   std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
   std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
   std::array<std::int32_t, kCovers> cluster;  // in each cover
   Mask16 lanes;                               // those that are triangles
-  // Not needed of most patches, and in a cache line of its own.
-  alignas(64) std::array<TriangleId, kLanes16> triangle;  // a short one repeats its last
 
   // Places of the corners of some of its triangles.
   Mask16 corners_of(unsigned triangles) const {
@@ -30,7 +28,7 @@ struct Patch {
     return static_cast<Mask16>(places);
   }
 };
-static_assert(sizeof(Patch) == 3 * 64);
+static_assert(sizeof(Patch) == 2 * 64);
 
 // Which triangles of another patch have each vertex of this one.
 struct Common {
@@ -61,7 +59,21 @@ struct PatchTree {
     std::size_t right() const { return left() + 1; }
   };
   std::vector<Node> nodes;
+  std::vector<std::int32_t> leaf;   // node of each patch
+  std::vector<std::int32_t> inner;  // the other nodes, ascending: children after their parents
   std::vector<Patch> patches;
+  // Of each patch; a short one repeats its last. Apart, as few patches are asked for them in an interval.
+  std::vector<std::array<TriangleId, kLanes16>> triangles;
+  std::span<const TriangleId> triangles_of(std::size_t patch) const {
+    return std::span(triangles[patch]).first(static_cast<std::size_t>(std::bit_width(patches[patch].lanes)));
+  }
+
+  // Children before their parents. (Not by way of all nodes: which of them are leaves no processor foresees.)
+  template <class Take>  // (node, its entry)
+  void for_each_inner_upwards(const Take& take) const {
+    for (std::size_t i = inner.size(); i-- > 0;)
+      take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
+  }
 
   // Of each patch and cover: triangles whose corners' triangles all belong to the patch's cluster.
   std::vector<std::array<Mask16, kCovers>> inside;

@@ -20,15 +20,17 @@ struct Cut : test::Body {
 TEST(Patches, EveryTriangleLiesInOneLane) {
   const Cut cut;
   std::vector<int> times(cut.mesh.triangle_count(), 0);
-  for (const Patch& patch : cut.tree.patches)
+  for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
     for (std::size_t l = 0; l < kLanes16; ++l) {
-      const Triangle& corners = cut.mesh.corners(patch.triangle[l]);
+      const Patch& patch = cut.tree.patches[p];
+      const TriangleId triangle = cut.tree.triangles[p][l];
+      const Triangle& corners = cut.mesh.corners(triangle);
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_EQ(patch.vertex[patch.corner[k][l]], static_cast<std::int32_t>(corners[k]));
       if (!(patch.lanes >> l & 1)) continue;
-      ++times[+patch.triangle[l]];
+      ++times[+triangle];
       for (std::size_t c = 0; c < kCovers; ++c)
-        EXPECT_EQ(patch.cluster[c], cut.covers[c].cluster_of[+patch.triangle[l]]);
+        EXPECT_EQ(patch.cluster[c], cut.covers[c].cluster_of[+triangle]);
     }
   EXPECT_EQ(times, std::vector<int>(times.size(), 1));
   EXPECT_LT(cut.tree.patches.size(), cut.mesh.triangle_count() / 7) << "patches are filled";
@@ -49,7 +51,7 @@ TEST(Patches, InsideMeansAllAroundEveryCorner) {
         }
         bool all = patch.cluster[c] != kNone;
         for (std::size_t t = 0; t < cut.mesh.triangle_count(); ++t)
-          if (share_vertex(cut.mesh.triangles()[t], cut.mesh.corners(patch.triangle[l])))
+          if (share_vertex(cut.mesh.triangles()[t], cut.mesh.corners(cut.tree.triangles[p][l])))
             all = all && cut.covers[c].cluster_of[t] == patch.cluster[c];
         EXPECT_EQ(inside >> l & 1, all);
         not_inside += !all;
@@ -62,7 +64,7 @@ TEST(Patches, AllTrianglesWithACommonVertexAreFound) {
   for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
     for (std::size_t l = 0; cut.tree.patches[p].lanes >> l != 0; l += 3) {
       const Patch& patch = cut.tree.patches[p];
-      const TriangleId triangle = patch.triangle[l];
+      const TriangleId triangle = cut.tree.triangles[p][l];
       std::set<TriangleId> found, expected;
       cut.tree.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
         EXPECT_EQ(cut.tree.common_of(p, q), &common);
@@ -70,7 +72,7 @@ TEST(Patches, AllTrianglesWithACommonVertexAreFound) {
         EXPECT_EQ(common.lanes(patch.corners_of(1U << l)), lanes);
         for (std::size_t m = 0; lanes >> m != 0; ++m) {
           if (!(lanes >> m & 1)) continue;
-          EXPECT_TRUE(found.insert(cut.tree.patches[q].triangle[m]).second);
+          EXPECT_TRUE(found.insert(cut.tree.triangles[q][m]).second);
         }
       });
       for (std::size_t u = 0; u < cut.mesh.triangle_count(); ++u)

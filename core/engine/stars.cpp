@@ -23,13 +23,6 @@ namespace {
 constexpr float kTiny = 1e-30F;
 constexpr float kLeastSide = 0.1F, kOffSide = 1e-4F;
 
-Float16 largest_component(const Float16 (&a)[2][3]) {
-  Float16 most = absolute(a[0][0]);
-  for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) most = larger(most, absolute(a[end][i]));
-  return most;
-}
-
 float sum(Float16 v) {
   using Float8 = float __attribute__((vector_size(32)));
   using Float4 = float __attribute__((vector_size(16)));
@@ -119,12 +112,12 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     middle[i] = control[0][i] + control[1][i] + control[2][i];
     squared += middle[i] * middle[i];
   }
-  const Float16 length = square_root(squared) + kTiny;
+  const Float16 reciprocal = 1 / (square_root(squared) + kTiny);
   float direction[3];
-  for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] / length);
+  for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] * reciprocal);
 
   const Float16 slack = Float16{} + 2 * positions.error();
-  const Float16 longest_a = largest_component(a.at) + slack, longest_b = largest_component(b.at) + slack;
+  const Float16 longest_a = largest_component(a) + slack, longest_b = largest_component(b) + slack;
   const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
   const Float16 area = longest_a * longest_b;
   const Float16 bound =

@@ -20,13 +20,30 @@ using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
 inline Float16 smaller(Float16 a, Float16 b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_min_ps(0xffff, a, b);
+#else
   return a < b ? a : b;
+#endif
 }
 inline Float16 larger(Float16 a, Float16 b) {
+#ifdef __AVX512F__
+  return _mm512_maskz_max_ps(0xffff, b, a);
+#else
   return a < b ? b : a;
+#endif
 }
 inline Float16 absolute(Float16 a) {
   return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
+}
+
+// The larger of both sizes.
+inline Float16 larger_size(Float16 a, Float16 b) {
+#ifdef __AVX512DQ__
+  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // the larger of absolute values, and its sign cleared
+#else
+  return larger(absolute(a), absolute(b));
+#endif
 }
 
 inline Float16 square_root(Float16 v) {

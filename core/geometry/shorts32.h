@@ -17,6 +17,9 @@ using Mask32 = std::uint32_t;
 inline Short32 smaller(Short32 a, Short32 b) {
   return a < b ? a : b;
 }
+inline Short32 larger(Short32 a, Short32 b) {
+  return a < b ? b : a;
+}
 
 // Where a > b.
 inline Mask32 above(Short32 a, Short32 b) {
@@ -32,9 +35,9 @@ inline Mask32 above(Short32 a, Short32 b) {
 
 // Pair l holds a[l] and b[l], both rounded to the nearest integer, which 16 bits must hold.
 inline Short32 rounded_pairs(Float16 a, Float16 b) {
-  constexpr float kShift = 0x1.8p23F;  // floats of this size are integers
-  const Int16 low = __builtin_convertvector((a + kShift) - kShift, Int16),
-              high = __builtin_convertvector((b + kShift) - kShift, Int16);
+  // Floats of this size are integers, and their last 16 bits are those of the integer.
+  constexpr float kShift = 0x1.8p23F;
+  const auto low = reinterpret_cast<Int16>(a + kShift), high = reinterpret_cast<Int16>(b + kShift);
   return reinterpret_cast<Short32>((low & 0xffff) | (high << 16));
 }
 
@@ -45,8 +48,9 @@ inline Short32 swapped(Short32 v) {
       __builtin_shufflevector(pairs, pairs, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
 }
 
-// Pair r of the result is the smallest pair of row r, each half by itself.
-inline Short32 smallest_pairs_of_rows(Short32 (&row)[kLanes16]) {
+// Of eight rows at most 32767 in size: pair r of the result is the smallest pair of row r, pair 8 + r the
+// smallest of its negative, each half by itself.
+inline Short32 smallest_pairs_of_rows(const Short32 (&row)[8]) {
   // Neighbouring pairs of two rows within quarters, twice; then the quarters themselves, twice.
   const auto take = [](Short32 a, Short32 b, const auto& shuffle) {
     return reinterpret_cast<Short32>(shuffle(reinterpret_cast<Int16>(a), reinterpret_cast<Int16>(b)));
@@ -63,17 +67,21 @@ inline Short32 smallest_pairs_of_rows(Short32 (&row)[kLanes16]) {
   const auto odd_quarters = [](Int16 a, Int16 b) {
     return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
   };
-#pragma GCC unroll 8
-  for (int r = 0; r < 8; ++r)
-    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even), take(row[2 * r], row[2 * r + 1], odd));
+  Short32 of[8];  // rows, then their negatives
+#pragma GCC unroll 4
+  for (int r = 0; r < 4; ++r) {
+    const Short32 a = take(row[2 * r], row[2 * r + 1], even), b = take(row[2 * r], row[2 * r + 1], odd);
+    of[r] = smaller(a, b);
+    of[4 + r] = -larger(a, b);
+  }
 #pragma GCC unroll 4
   for (int r = 0; r < 4; ++r)
-    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even), take(row[2 * r], row[2 * r + 1], odd));
+    of[r] = smaller(take(of[2 * r], of[2 * r + 1], even), take(of[2 * r], of[2 * r + 1], odd));
 #pragma GCC unroll 2
   for (int r = 0; r < 2; ++r)
-    row[r] = smaller(take(row[2 * r], row[2 * r + 1], even_quarters),
-                     take(row[2 * r], row[2 * r + 1], odd_quarters));
-  return smaller(take(row[0], row[1], even_quarters), take(row[0], row[1], odd_quarters));
+    of[r] =
+        smaller(take(of[2 * r], of[2 * r + 1], even_quarters), take(of[2 * r], of[2 * r + 1], odd_quarters));
+  return smaller(take(of[0], of[1], even_quarters), take(of[0], of[1], odd_quarters));
 }
 
 }  // namespace cscd
