@@ -213,21 +213,39 @@ int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
   return above ? 1 : below ? -1 : 0;
 }
 
+// With errors so large that bounds decide, and with lengths so small that nothing is known. Mutations: the
+// smallest component taken for the largest; what is not known passed as positive where all of a patch is.
 TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
+  struct Case {
+    float size, error;  // of lengths; in local units
+  };
+  const Viewpoint centre = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
   for (const Scene& scene : scenes())
-    for (const Patch& patch : scene.tree.patches) {
-      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
-      const Viewpoint from = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
-      const Signs signs = orientation(lanes, patch, from, scene.local.error());
-      for (std::size_t l = 0; l < kLanes16; ++l) {
-        float x[3][2][3];
-        for (std::size_t k = 0; k < 3; ++k)
-          for (int end = 0; end < 2; ++end)
-            for (int i = 0; i < 3; ++i) x[k][end][i] = lanes.at[end][i][patch.corner[k][l]];
-        const int sign = scalar_sign(x, from, scene.local.error());
-        EXPECT_EQ(signs.positive >> l & 1, sign > 0);
-        EXPECT_EQ(signs.negative >> l & 1, sign < 0);
+    for (const Case& with :
+         {Case{1, scene.local.error()}, Case{1, 1e-3F}, Case{0x1p-37F, scene.local.error()}}) {
+      const float error = with.size * with.error;
+      std::size_t certain = 0, uncertain = 0;
+      Viewpoint from = centre;
+      for (auto& end : from.at)
+        for (float& component : end) component *= with.size;
+      for (const Patch& patch : scene.tree.patches) {
+        PatchLanes lanes = load(scene.local.records(), patch.vertex);
+        for (auto& end : lanes.at)
+          for (Float16& component : end) component *= with.size;
+        const Signs signs = orientation(lanes, patch, from, error);
+        for (std::size_t l = 0; l < kLanes16; ++l) {
+          float x[3][2][3];
+          for (std::size_t k = 0; k < 3; ++k)
+            for (int end = 0; end < 2; ++end)
+              for (int i = 0; i < 3; ++i) x[k][end][i] = lanes.at[end][i][patch.corner[k][l]];
+          const int sign = scalar_sign(x, from, error);
+          EXPECT_EQ(signs.positive >> l & 1, sign > 0);
+          EXPECT_EQ(signs.negative >> l & 1, sign < 0);
+          ++(sign == 0 ? uncertain : certain);
+        }
       }
+      EXPECT_GT(uncertain, 0u);
+      EXPECT_EQ(certain > 0, with.size == 1);
     }
 }
 
