@@ -19,6 +19,7 @@ using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
+// One instruction each, as compilers do not always see that a comparison and a choice are one.
 inline Float16 smaller(Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_maskz_min_ps(0xffff, a, b);
@@ -37,10 +38,10 @@ inline Float16 absolute(Float16 a) {
   return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
 }
 
-// The larger of both sizes.
+// The larger of both absolute values.
 inline Float16 larger_size(Float16 a, Float16 b) {
 #ifdef __AVX512DQ__
-  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // the larger of absolute values, and its sign cleared
+  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: its sign cleared
 #else
   return larger(absolute(a), absolute(b));
 #endif
