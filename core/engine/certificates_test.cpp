@@ -140,8 +140,8 @@ struct Case {
 constexpr Case kCases[] = {
     {false, Scene::Bones::chain}, {true, Scene::Bones::chain}, {false, Scene::Bones::sixths}};
 
-// Mutations: certify_positive clears the lane that is not positive instead of all round it; needed compares
-// signs whatever the cluster, or drops what different covers certify; certify_negative does not look around.
+// Mutations: spoil_round clears the lane that is not positive instead of all round it; needed compares signs
+// whatever the cluster, or drops what different covers certify; negative_all_round does not look around.
 TEST(Certificates, APairIsDroppedOnlyByOneField) {
   for (const auto& [inside_out, bones] : kCases)
     for (int seed = 1; seed <= 2; ++seed) {
