@@ -1,6 +1,6 @@
 #include "bench/model_options.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 namespace cscd::bench {
 

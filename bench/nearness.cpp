@@ -1,6 +1,6 @@
 #include "core/detect/nearness.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>

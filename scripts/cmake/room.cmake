@@ -1,3 +1,24 @@
+# Outside headers are half of what compiling costs: the first target that asks for a list of them has them parsed,
+# others with the same list take what it made. Every file still includes what it uses: builds that set
+# CMAKE_DISABLE_PRECOMPILE_HEADERS see to that.
+set(CSCD_PARSED <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <random> <span> <string>
+                <vector> <Eigen/Geometry>)
+function(cscd_parse_once target)
+  if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  # gcc 12 forgets of headers parsed before that they are the system's, and warns of std::string's own code.
+  target_compile_options(${target} PRIVATE
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
+  get_property(maker GLOBAL PROPERTY "cscd_parsed ${ARGN}")
+  if(maker)
+    target_precompile_headers(${target} REUSE_FROM ${maker})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(GLOBAL PROPERTY "cscd_parsed ${ARGN}" ${target})
+  endif()
+endfunction()
+
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
 #   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes TEST_LINK gmp)
@@ -5,8 +26,9 @@
 # USES names the rooms below it, LINK outside libraries, TEST_USES and TEST_LINK those that only its tests may see.
 # IF names a variable: where it is false, for want of an outside library, the room stays empty; where it is true, those
 # who use the room see a macro, CSCD_BASELINES_FCL for baselines/fcl.
+# PARSED names outside headers that nearly every file of the room includes, beside CSCD_PARSED.
 function(cscd_room path)
-  cmake_parse_arguments(ROOM "" "IF" "USES;LINK;TEST_USES;TEST_LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "" "IF" "USES;LINK;PARSED;TEST_USES;TEST_LINK" ${ARGN})
   string(REPLACE "/" "_" room ${path})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*_test.cpp)
@@ -26,6 +48,7 @@ function(cscd_room path)
     add_library(${room} STATIC ${sources})
     target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
     target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
+    cscd_parse_once(${room} ${CSCD_PARSED} ${ROOM_PARSED})
   else()
     add_library(${room} INTERFACE)
     target_include_directories(${room} INTERFACE ${PROJECT_SOURCE_DIR})
@@ -40,6 +63,9 @@ function(cscd_room path)
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
     target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${ROOM_TEST_LINK} GTest::gtest_main cscd_flags)
+    # A test runs once for each time that it is compiled: more is not worth the compiler's time.
+    target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
+    cscd_parse_once(${room}_test ${CSCD_PARSED} ${ROOM_PARSED} <gtest/gtest.h>)
     gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()
 endfunction()
