@@ -1,6 +1,7 @@
 #include "core/engine/drvbc_fast.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -142,18 +143,20 @@ class CountingSink : public TrianglePairSink {
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
 
-std::uint64_t work(FastCuller& culler, std::span<const Trial> trials) {
-  CountingSink sink;
+// Gives up where it is more than `most`.
+std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint64_t most) {
   std::uint64_t tests = 0;
   for (const Trial& trial : trials) {
+    if (tests > most) break;
+    CountingSink sink;
     const Motion motion(trial[0], trial[1]);
     culler.refit(motion);
     culler.classify(motion, nullptr);
     const CullCounts counts = culler.cull(sink);
     tests += kTestsOfPatch * culler.patch_count() + kTestsOfLook * culler.looks() +
-             kTestsOfObserver * counts.radial->clusters + *counts.bvot;
+             kTestsOfObserver * counts.radial->clusters + *counts.bvot + kTestsOfPair * sink.count();
   }
-  return tests + kTestsOfPair * sink.count();
+  return tests;
 }
 
 struct Candidate {
@@ -183,12 +186,12 @@ Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock
   const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
   Candidate* best = nullptr;
   std::size_t covers = 0;
-  std::uint64_t least = 0;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (Candidate& candidate : candidates)
     for (std::size_t count = kCovers; count > 0; --count) {
       candidate.culler->use_covers(count);
-      const std::uint64_t needed = work(*candidate.culler, trials);
-      if (best != nullptr && needed >= least) continue;
+      const std::uint64_t needed = work(*candidate.culler, trials, least);
+      if (needed >= least) continue;
       best = &candidate, covers = count, least = needed;
     }
   if (options != whole) *best = made(setup, std::move(best->cluster_of), options);

@@ -59,10 +59,16 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   std::size_t next = 0;
   while (true) {
     std::erase_if(beside, [&](TriangleId t) { return !free_[+t]; });
-    TriangleId seed;
+    TriangleId seed{-1};
     if (!beside.empty()) {
-      seed = *std::min_element(beside.begin(), beside.end(),
-                               [&](TriangleId a, TriangleId b) { return free_beside(a) < free_beside(b); });
+      int fewest = 4;
+      for (const TriangleId t : beside) {
+        const int free = free_beside(t);
+        if (free >= fewest) continue;
+        fewest = free;
+        seed = t;
+        if (free == 0) break;
+      }
     } else {
       while (next < cell.size() && !free_[+cell[next]]) ++next;
       if (next == cell.size()) return patches;
@@ -121,16 +127,19 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
 void PatchCutter::join(Patches& patches) const {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  std::vector<std::vector<VertexId>> vertices;
+  for (const auto& patch : patches) vertices.push_back(vertices_of(patch));
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    const std::vector<VertexId> own = vertices_of(patches[i]);
+    const std::vector<VertexId>& own = vertices[i];
     for (std::size_t j = patches.size(); j-- > i + 1;) {
       if (patches[i].size() + patches[j].size() > most_) continue;
-      const std::vector<VertexId> other = vertices_of(patches[j]);
+      const std::vector<VertexId>& other = vertices[j];
       std::vector<VertexId> both;
       std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
       if (both.size() > most_ || both.size() == own.size() + other.size()) continue;
       patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
       patches[i].clear();
+      vertices[j] = std::move(both);
       break;
     }
   }

@@ -35,24 +35,25 @@ Transforms turned(const Rig& rig, std::span<const Vec3> axes, double angle) {
 
 std::vector<Vec3> moved(const TriangleMesh& mesh, std::span<const Vec3> reference,
                         std::span<const BoneId> bone_of, const Transforms& transforms) {
-  std::vector<Vec3> shift(reference.size(), Vec3::Zero()), next(reference.size());
+  std::vector<Vec3> shift(reference.size(), Vec3::Zero());
   for (std::size_t v = 0; v < shift.size(); ++v) {
     const auto around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
     for (const TriangleId t : around)
       shift[v] +=
           (transforms[+bone_of[+t]] * reference[v] - reference[v]) / static_cast<double>(around.size());
   }
+  std::vector<Vec3> sum(mesh.triangle_count());  // of a triangle's corners
   for (int i = 0; i < kSmoothed; ++i) {
+    for (std::size_t t = 0; t < sum.size(); ++t) {
+      const Triangle& c = mesh.triangles()[t];
+      sum[t] = shift[+c[0]] + shift[+c[1]] + shift[+c[2]];
+    }
     for (std::size_t v = 0; v < shift.size(); ++v) {
       const auto around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
-      next[v] = shift[v];
       if (around.empty()) continue;
-      next[v].setZero();
-      for (const TriangleId t : around)
-        for (const VertexId corner : mesh.corners(t))
-          next[v] += shift[+corner] / static_cast<double>(3 * around.size());
+      shift[v].setZero();
+      for (const TriangleId t : around) shift[v] += sum[+t] / static_cast<double>(3 * around.size());
     }
-    shift.swap(next);
   }
   for (std::size_t v = 0; v < shift.size(); ++v) shift[v] += reference[v];
   return shift;
