@@ -75,7 +75,8 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
       seed = cell[next];
     }
     patches.push_back(grow(seed));
-    for (const VertexId v : vertices_of(patches.back()))
+    std::sort(vertices_.begin(), vertices_.end());
+    for (const VertexId v : vertices_)
       for (const TriangleId other : mesh_.triangles_at(v))
         if (free_[+other]) beside.push_back(other);
   }
@@ -85,31 +86,32 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
 // is enough: what hangs at a zigzag seam by its corners would else be patches of one triangle.
 std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   std::vector<TriangleId> patch;
-  std::size_t vertices = 0;
   Vec3 sum = Vec3::Zero();
   const auto take = [&](TriangleId triangle) {
-    vertices += 3 - corners_taken_[+triangle];
     patch.push_back(triangle);
     sum += centroid_[+triangle];
     free_[+triangle] = false;
     for (const VertexId v : mesh_.corners(triangle)) {
       if (taken_[+v]) continue;
       taken_[+v] = true;
+      vertices_.push_back(v);
       for (const TriangleId t : mesh_.triangles_at(v))
         if (free_[+t] && corners_taken_[+t]++ == 0) touched_.push_back(t);
     }
   };
   touched_.clear();
+  vertices_.clear();
   take(seed);
   while (patch.size() < most_) {
     const Vec3 middle = sum / static_cast<double>(patch.size());
     TriangleId best{-1};
-    std::pair<int, double> least;
+    std::pair<int, double> least{3, 0};  // all need fewer
     for (const TriangleId t : touched_) {
       const int needed = 3 - corners_taken_[+t];
-      if (!free_[+t] || static_cast<std::size_t>(needed) + vertices > most_) continue;
+      if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > most_)
+        continue;
       const std::pair cost{needed, (centroid_[+t] - middle).squaredNorm()};
-      if (best == TriangleId{-1} || cost < least) {
+      if (cost < least) {
         best = t;
         least = cost;
       }
@@ -118,8 +120,7 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
     take(best);
   }
   for (const TriangleId t : touched_) corners_taken_[+t] = 0;
-  for (const TriangleId t : patch)
-    for (const VertexId v : mesh_.corners(t)) taken_[+v] = false;
+  for (const VertexId v : vertices_) taken_[+v] = false;
   return patch;
 }
 

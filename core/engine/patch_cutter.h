@@ -36,6 +36,8 @@ class PatchCutter {
   std::vector<std::uint8_t> corners_taken_;  // of each triangle: how many of its corners are in it
   std::vector<bool> taken_;                  // whether a vertex is in it
   std::vector<TriangleId> touched_;          // triangles that were free and have a corner in it, in order
+  // Of the patch that has grown last.
+  std::vector<VertexId> vertices_;
 };
 
 }  // namespace cscd::fast
