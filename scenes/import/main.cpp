@@ -1,6 +1,7 @@
 // cscd-import MODEL CACHE.h5 REPORT [options]: turns a model file into a point cache and a report. `cscd`
 // runs it under limits (bench/import.h), so that assimp never reads a file in the program that answers.
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <new>
@@ -15,16 +16,24 @@
 namespace {
 
 constexpr int kBadInput = 2;
+constexpr char kNoMemory[] = "does not fit into the memory that imports may use; raise --import-memory";
 
 int complain(const std::string& what) {
   std::fprintf(stderr, "%s\n", cscd::scenes::printable(what, 1000).c_str());
   return kBadInput;
 }
 
+// assimp may go on without what did not fit; a file would then seem to hold no triangles.
+[[noreturn]] void end_without_memory() {
+  std::fprintf(stderr, "%s\n", kNoMemory);
+  std::_Exit(kBadInput);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace cscd::scenes;
+  std::set_new_handler(end_without_memory);
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 3) return complain("usage: cscd-import MODEL CACHE.h5 REPORT [options]; run by cscd");
   try {
@@ -39,7 +48,7 @@ int main(int argc, char** argv) {
   } catch (const cscd::InputError& error) {
     return complain(error.what());
   } catch (const std::bad_alloc&) {
-    return complain("does not fit into the memory that imports may use; raise --import-memory");
+    return complain(kNoMemory);
   } catch (const std::exception& error) {
     return complain(std::string("cannot be imported: ") + error.what());
   }
