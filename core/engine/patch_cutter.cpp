@@ -1,6 +1,7 @@
 #include "core/engine/patch_cutter.h"
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 // Patches grow one beside the other; what is left over between them is joined; then small ones are cut anew
@@ -61,7 +62,7 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
     std::erase_if(beside, [&](TriangleId t) { return !free_[+t]; });
     TriangleId seed{-1};
     if (!beside.empty()) {
-      int fewest = 4;
+      int fewest = std::numeric_limits<int>::max();
       for (const TriangleId t : beside) {
         const int free = free_beside(t);
         if (free >= fewest) continue;

@@ -1,6 +1,8 @@
 #include "core/engine/patch_cutter.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <set>
 
 #include "core/mesh/test_shapes.h"
@@ -9,12 +11,18 @@ namespace cscd::fast {
 namespace {
 
 struct Surface {
-  test::Shape shape = test::icosphere(4, 1);
+  test::Shape shape;
   TriangleMesh mesh = shape.mesh();
   std::vector<Vec3> centroid;
-  Surface() {
+  explicit Surface(test::Shape given = test::icosphere(4, 1)) : shape(std::move(given)) {
     for (const Triangle& c : mesh.triangles())
       centroid.push_back((shape.positions[+c[0]] + shape.positions[+c[1]] + shape.positions[+c[2]]) / 3);
+  }
+  std::vector<TriangleId> all() const {
+    std::vector<TriangleId> all;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+      all.push_back(TriangleId{static_cast<std::int32_t>(t)});
+    return all;
   }
   PatchCutter::Patches cut(std::span<const TriangleId> cell) const {
     return PatchCutter(mesh, centroid, 16).cut(cell);
@@ -40,9 +48,7 @@ void expect_valid(const Surface& surface, const std::vector<TriangleId>& cell,
 // Mutations: without repair; without the limit on vertices.
 TEST(PatchCutter, FillsPatches) {
   const Surface surface;
-  std::vector<TriangleId> all;
-  for (std::size_t t = 0; t < surface.mesh.triangle_count(); ++t)
-    all.push_back(TriangleId{static_cast<std::int32_t>(t)});
+  const std::vector<TriangleId> all = surface.all();
   const PatchCutter::Patches patches = surface.cut(all);
   expect_valid(surface, all, patches);
   EXPECT_LE(static_cast<double>(patches.size()), static_cast<double>(all.size()) / (0.92 * 16));
@@ -65,6 +71,19 @@ TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
   const PatchCutter::Patches patches = surface.cut(fan);
   expect_valid(surface, fan, patches);
   EXPECT_EQ(patches.size(), 1u);
+}
+
+// Many triangles at one edge, each beside more than three. Mutation: so many are taken for the most.
+TEST(PatchCutter, CutsWhatIsNoManifold) {
+  test::Shape book{{{0, 0, 0}, {0, 1, 0}}, {}};
+  constexpr int kPages = 40;
+  for (int page = 0; page < kPages; ++page) {
+    const double angle = 2 * std::numbers::pi * page / kPages;
+    book.positions.emplace_back(std::cos(angle), 0.5, std::sin(angle));
+    book.triangles.push_back(test::corners(0, 1, 2 + page));
+  }
+  const Surface surface(book);
+  expect_valid(surface, surface.all(), surface.cut(surface.all()));
 }
 
 }  // namespace
