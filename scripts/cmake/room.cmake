@@ -1,6 +1,6 @@
-# Outside headers are half of what compiling costs: the first target that asks for a list of them has them parsed,
+# Outside headers are much of what compiling costs: the first target that asks for a list of them has them parsed,
 # others with the same list take what it made. Every file still includes what it uses: builds that set
-# CMAKE_DISABLE_PRECOMPILE_HEADERS see to that.
+# CMAKE_DISABLE_PRECOMPILE_HEADERS (debug, sanitize) see to that.
 set(CSCD_PARSED <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <random> <span> <string>
                 <vector> <Eigen/Geometry>)
 function(cscd_parse_once target)
@@ -63,7 +63,7 @@ function(cscd_room path)
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
     target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${ROOM_TEST_LINK} GTest::gtest_main cscd_flags)
-    # A test runs once for each time that it is compiled: more is not worth the compiler's time.
+    # A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
     target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
     cscd_parse_once(${room}_test ${CSCD_PARSED} ${ROOM_PARSED} <gtest/gtest.h>)
     gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
