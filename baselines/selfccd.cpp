@@ -34,7 +34,7 @@ class Representatives : public FeatureAssignment {
       for (const VertexId corner : mesh.corners(id))
         for (const TriangleId other : mesh.triangles_at(corner)) {
           if (other <= id) continue;
-          for_each_carried(mesh, {id, other}, true, [&](const FeaturePair& pair) {
+          for_each_carried(mesh, TrianglePair{id, other}, [&](const FeaturePair& pair) {
             if (!representative(pair)) orphans_.push_back(pair);
           });
         }
@@ -43,14 +43,17 @@ class Representatives : public FeatureAssignment {
     orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
   }
 
-  void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const override {
-    for (const TrianglePair& pair : block)
-      for_each_carried(mesh_, pair, false, [&](const FeaturePair& features) {
-        const std::optional<TrianglePair> chosen = representative(features);
-        if (chosen &&
-            ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
-          out.push_back(features);
-      });
+  void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const override {
+    for (const TrianglePair& pair : block) {
+      unsigned places = 0;
+      for (std::size_t place = 0; place < kCarriedPlaces; ++place) {
+        const std::optional<TrianglePair> chosen = representative(carried(mesh_, pair, place));
+        places |= static_cast<unsigned>(chosen && ((chosen->a == pair.a && chosen->b == pair.b) ||
+                                                   (chosen->a == pair.b && chosen->b == pair.a)))
+                  << place;
+      }
+      if (places != 0) out.push_back({pair, static_cast<CarriedPlaces>(places)});
+    }
   }
   std::span<const FeaturePair> always() const override { return orphans_; }
 

@@ -16,6 +16,7 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
 #include "core/detect/feature_pair_set.h"
+#include "core/mesh/adjacency.h"
 
 // Idea: the general collision library that a user is likely to have, as a second opinion and as a competitor.
 //
@@ -113,7 +114,7 @@ class FclDetector : public Detector {
     met_.start_interval();
     for (const auto& reported : traversal_.pairs) {
       const TrianglePair pair{TriangleId{reported.id1}, TriangleId{reported.id2}};
-      for_each_carried(mesh_, pair, true, [&](const FeaturePair& features) {
+      for_each_carried(mesh_, pair, [&](const FeaturePair& features) {
         if (!met_.insert(features)) return;
         const Answer answer = ask(test_, mesh_, motion, features);
         if (answer.verdict == Verdict::contact)

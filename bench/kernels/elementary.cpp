@@ -57,16 +57,14 @@ class EverySixteenth : public TrianglePairSink {
  private:
   void take(const std::vector<TrianglePair>& block) override {
     for (const TrianglePair& pair : block)
-      for_each_carried(
-          mesh_, pair, share_vertex(mesh_.corners(pair.a), mesh_.corners(pair.b)),
-          [&](const FeaturePair& features) {
-            if (seen_++ % 16 != 0) return;
-            if (features.kind == FeaturePair::Kind::vertex_face)
-              out_.vertex_face.push_back(
-                  vertex_face(mesh_, motion_, VertexId{features.a}, TriangleId{features.b}));
-            else
-              out_.edge_edge.push_back(edge_edge(mesh_, motion_, EdgeId{features.a}, EdgeId{features.b}));
-          });
+      for_each_carried(mesh_, pair, [&](const FeaturePair& features) {
+        if (seen_++ % 16 != 0) return;
+        if (features.kind == FeaturePair::Kind::vertex_face)
+          out_.vertex_face.push_back(
+              vertex_face(mesh_, motion_, VertexId{features.a}, TriangleId{features.b}));
+        else
+          out_.edge_edge.push_back(edge_edge(mesh_, motion_, EdgeId{features.a}, EdgeId{features.b}));
+      });
   }
   const TriangleMesh& mesh_;
   const Motion& motion_;

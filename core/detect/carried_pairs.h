@@ -1,26 +1,39 @@
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/detect/contact.h"
 #include "core/detect/culler.h"
-#include "core/mesh/adjacency.h"
 
 namespace cscd {
 
-// Calls with every feature pair that two different triangles carry, up to 15: any vertex against the other
-// triangle, any edge against any edge, unless they share a vertex.
+// The feature pairs that two different triangles carry: any vertex against the other triangle, any edge
+// against any edge, unless they share a vertex. They stand at fifteen places, one bit each: 0 to 2 the
+// corners of the first against the second, 3 to 5 those of the second against the first, 6 + 3 i + k edge i
+// of the first against edge k of the second.
+using CarriedPlaces = std::uint16_t;
+inline constexpr std::size_t kCarriedPlaces = 15;
+inline constexpr CarriedPlaces kAllCarried = (1 << kCarriedPlaces) - 1;
+CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
+FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place);
+
+// Some of them.
+struct CarriedPairs {
+  TrianglePair pair;
+  CarriedPlaces places;
+};
 template <class Take>
-void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, bool adjacent, const Take& take) {
-  const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
-  for (const VertexId vertex : a)
-    if (!contains(b, vertex)) take(FeaturePair::of(vertex, pair.b));
-  for (const VertexId vertex : b)
-    if (!contains(a, vertex)) take(FeaturePair::of(vertex, pair.a));
-  for (const EdgeId e : mesh.edges_of(pair.a))
-    for (const EdgeId f : mesh.edges_of(pair.b))
-      if (!adjacent || !share_vertex(mesh.ends(e), mesh.ends(f))) take(FeaturePair::of(e, f));
+void for_each_carried(const TriangleMesh& mesh, const CarriedPairs& some, const Take& take) {
+  for (unsigned rest = some.places; rest != 0; rest &= rest - 1)
+    take(carried(mesh, some.pair, static_cast<std::size_t>(std::countr_zero(rest))));
+}
+// All of them.
+template <class Take>
+void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, const Take& take) {
+  for_each_carried(mesh, CarriedPairs{pair, carried_by(mesh.corners(pair.a), mesh.corners(pair.b))}, take);
 }
 
 // For strategies in which not every triangle pair is tested for all that it carries. Whatever it leaves out
@@ -29,7 +42,7 @@ class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;
   // Appends what the pairs of a block have to be tested for.
-  virtual void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const = 0;
+  virtual void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const = 0;
   // Tested in every interval.
   virtual std::span<const FeaturePair> always() const = 0;
 };

@@ -1,6 +1,7 @@
 #include "core/detect/compose.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/base/stage_clock.h"
 #include "core/detect/feature_pair_set.h"
@@ -34,7 +35,11 @@ class PairTester : public TrianglePairSink {
     flush();
     if (!options_.assignment) return;
     clock_.enter(Stage::elementary);
-    test(options_.assignment->always());
+    const std::span<const FeaturePair> always = options_.assignment->always();
+    counts_.feature_pairs += always.size();
+    left_.clear();
+    filter(mesh_, *motion_, always, left_);
+    test_left();
   }
   const PairCounts& counts() const { return counts_; }
 
@@ -45,21 +50,29 @@ class PairTester : public TrianglePairSink {
     if (options_.assignment)
       options_.assignment->append(block, carried_);
     else
-      for (const TrianglePair& pair : block) expand(pair);
-    test(carried_);
+      for (const TrianglePair& pair : block) take_all_carried(pair);
+    for (const CarriedPairs& carried : carried_)
+      counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
+    left_.clear();
+    if (options_.filter == PairFilter::certain_sign)
+      filter(mesh_, *motion_, carried_, left_);
+    else
+      for (const CarriedPairs& carried : carried_)
+        for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
+    if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
+    test_left();
     clock_.enter(Stage::traversal);
   }
 
-  void expand(const TrianglePair& pair) {
-    const Triangle &a = mesh_.corners(pair.a), &b = mesh_.corners(pair.b);
-    const bool adjacent = share_vertex(a, b);
+  void take_all_carried(const TrianglePair& pair) {
+    const CarriedPlaces places = carried_by(mesh_.corners(pair.a), mesh_.corners(pair.b));
+    const bool adjacent = places != kAllCarried;
     counts_.adjacent_pctp += adjacent;
     if (!adjacent && options_.relative_boxes && relative_boxes_apart(pair)) {
       ++counts_.relative_dropped;
       return;
     }
-    for_each_carried(mesh_, pair, adjacent,
-                     [&](const FeaturePair& features) { carried_.push_back(features); });
+    carried_.push_back({pair, places});
   }
 
   bool relative_boxes_apart(const TrianglePair& pair) const {
@@ -68,19 +81,7 @@ class PairTester : public TrianglePairSink {
     return cscd::relative_boxes_apart({m[a[0]], m[a[1]], m[a[2]]}, {m[b[0]], m[b[1]], m[b[2]]});
   }
 
-  void test(std::span<const FeaturePair> pairs) {
-    counts_.feature_pairs += pairs.size();
-    left_.clear();
-    switch (options_.filter) {
-      case PairFilter::certain_sign:
-        filter(mesh_, *motion_, pairs, left_);
-        break;
-      case PairFilter::plain_sign:
-        filter_by_plain_sign(mesh_, *motion_, pairs, left_);
-        break;
-      case PairFilter::none:
-        left_.assign(pairs.begin(), pairs.end());
-    }
+  void test_left() {
     if (first_only_) return test_first();
     for (const FeaturePair& pair : left_)
       if (met_.insert(pair)) test(pair);
@@ -112,9 +113,9 @@ class PairTester : public TrianglePairSink {
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   PairCounts counts_;
-  std::vector<FeaturePair> carried_;  // by the block's triangle pairs; one may be carried by several
-  std::vector<FeaturePair> left_;     // of those, what the filter could not prove apart
-  FeaturePairSet met_;                // met in this interval
+  std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one may be carried by several
+  std::vector<FeaturePair> left_;      // of those, what the filter could not prove apart
+  FeaturePairSet met_;                 // met in this interval
   bool first_only_ = false;
   double earliest_ = 1;  // contact so far
   using Bounded = std::pair<double, FeaturePair>;

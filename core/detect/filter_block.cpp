@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/detect/carried_filter.h"
 #include "core/elementary/filter.h"
 #include "core/geometry/triple_product_lanes.h"
 
@@ -93,15 +94,23 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
   left.resize(kept);
 }
 
-void filter_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
-                          std::vector<FeaturePair>& left) {
-  for (const FeaturePair& pair : pairs) {
+void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
+            std::vector<FeaturePair>& left) {
+  for (const auto& [pair, places] : pairs) {
+    const CarriedPairs rest = {pair,
+                               not_filtered(motion, mesh.corners(pair.a), mesh.corners(pair.b), places)};
+    for_each_carried(mesh, rest, [&](const FeaturePair& features) { left.push_back(features); });
+  }
+}
+
+void drop_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::vector<FeaturePair>& pairs) {
+  std::erase_if(pairs, [&](const FeaturePair& pair) {
     BernsteinCubic f = pair.kind == FeaturePair::Kind::vertex_face
                            ? coplanarity(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
                            : coplanarity(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
     f.error = 0;
-    if (certain_sign(f) == 0) left.push_back(pair);
-  }
+    return certain_sign(f) != 0;
+  });
 }
 
 }  // namespace cscd

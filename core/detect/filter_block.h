@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/detect/contact.h"
+#include "core/detect/carried_pairs.h"
 
 namespace cscd {
 
@@ -12,10 +12,12 @@ namespace cscd {
 // (its scalar twins) say.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
+// The same of what pairs of triangles carry, all that two of them do at once.
+void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
+            std::vector<FeaturePair>& left);
 
-// The same with signs of rounded coefficients, as published (Tang et al. 2010): an ablation that may drop
-// features that touch. Pair by pair.
-void filter_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
-                          std::vector<FeaturePair>& left);
+// Drops pairs by the signs of rounded coefficients, as published (Tang et al. 2010): an ablation that may
+// drop features that touch. Pair by pair.
+void drop_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::vector<FeaturePair>& pairs);
 
 }  // namespace cscd

@@ -52,6 +52,47 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
   }
 }
 
+// By triangle pairs the same is left, whichever triangle comes first and however its corners are turned.
+TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
+  const TriangleMesh mesh = test::icosphere(1).mesh();
+  const auto count = static_cast<std::int32_t>(mesh.triangle_count());
+  std::mt19937_64 random(13);
+  for (const double scale : {1.0, 1e-160, 1e-90, 1e110}) {
+    std::vector<Vec3> start = scattered(mesh.vertex_count(), random), end = start;
+    for (Vec3& x : end) x += 0.1 * scattered(1, random)[0];
+    for (Vec3& x : start) x *= scale;
+    for (Vec3& x : end) x *= scale;
+    const Motion motion(start, end);
+    std::size_t dropped = 0, coplanar = 0, kept = 0;
+    for (std::int32_t i = 0; i < count; ++i)
+      for (std::int32_t j = 0; j < count; ++j) {
+        if (i == j) continue;
+        CarriedPairs pairs{{TriangleId{i}, TriangleId{j}}, 0};
+        pairs.places = carried_by(mesh.corners(pairs.pair.a), mesh.corners(pairs.pair.b));
+        if ((i + j) % 3 == 0) pairs.places &= static_cast<CarriedPlaces>(random());
+        std::vector<FeaturePair> features, expected, left;
+        for_each_carried(mesh, pairs, [&](const FeaturePair& pair) {
+          features.push_back(pair);
+          coplanar += pair.kind == FeaturePair::Kind::vertex_face
+                          ? !never_coplanar(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
+                          : !never_coplanar(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+        });
+        filter(mesh, motion, features, expected);
+        filter(mesh, motion, std::span(&pairs, 1), left);
+        ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
+        dropped += features.size() - left.size();
+        kept += left.size();
+      }
+    if (scale == 1 || scale == 1e-90) {
+      EXPECT_GT(kept, 1000u);
+      EXPECT_GT(dropped, coplanar - kept + 1000);
+    }
+    if (scale == 1) {
+      EXPECT_GT(coplanar, kept + 1000);  // others are apart in the plane
+    }
+  }
+}
+
 // Without the error bound the sign of a rounding decides: features that touch are dropped.
 TEST(FilterBlock, ThePlainSignDropsNoLessAndLosesContacts) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
@@ -59,13 +100,14 @@ TEST(FilterBlock, ThePlainSignDropsNoLessAndLosesContacts) {
   std::vector<Vec3> start = scattered(mesh.vertex_count(), random);
   for (Vec3& x : start) x.z() = 0.1 * x.x() + 0.3 * x.y();  // all in one plane, but for rounding
   const Motion motion(start, start);
-  std::vector<FeaturePair> touching, certain, plain;
+  std::vector<FeaturePair> touching, certain;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t)
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(mesh.vertex_count()); ++i)
       if (exact::first_contact(vertex_face(mesh, motion, VertexId{i}, TriangleId{t})))
         touching.push_back(FeaturePair::of(VertexId{i}, TriangleId{t}));
   filter(mesh, motion, touching, certain);
-  filter_by_plain_sign(mesh, motion, touching, plain);
+  std::vector<FeaturePair> plain = touching;
+  drop_by_plain_sign(mesh, motion, plain);
   EXPECT_EQ(certain, touching);
   EXPECT_LT(plain.size(), touching.size());
 }

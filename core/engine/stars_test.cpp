@@ -21,7 +21,7 @@ std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, Ver
   const std::span<const TriangleId> star = mesh.triangles_at(vertex);
   for (std::size_t i = 0; i < star.size(); ++i)
     for (std::size_t j = i + 1; j < star.size(); ++j)
-      for_each_carried(mesh, {star[i], star[j]}, true, [&](const FeaturePair& pair) {
+      for_each_carried(mesh, TrianglePair{star[i], star[j]}, [&](const FeaturePair& pair) {
         contacts += ask(exact(), mesh, motion, pair).verdict != Verdict::apart;
       });
   return contacts;

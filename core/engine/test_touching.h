@@ -26,10 +26,9 @@ inline std::vector<std::pair<TriangleId, TriangleId>> touching(const TriangleMes
       const TrianglePair pair{TriangleId{static_cast<std::int32_t>(t)},
                               TriangleId{static_cast<std::int32_t>(u)}};
       bool contact = false;
-      for_each_carried(mesh, pair, share_vertex(mesh.triangles()[t], mesh.triangles()[u]),
-                       [&](const FeaturePair& features) {
-                         contact = contact || ask(exact, mesh, motion, features).verdict != Verdict::apart;
-                       });
+      for_each_carried(mesh, pair, [&](const FeaturePair& features) {
+        contact = contact || ask(exact, mesh, motion, features).verdict != Verdict::apart;
+      });
       if (contact) pairs.emplace_back(pair.a, pair.b);
     }
   return pairs;

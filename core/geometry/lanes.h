@@ -2,6 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#ifdef __AVX512DQ__
+#include <immintrin.h>
+#endif
 
 namespace cscd {
 
@@ -21,9 +24,22 @@ template <class Real>
 Real larger(Real a, Real b) {
   return a < b ? b : a;
 }
-template <class Real>
-Real absolute(Real a) {
+inline double absolute(double a) {
   return a < 0 ? -a : a;
+}
+inline Lane8 absolute(Lane8 a) {
+  return reinterpret_cast<Lane8>(reinterpret_cast<Sign8>(a) & 0x7fff'ffff'ffff'ffff);
+}
+
+// One bit a lane: where it is not 0.
+inline unsigned bits_of(Sign8 lanes) {
+#ifdef __AVX512DQ__
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(lanes), reinterpret_cast<__m512i>(lanes));
+#else
+  unsigned bits = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<unsigned>(lanes[l] != 0) << l;
+  return bits;
+#endif
 }
 
 }  // namespace cscd

@@ -58,7 +58,8 @@ struct NormalLanes {
   Lane8 area;
 };
 
-inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
+// `area`: the product of their largest components.
+inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b, Lane8 area) {
   NormalLanes normal;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -67,8 +68,11 @@ inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
                            (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
     normal.control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
   }
-  normal.area = a.largest_component() * b.largest_component();
+  normal.area = area;
   return normal;
+}
+inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
+  return cross(a, b, a.largest_component() * b.largest_component());
 }
 
 // Eight BernsteinCubics.

@@ -1,0 +1,146 @@
+#include "core/detect/carried_filter.h"
+
+#include <type_traits>
+
+#include "core/geometry/sideways.h"
+#include "core/geometry/triple_product_lanes.h"
+
+// Bit for bit what the scalar twins say of each pair. To turn an edge round or to exchange two edges changes
+// the sign of exact differences, and so that of a whole cubic, but no rounding; from which end the other
+// points are seen does. So that is the edge's first end, which has the smaller index; and of two edges that
+// of the first, which is the one with the smaller first end.
+namespace cscd {
+namespace {
+
+// Lanes: the corners of the first triangle, or its edges, those of the second, two to spare.
+struct Features {
+  VectorLanes corner;
+  VectorLanes first_end, other_end;  // of edges
+  Sign8 first;                       // number of the vertex
+  VectorLanes edge;
+  Lane8 longest;  // component of each edge
+};
+
+// Of `v`, and from 8 on of `w`.
+template <int... kFrom>
+VectorLanes shuffled(const VectorLanes& v, const VectorLanes& w) {
+  VectorLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i)
+      out.at[end][i] = __builtin_shufflevector(v.at[end][i], w.at[end][i], kFrom...);
+  return out;
+}
+template <int... kFrom>
+VectorLanes shuffled(const VectorLanes& v) {
+  return shuffled<kFrom...>(v, v);
+}
+template <int... kFrom, class Lanes>
+Lanes shuffled_lanes(Lanes v) {
+  return __builtin_shufflevector(v, v, kFrom...);
+}
+
+VectorLanes chosen(Sign8 which, const VectorLanes& v, const VectorLanes& w) {
+  VectorLanes out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = which ? v.at[end][i] : w.at[end][i];
+  return out;
+}
+
+Features features_of(const Motion& motion, const Triangle& a, const Triangle& b) {
+  VertexLanes vertices;
+  Sign8 number{};
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const VertexId v = l < 3 ? a[l] : b[l < 6 ? l - 3 : 2];
+    vertices.set(l, v);
+    number[l] = static_cast<std::int32_t>(v);
+  }
+  Features f;
+  f.corner = gather(motion, vertices);
+  const VectorLanes next = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(f.corner);
+  const Sign8 next_number = shuffled_lanes<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
+  f.first_end = chosen(forward, f.corner, next);
+  f.other_end = chosen(forward, next, f.corner);
+  f.first = forward ? number : next_number;
+  f.edge = next - f.corner;
+  f.longest = f.edge.largest_component();
+  return f;
+}
+
+// Four points of each of eight pairs, as the filter takes them.
+struct Points {
+  VectorLanes of_first[2], of_second[2];  // edges, or the face but its third corner, and that and the vertex
+};
+
+// Places 0 to 7: all that vertices carry, edge 0 of the first with edges 0 and 1 of the second.
+constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};
+Points low_points(const Features& f) {
+  return {{shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
+           shuffled<4, 4, 4, 1, 1, 1, 8 + 0, 8 + 0>(f.corner, f.other_end)},
+          {shuffled<5, 5, 5, 2, 2, 2, 8 + 3, 8 + 4>(f.corner, f.first_end),
+           shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.other_end)}};
+}
+unsigned low_never_coplanar(const Features& f) {
+  return bits_of(
+      certain_signs(cross(shuffled<3, 3, 3, 0, 0, 0, 0, 0>(f.edge), shuffled<5, 5, 5, 2, 2, 2, 3, 4>(f.edge),
+                          shuffled_lanes<3, 3, 3, 0, 0, 0, 0, 0>(f.longest) *
+                              shuffled_lanes<5, 5, 5, 2, 2, 2, 3, 4>(f.longest)),
+                    shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
+                        shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end)));
+}
+
+// Places 8 to 14, and the last again: the other edges.
+template <class Lanes>
+Lanes edges_of_first(const Lanes& v) {
+  if constexpr (std::is_same_v<Lanes, VectorLanes>)
+    return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(v);
+  else
+    return shuffled_lanes<0, 1, 1, 1, 2, 2, 2, 2>(v);
+}
+template <class Lanes>
+Lanes edges_of_second(const Lanes& v) {
+  if constexpr (std::is_same_v<Lanes, VectorLanes>)
+    return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(v);
+  else
+    return shuffled_lanes<5, 3, 4, 5, 3, 4, 5, 5>(v);
+}
+Points high_points(const Features& f) {
+  return {{edges_of_first(f.first_end), edges_of_first(f.other_end)},
+          {edges_of_second(f.first_end), edges_of_second(f.other_end)}};
+}
+unsigned high_never_coplanar(const Features& f) {
+  return bits_of(certain_signs(cross(edges_of_first(f.edge), edges_of_second(f.edge),
+                                     edges_of_first(f.longest) * edges_of_second(f.longest)),
+                               edges_of_second(f.first_end) - edges_of_first(f.first_end)));
+}
+
+// `exchanged`: where the second edge comes first.
+unsigned apart_in_plane(const Points& points, Sign8 exchanged, Sign8 vertex_face) {
+  const auto& [one, two] = points;
+  const VectorLanes from = chosen(exchanged, two[0], one[0]);
+  const VectorLanes seen[3] = {chosen(exchanged, two[1], one[1]) - from,
+                               chosen(exchanged, one[0], two[0]) - from,
+                               chosen(exchanged, one[1], two[1]) - from};
+  SeenFromFirst<Lane8> p;
+  for (int k = 0; k < 3; ++k)
+    for (int end = 0; end < 2; ++end)
+      for (int i = 0; i < 3; ++i) p[k][end][i] = seen[k].at[end][i];
+  return bits_of(apart_sideways(p, vertex_face));
+}
+
+}  // namespace
+
+CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places) {
+  const Features f = features_of(motion, a, b);
+  unsigned left = places & ~(low_never_coplanar(f) | high_never_coplanar(f) << 8);
+  if ((left & 0xff) != 0) {
+    const Sign8 exchanged =
+        shuffled_lanes<0, 0, 0, 0, 0, 0, 0, 0>(f.first) > shuffled_lanes<3, 3, 3, 3, 3, 3, 3, 4>(f.first);
+    left &= ~apart_in_plane(low_points(f), exchanged & ~kVertexFace, kVertexFace);
+  }
+  if (left >> 8 != 0)
+    left &=
+        ~(apart_in_plane(high_points(f), edges_of_first(f.first) > edges_of_second(f.first), Sign8{}) << 8);
+  return static_cast<CarriedPlaces>(left);
+}
+
+}  // namespace cscd

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/detect/carried_pairs.h"
+#include "core/mesh/motion.h"
+
+namespace cscd {
+
+// The feature pairs of two triangles that the filter (core/elementary/filter.h) cannot prove apart, among
+// those at some places. Six vertices are loaded once; what fifteen pairs need are permutations of registers.
+CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
+
+}  // namespace cscd
