@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cstring>
 
 // Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
 // exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
@@ -12,6 +13,8 @@ namespace {
 std::uint64_t count(unsigned mask) {
   return static_cast<std::uint64_t>(std::popcount(mask));
 }
+
+constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states looked at
 
 template <class Take>
 void for_each_lane(unsigned mask, const Take& take) {
@@ -25,13 +28,18 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       covers_(covers),
       certified_(tree.patches.size()),
       own_(tree.patches.size()),
-      label_(tree.nodes.size()),
+      state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
+      label_(tree.nodes.size(), Label{} + kNone),
+      parent_(tree.nodes.size(), kNone),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle: `look` takes that for granted.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
+  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+    parent_[node.left()] = parent_[node.right()] = static_cast<std::int32_t>(n);
+  });
   use_covers(kCovers);
 }
 
@@ -43,7 +51,13 @@ void Certificates::use_covers(std::size_t count) {
     viewpoint_[c].resize(c < count ? covers_[c].observers.size() : 0);
     counts_.clusters += viewpoint_[c].size();
   }
+  forget();
+}
+
+// Nothing is certain of any patch until it is looked at.
+void Certificates::forget() {
   std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+  std::fill_n(state_.begin(), cell_.size(), State::spoiled);
 }
 
 std::size_t Certificates::looks() const {
@@ -65,7 +79,7 @@ void Certificates::finish() {
     certify_all_round();
   else
     certify_clear();
-  if (!positions_->known()) std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+  if (!positions_->known()) forget();
   label_nodes();
 }
 
@@ -85,6 +99,11 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   for (std::size_t c = 0; c < capped_.size(); ++c)
     if (from[c] != nullptr)
       crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
+  bool usual = capped_.empty();
+  for (std::size_t c = 0; c < count_; ++c)
+    usual &= from[c] == nullptr || (patch.lanes & ~static_cast<unsigned>(seen[c].positive)) == 0;
+  if (usual) return make_usual(p);
+  state_[p] = State::seen;
   for (std::size_t c = 0; c < count_; ++c)
     if (from[c] != nullptr)
       own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
@@ -94,20 +113,43 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   for (std::size_t c = 1; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
 
+void Certificates::make_usual(std::size_t p) {
+  if (state_[p] == State::usual) return;
+  state_[p] = State::unlabelled;
+  own_[p] = {};
+  certified_[p] = {};
+  certified_[p][0].positive = cell_[p].lanes;
+  for (std::size_t c = 1; c < count_; ++c) certified_[p][c].positive = cell_[p].inside[c];
+}
+
+template <class Take>
+void Certificates::for_each_unusual(const Take& take) const {
+  for (std::size_t first = 0; first < state_.size(); first += kTogether) {
+    std::uint64_t states = 0;
+    std::memcpy(&states, &state_[first], sizeof states);
+    if (states == 0) continue;
+    for (std::size_t p = first; p < first + kTogether; ++p)
+      if (state_[p] != State::usual) take(p);
+  }
+}
+
 void Certificates::certify_all_round() {
-  for (std::size_t p = 0; p < certified_.size(); ++p)
+  for_each_unusual([&](std::size_t p) {
+    if (state_[p] != State::seen) return;
     for (std::size_t c = 1; c < count_; ++c) {
       if (own_[p][c].not_positive != 0) spoil_round(p, c);
       for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
         certified_[p][c].negative |= static_cast<Mask16>(negative_all_round(p, lane, c) << lane);
       });
     }
+  });
 }
 
 void Certificates::spoil_round(std::size_t p, std::size_t c) {
   const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
   tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
     certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
+    if (state_[q] != State::seen) state_[q] = State::spoiled;
   });
 }
 
@@ -135,8 +177,9 @@ void Certificates::certify_clear() {
 }
 
 void Certificates::label_nodes() {
-  counts_.positive = counts_.negative = counts_.uncertain = 0;
-  for (std::size_t p = 0; p < cell_.size(); ++p) {
+  counts_.positive = covers_[0].cluster_of.size();
+  counts_.negative = counts_.uncertain = 0;
+  for_each_unusual([&](std::size_t p) {
     const Cell& patch = cell_[p];
     unsigned some = 0;
     Label label = Label{} + kNone;
@@ -148,15 +191,25 @@ void Certificates::label_nodes() {
                                                  : kNone;
       some |= signs.positive | signs.negative;
     }
-    label_[static_cast<std::size_t>(tree_.leaf[p])] = label;
-    counts_.positive += count(certified_[p][0].positive);
+    relabel(static_cast<std::size_t>(tree_.leaf[p]), label);
+    counts_.positive -= count(patch.lanes & ~static_cast<unsigned>(certified_[p][0].positive));
     counts_.negative += count(certified_[p][0].negative);
     counts_.uncertain += count(patch.lanes & ~some);
-  }
-  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
-    const Label left = label_[node.left()], right = label_[node.right()];
-    label_[n] = left == right ? left : Label{} + kNone;
+    if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
+}
+
+// And what is above it.
+void Certificates::relabel(std::size_t n, Label label) {
+  for (;;) {
+    if (std::memcmp(&label_[n], &label, sizeof label) == 0) return;
+    label_[n] = label;
+    if (parent_[n] == kNone) return;
+    n = static_cast<std::size_t>(parent_[n]);
+    const PatchTree::Node& node = tree_.nodes[n];
+    const Label left = label_[node.left()], right = label_[node.right()];
+    label = left == right ? left : Label{} + kNone;
+  }
 }
 
 RadialView Certificates::view() const {

@@ -79,12 +79,30 @@ class Certificates {
   RadialView view() const;
 
  private:
+  // Cluster and sign of all below a node in each cover, or kNone. All covers in one register.
+  using Label = std::int32_t __attribute__((vector_size(16)));
+  using Halves = std::int64_t __attribute__((vector_size(16)));
+  static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
+
   void place_viewpoints(std::span<const LocalPositions::Record> records);
+  void forget();
+  void make_usual(std::size_t patch);
   void certify_all_round();
   void spoil_round(std::size_t patch, std::size_t cover);
   bool negative_all_round(std::size_t patch, std::size_t lane, std::size_t cover) const;
   void certify_clear();
   void label_nodes();
+  void relabel(std::size_t node, Label label);
+
+  // Most patches are all positive in every cover, from one interval to the next. What is known of them stays.
+  enum class State : std::uint8_t {
+    usual,
+    unlabelled,  // is usual again
+    spoiled,     // by what is around it
+    seen         // by itself it is not all positive
+  };
+  template <class Take>  // (patch)
+  void for_each_unusual(const Take& take) const;
 
   struct Cell {  // of a patch: what is needed of all of them, together
     std::array<std::int32_t, kCovers> cluster;
@@ -92,7 +110,7 @@ class Certificates {
     Mask16 lanes;
   };
 
-  struct Own {  // of triangles by themselves
+  struct Own {  // of triangles by themselves; none where the patch was not seen otherwise
     Mask16 not_positive, negative;
   };
 
@@ -104,11 +122,9 @@ class Certificates {
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
   std::vector<std::array<Own, kCovers>> own_;          // of each patch
-  // Of each node, in each cover: cluster and sign of all below, or kNone. All covers in one register.
-  using Label = std::int32_t __attribute__((vector_size(16)));
-  using Halves = std::int64_t __attribute__((vector_size(16)));
-  static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
-  std::vector<Label> label_;
+  std::vector<State> state_;                           // of each patch; some usual ones behind them
+  std::vector<Label> label_;                           // of each node
+  std::vector<std::int32_t> parent_;                   // of each node; kNone of the root
   std::vector<CappedClusters> capped_;
   std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
   RadialCounts counts_;

@@ -47,11 +47,11 @@ Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& vie
   for (Float16& component : cones.axis) component *= reciprocal;
 
   cones.known = 0xffff;
-  cones.cosine = Float16{} + 1;
+  cones.cosine = all_lanes(1);
   for (const Places16& corner : patch.corner) {
     const Float16 near = permuted(nearness, corner);
     const Float16 slack = 4.1F * error * near + kRounding;
-    cones.known &= above(Float16{} + 1 / (kLeastLength * error), near);
+    cones.known &= above(all_lanes(1 / (kLeastLength * error)), near);
     for (int end = 0; end < 2; ++end) {
       Float16 r[3];
       for (int i = 0; i < 3; ++i) r[i] = permuted(direction.at[end][i], corner);
@@ -60,7 +60,7 @@ Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& vie
   }
   cones.sine = square_root((1 - cones.cosine) * (1 + cones.cosine));
   // Not a number where an axis vanishes: that compares as false.
-  cones.known &= above(cones.cosine, Float16{} + kLeastCosine);
+  cones.known &= above(cones.cosine, all_lanes(kLeastCosine));
   return cones;
 }
 
@@ -82,7 +82,7 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
   for (const PatchLanes& some : lanes) {
     const Directions d = directions(some, viewpoint);
     const Float16 slack = 4.1F * error * d.nearness + kRounding;
-    if (above(Float16{} + 1 / (kLeastLength * error), d.nearness) != 0xffff) return std::nullopt;
+    if (above(all_lanes(1 / (kLeastLength * error)), d.nearness) != 0xffff) return std::nullopt;
     for (int end = 0; end < 2; ++end) {
       const Float16 cosine = cone.axis[0] * d.to.at[end][0] + cone.axis[1] * d.to.at[end][1] +
                              cone.axis[2] * d.to.at[end][2] - slack;

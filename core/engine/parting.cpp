@@ -18,8 +18,8 @@ Signs sides_of(const PatchLanes& vertices, const PlaneOf& of, float error) {
   PatchNormals same;
   for (std::size_t n = 0; n < 3; ++n)
     for (std::size_t i = 0; i < 3; ++i)
-      same.control[n][i] = Float16{} + of.planes.normals.control[n][i][of.lane];
-  for (std::size_t e = 0; e < 2; ++e) same.longest[e] = Float16{} + of.planes.normals.longest[e][of.lane];
+      same.control[n][i] = all_lanes(of.planes.normals.control[n][i][of.lane]);
+  for (std::size_t e = 0; e < 2; ++e) same.longest[e] = all_lanes(of.planes.normals.longest[e][of.lane]);
   return orientation(same, vertices, corner_of(of, 0), error);
 }
 

@@ -10,19 +10,17 @@
 // components of the three and A' = A + 2 d, and so on. Every coefficient is a sum of products whose absolute
 // values sum to 6 A B C (18 for the middle two, which are three times the Bernstein coefficients). Errors of
 // the factors change it by at most
-//   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C',
-// the eight roundings behind them by at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the
-// bound itself. Below kTiny products might underflow; nothing is certain then.
+//   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C'.
+// Then come the roundings behind each product: of the 6 they are 21 in all, of the 18 of the middle two 111
+// (12 in `cross` with 1 to 4 and in the sum with 4 to 6, 6 with 1 or 2 and with 1 to 3), less than 8.1 each:
+// at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products
+// might underflow; nothing is certain then.
 namespace cscd::fast {
 namespace {
 
 constexpr float kTiny = 1e-30F;
 
 using Float8 = float __attribute__((vector_size(32)));
-
-Float16 broadcast(float x) {
-  return Float16{} + x;
-}
 
 void directions(const Float16 (&p)[3], Float16* out) {
   out[0] = p[0], out[1] = p[1], out[2] = p[2];
@@ -89,7 +87,7 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
 
 TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error) {
   TriangleBounds bounds;
-  const Float16 slack = broadcast(7 * error);
+  const Float16 slack = all_lanes(7 * error);
   for (int end = 0; end < 2; ++end) {
     Float16 along[kDirections];
     directions(lanes.at[end], along);
@@ -105,8 +103,8 @@ TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, floa
 
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other) {
   for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
-    const auto low = [&](int end) { return broadcast(other.at[end][k]); };
-    const auto high = [&](int end) { return broadcast(-other.at[end][kDirections + k]); };
+    const auto low = [&](int end) { return all_lanes(other.at[end][k]); };
+    const auto high = [&](int end) { return all_lanes(-other.at[end][kDirections + k]); };
     const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
     const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
     mask = static_cast<Mask16>(mask & ~(over | under));
@@ -116,8 +114,8 @@ Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& ot
 
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane) {
   for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
-    const auto low = [&](int end) { return broadcast(others.low[k][end][lane]); };
-    const auto high = [&](int end) { return broadcast(others.high[k][end][lane]); };
+    const auto low = [&](int end) { return all_lanes(others.low[k][end][lane]); };
+    const auto high = [&](int end) { return all_lanes(others.high[k][end][lane]); };
     const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
     const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
     mask = static_cast<Mask16>(mask & ~(over | under));
@@ -135,42 +133,43 @@ namespace {
   corner_of(lanes, patch.corner[2], b);
   subtract(a, corner);
   subtract(b, corner);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    out.control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
-    out.control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) +
-                        (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
-    out.control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
-  }
+  cross(a, b, out.control);
   out.longest[0] = largest_component(a);
   out.longest[1] = largest_component(b);
 }
 
-// Bounds of the edges' components, with their errors: the product of both, and the sum.
-struct EdgeBounds {
-  Float16 area, sum;
+// What bounds the rounding, by the reach from the viewpoint: `apart` + reach `sloped`. `area`: the product of
+// the edges' largest components.
+struct Rounding {
+  Float16 area, apart, sloped;
 };
-[[gnu::always_inline]] inline EdgeBounds edge_bounds(const PatchNormals& normals, float error) {
-  const Float16 a = normals.longest[0] + broadcast(2 * error), b = normals.longest[1] + broadcast(2 * error);
-  return {a * b, a + b};
+[[gnu::always_inline]] inline Rounding rounding_of(const PatchNormals& normals, float error) {
+  const Float16 a = normals.longest[0] + all_lanes(2 * error), b = normals.longest[1] + all_lanes(2 * error);
+  const Float16 area = a * b, errors = all_lanes(12.1F * error);
+  return {area, errors * area, product_plus(errors, a + b, all_lanes(68 * 0x1p-24F) * area)};
 }
 
 [[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const PatchLanes& corner,
-                                         const EdgeBounds& edges, const Viewpoint& viewpoint, float error) {
+                                         const Rounding& rounding, const Viewpoint& viewpoint, float error) {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - broadcast(viewpoint.at[end][i]);
+    for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
   const auto dot = [&](int n, int end) {
-    return normals.control[n][0] * c.at[end][0] + normals.control[n][1] * c.at[end][1] +
-           normals.control[n][2] * c.at[end][2];
+    const Float16* const normal = normals.control[n];
+    return product_plus(normal[2], c.at[end][2],
+                        product_plus(normal[1], c.at[end][1], normal[0] * c.at[end][0]));
   };
-  const Float16 reach = largest_component(c) + broadcast(2 * error), volume = edges.area * reach;
-  const Float16 bound =
-      broadcast(12.1F * error) * (edges.area + edges.sum * reach) + broadcast(68 * 0x1p-24F) * volume;
-  const Float16 bound3 = 3 * bound;
+  const auto plus_dot = [&](Float16 sum, int n, int end) {
+    for (int i = 0; i < 3; ++i) sum = product_plus(normals.control[n][i], c.at[end][i], sum);
+    return sum;
+  };
+  const Float16 reach = largest_component(c) + all_lanes(2 * error);
+  const Float16 bound = product_plus(reach, rounding.sloped, rounding.apart), bound3 = 3 * bound;
 
-  const Float16 c0 = dot(0, 0), c1 = dot(1, 0) + dot(0, 1), c2 = dot(1, 1) + dot(2, 0), c3 = dot(2, 1);
-  const unsigned known = above(edges.area, broadcast(kTiny)) & above(volume, broadcast(kTiny));
+  const Float16 c0 = dot(0, 0), c1 = plus_dot(dot(1, 0), 0, 1), c2 = plus_dot(dot(1, 1), 2, 0),
+                c3 = dot(2, 1);
+  const unsigned known =
+      above(rounding.area, all_lanes(kTiny)) & above(rounding.area * reach, all_lanes(kTiny));
   const unsigned positive = above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
   if ((positive & known) == 0xffffU) return {0xffff, 0};  // as nearly always
   const unsigned negative = above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
@@ -185,7 +184,7 @@ void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& nor
 
 Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
                   float error) {
-  return look(normals, corner, edge_bounds(normals, error), viewpoint, error);
+  return look(normals, corner, rounding_of(normals, error), viewpoint, error);
 }
 
 Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
@@ -200,9 +199,9 @@ void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* 
   PatchNormals normals;
   PatchLanes corner;
   make_normals(lanes, patch, normals, corner);
-  const EdgeBounds edges = edge_bounds(normals, error);
+  const Rounding rounding = rounding_of(normals, error);
   for (std::size_t c = 0; c < kCovers; ++c)
-    out[c] = from[c] ? look(normals, corner, edges, *from[c], error) : Signs{};
+    out[c] = from[c] ? look(normals, corner, rounding, *from[c], error) : Signs{};
 }
 
 }  // namespace cscd::fast

@@ -54,7 +54,7 @@ Ray::Ray(const Viewpoint& viewpoint, const float (&through)[3], float error) {
 bool Ray::may_cross(const PatchLanes& lanes) const {
   Float16 r[3];
   for (int i = 0; i < 3; ++i) r[i] = lanes.at[0][i] - from_[i];
-  const Float16 a = product(across_, r), b = product(up_, r), error = Float16{} + error_;
+  const Float16 a = product(across_, r), b = product(up_, r), error = all_lanes(error_);
   return above(a, error) != 0xffff && above(-error, a) != 0xffff && above(b, error) != 0xffff &&
          above(-error, b) != 0xffff;
 }

@@ -99,13 +99,7 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
       b.at[end][i] = permuted(a.at[end][i], kNext[count]);
     }
   Float16 control[3][3];
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    control[0][i] = a.at[0][j] * b.at[0][k] - a.at[0][k] * b.at[0][j];
-    control[1][i] = (a.at[0][j] * b.at[1][k] - a.at[0][k] * b.at[1][j]) +
-                    (a.at[1][j] * b.at[0][k] - a.at[1][k] * b.at[0][j]);
-    control[2][i] = a.at[1][j] * b.at[1][k] - a.at[1][k] * b.at[1][j];
-  }
+  cross(a, b, control);
   // The direction: the mean of the normals about the middle of the interval.
   Float16 middle[3], squared = {};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -116,7 +110,7 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
   float direction[3];
   for (std::size_t i = 0; i < 3; ++i) direction[i] = sum(middle[i] * reciprocal);
 
-  const Float16 slack = Float16{} + 2 * positions.error();
+  const Float16 slack = all_lanes(2 * positions.error());
   const Float16 longest_a = largest_component(a) + slack, longest_b = largest_component(b) + slack;
   const float largest = std::max({std::abs(direction[0]), std::abs(direction[1]), std::abs(direction[2])});
   const Float16 area = longest_a * longest_b;
@@ -126,7 +120,7 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     return control[n][0] * direction[0] + control[n][1] * direction[1] + control[n][2] * direction[2];
   };
   const unsigned positive = above(along(0), bound) & above(along(1), 2 * bound) & above(along(2), bound) &
-                            above(area, Float16{} + kTiny);
+                            above(area, all_lanes(kTiny));
   if (!(largest > 1e-6F) || positive != 0xffffU) return false;
 
   // The direction in the middle of the first triangle at t = 0. A triangle contains it only if it has a

@@ -19,6 +19,11 @@ using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
+// The same in all lanes. (Nothing is taken away: to add nothing to -0 would make it 0, which takes time.)
+inline Float16 all_lanes(float x) {
+  return x - Float16{};
+}
+
 // One instruction each, as compilers do not always see that a comparison and a choice are one.
 inline Float16 smaller(Float16 a, Float16 b) {
 #ifdef __AVX512F__
@@ -36,6 +41,23 @@ inline Float16 larger(Float16 a, Float16 b) {
 }
 inline Float16 absolute(Float16 a) {
   return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
+}
+
+// a b + c and a b - c, rounded once.
+inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
+#ifdef __AVX512F__
+  return _mm512_maskz_fmadd_ps(0xffff, a, b, c);
+#else
+  for (std::size_t l = 0; l < kLanes16; ++l) c[l] = std::fma(a[l], b[l], c[l]);
+  return c;
+#endif
+}
+inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
+#ifdef __AVX512F__
+  return _mm512_maskz_fmsub_ps(0xffff, a, b, c);
+#else
+  return product_plus(a, b, -c);
+#endif
 }
 
 // The larger of both absolute values.

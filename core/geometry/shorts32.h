@@ -33,11 +33,14 @@ inline Mask32 above(Short32 a, Short32 b) {
 #endif
 }
 
-// Pair l holds a[l] and b[l], both rounded to the nearest integer, which 16 bits must hold.
-inline Short32 rounded_pairs(Float16 a, Float16 b) {
+// Pair l holds scale a[l] and scale b[l], both rounded to the nearest integer, which 16 bits must hold.
+inline Short32 rounded_pairs(Float16 a, Float16 b, float scale) {
   // Floats of this size are integers, and their last 16 bits are those of the integer.
   constexpr float kShift = 0x1.8p23F;
-  const auto low = reinterpret_cast<Int16>(a + kShift), high = reinterpret_cast<Int16>(b + kShift);
+  const auto shifted = [&](Float16 v) {
+    return reinterpret_cast<Int16>(product_plus(v, all_lanes(scale), all_lanes(kShift)));
+  };
+  const Int16 low = shifted(a), high = shifted(b);
   return reinterpret_cast<Short32>((low & 0xffff) | (high << 16));
 }
 
