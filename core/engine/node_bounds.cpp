@@ -15,7 +15,10 @@ NodeBounds Grid::bounds_of(const PatchLanes& lanes) const {
 // that and for the 0.004 above.
 MovingBounds Grid::in_units(const NodeBounds& bounds) const {
   const auto pairs = reinterpret_cast<Int16>(bounds.at);
-  const auto units = [&](Int16 steps) { return (__builtin_convertvector(steps, Float16) - 0x1p-6F) * step_; };
+  constexpr Float16 kSides = {1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1, -1, -1, -1, -1};
+  const auto units = [&](Int16 steps) {
+    return (__builtin_convertvector(steps, Float16) - 0x1p-6F) * (step_ * kSides);
+  };
   return {{units((pairs << 16) >> 16), units(pairs >> 16)}};
 }
 

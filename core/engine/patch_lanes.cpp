@@ -101,26 +101,34 @@ TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, floa
   return bounds;
 }
 
+namespace {
+
+// Without those that lie on one side of [low, high], of [direction, end], at both ends. In two steps, as most
+// are apart along an axis or not at all, and a step that depends on another costs more than some directions.
+template <class Low, class High>
+[[gnu::always_inline]] inline Mask16 near_range(const TriangleBounds& triangles, Mask16 mask, const Low& low,
+                                                const High& high) {
+  const auto apart = [&](std::size_t k) {
+    const unsigned over = above(triangles.low[k][0], high(k, 0)) & above(triangles.low[k][1], high(k, 1));
+    return over | (above(low(k, 0), triangles.high[k][0]) & above(low(k, 1), triangles.high[k][1]));
+  };
+  mask &= static_cast<Mask16>(~(apart(0) | apart(1) | apart(2)));
+  if (mask == 0) return mask;
+  return static_cast<Mask16>(mask & ~(apart(3) | apart(4) | apart(5) | apart(6) | apart(7)));
+}
+
+}  // namespace
+
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other) {
-  for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
-    const auto low = [&](int end) { return all_lanes(other.at[end][k]); };
-    const auto high = [&](int end) { return all_lanes(-other.at[end][kDirections + k]); };
-    const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
-    const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
-    mask = static_cast<Mask16>(mask & ~(over | under));
-  }
-  return mask;
+  return near_range(
+      triangles, mask, [&](std::size_t k, int end) { return all_lanes(other.at[end][k]); },
+      [&](std::size_t k, int end) { return all_lanes(other.at[end][kDirections + k]); });
 }
 
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane) {
-  for (std::size_t k = 0; k < kDirections && mask != 0; ++k) {
-    const auto low = [&](int end) { return all_lanes(others.low[k][end][lane]); };
-    const auto high = [&](int end) { return all_lanes(others.high[k][end][lane]); };
-    const unsigned over = above(triangles.low[k][0], high(0)) & above(triangles.low[k][1], high(1));
-    const unsigned under = above(low(0), triangles.high[k][0]) & above(low(1), triangles.high[k][1]);
-    mask = static_cast<Mask16>(mask & ~(over | under));
-  }
-  return mask;
+  return near_range(
+      triangles, mask, [&](std::size_t k, int end) { return all_lanes(others.low[k][end][lane]); },
+      [&](std::size_t k, int end) { return all_lanes(others.high[k][end][lane]); });
 }
 
 namespace {

@@ -39,7 +39,7 @@ inline void cross(const PatchLanes& a, const PatchLanes& b, Float16 (&control)[3
 inline constexpr std::size_t kDirections = 8;
 
 // Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): for
-// each end, the least projection along every direction, then the least along its negative.
+// each end, the least projection along every direction, then the greatest.
 struct MovingBounds {
   Float16 at[2];
 };

@@ -82,7 +82,7 @@ TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
               mpq_class along = 0;
               for (std::size_t i = 0; i < 3; ++i) along += kDirection[k][i] * x[i];
               EXPECT_LE(mpq_class(bounds.at[end][k]), along);
-              EXPECT_LE(mpq_class(bounds.at[end][kDirections + k]), -along);
+              EXPECT_GE(mpq_class(bounds.at[end][kDirections + k]), along);
               EXPECT_LE(mpq_class(triangles.low[k][end][l]), along);
               EXPECT_GE(mpq_class(triangles.high[k][end][l]), along);
             }
@@ -94,8 +94,8 @@ bool apart_in_units(const MovingBounds& a, const MovingBounds& b) {
   for (std::size_t k = 0; k < kDirections; ++k) {
     bool over = true, under = true;
     for (std::size_t end = 0; end < 2; ++end) {
-      over &= a.at[end][k] > -b.at[end][kDirections + k];
-      under &= b.at[end][k] > -a.at[end][kDirections + k];
+      over &= a.at[end][k] > b.at[end][kDirections + k];
+      under &= b.at[end][k] > a.at[end][kDirections + k];
     }
     if (over || under) return true;
   }
@@ -110,7 +110,7 @@ TEST(PatchLanes, NearIsApartLaneByLane) {
     for (int end = 0; end < 2; ++end)
       for (std::size_t k = 0; k < kDirections; ++k) {
         one.at[end][k] = b.low[k][end][l];
-        one.at[end][kDirections + k] = -b.high[k][end][l];
+        one.at[end][kDirections + k] = b.high[k][end][l];
       }
     return one;
   };
