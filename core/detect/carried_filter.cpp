@@ -1,7 +1,5 @@
 #include "core/detect/carried_filter.h"
 
-#include <type_traits>
-
 #include "core/geometry/sideways.h"
 #include "core/geometry/triple_product_lanes.h"
 
@@ -35,7 +33,7 @@ VectorLanes shuffled(const VectorLanes& v) {
   return shuffled<kFrom...>(v, v);
 }
 template <int... kFrom, class Lanes>
-Lanes shuffled_lanes(Lanes v) {
+Lanes shuffled(Lanes v) {
   return __builtin_shufflevector(v, v, kFrom...);
 }
 
@@ -57,7 +55,7 @@ Features features_of(const Motion& motion, const Triangle& a, const Triangle& b)
   Features f;
   f.corner = gather(motion, vertices);
   const VectorLanes next = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(f.corner);
-  const Sign8 next_number = shuffled_lanes<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
+  const Sign8 next_number = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
   f.first_end = chosen(forward, f.corner, next);
   f.other_end = chosen(forward, next, f.corner);
   f.first = forward ? number : next_number;
@@ -71,7 +69,20 @@ struct Points {
   VectorLanes of_first[2], of_second[2];  // edges, or the face but its third corner, and that and the vertex
 };
 
-// Places 0 to 7: all that vertices carry, edge 0 of the first with edges 0 and 1 of the second.
+unsigned never_coplanar(const VectorLanes& a, const VectorLanes& b, Lane8 area, const VectorLanes& c) {
+  return bits_of(certain_signs(cross(a, b, area), c));
+}
+
+// Places 0 to 7: what vertices carry, and edge 0 of the first with edges 0 and 1 of the second. Of the face
+// of a vertex: the edges at its first corner.
+template <class Lanes>
+Lanes low_first(const Lanes& edges) {
+  return shuffled<3, 3, 3, 0, 0, 0, 0, 0>(edges);
+}
+template <class Lanes>
+Lanes low_second(const Lanes& edges) {
+  return shuffled<5, 5, 5, 2, 2, 2, 3, 4>(edges);
+}
 constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};
 Points low_points(const Features& f) {
   return {{shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
@@ -80,37 +91,28 @@ Points low_points(const Features& f) {
            shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.other_end)}};
 }
 unsigned low_never_coplanar(const Features& f) {
-  return bits_of(
-      certain_signs(cross(shuffled<3, 3, 3, 0, 0, 0, 0, 0>(f.edge), shuffled<5, 5, 5, 2, 2, 2, 3, 4>(f.edge),
-                          shuffled_lanes<3, 3, 3, 0, 0, 0, 0, 0>(f.longest) *
-                              shuffled_lanes<5, 5, 5, 2, 2, 2, 3, 4>(f.longest)),
-                    shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
-                        shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end)));
+  return never_coplanar(low_first(f.edge), low_second(f.edge), low_first(f.longest) * low_second(f.longest),
+                        shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
+                            shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end));
 }
 
 // Places 8 to 14, and the last again: the other edges.
 template <class Lanes>
-Lanes edges_of_first(const Lanes& v) {
-  if constexpr (std::is_same_v<Lanes, VectorLanes>)
-    return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(v);
-  else
-    return shuffled_lanes<0, 1, 1, 1, 2, 2, 2, 2>(v);
+Lanes high_first(const Lanes& edges) {
+  return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(edges);
 }
 template <class Lanes>
-Lanes edges_of_second(const Lanes& v) {
-  if constexpr (std::is_same_v<Lanes, VectorLanes>)
-    return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(v);
-  else
-    return shuffled_lanes<5, 3, 4, 5, 3, 4, 5, 5>(v);
+Lanes high_second(const Lanes& edges) {
+  return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(edges);
 }
 Points high_points(const Features& f) {
-  return {{edges_of_first(f.first_end), edges_of_first(f.other_end)},
-          {edges_of_second(f.first_end), edges_of_second(f.other_end)}};
+  return {{high_first(f.first_end), high_first(f.other_end)},
+          {high_second(f.first_end), high_second(f.other_end)}};
 }
 unsigned high_never_coplanar(const Features& f) {
-  return bits_of(certain_signs(cross(edges_of_first(f.edge), edges_of_second(f.edge),
-                                     edges_of_first(f.longest) * edges_of_second(f.longest)),
-                               edges_of_second(f.first_end) - edges_of_first(f.first_end)));
+  return never_coplanar(high_first(f.edge), high_second(f.edge),
+                        high_first(f.longest) * high_second(f.longest),
+                        high_second(f.first_end) - high_first(f.first_end));
 }
 
 // `exchanged`: where the second edge comes first.
@@ -133,13 +135,13 @@ CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triang
   const Features f = features_of(motion, a, b);
   unsigned left = places & ~(low_never_coplanar(f) | high_never_coplanar(f) << 8);
   if ((left & 0xff) != 0) {
-    const Sign8 exchanged =
-        shuffled_lanes<0, 0, 0, 0, 0, 0, 0, 0>(f.first) > shuffled_lanes<3, 3, 3, 3, 3, 3, 3, 4>(f.first);
-    left &= ~apart_in_plane(low_points(f), exchanged & ~kVertexFace, kVertexFace);
+    const Sign8 exchanged = (low_first(f.first) > low_second(f.first)) & ~kVertexFace;
+    left &= ~apart_in_plane(low_points(f), exchanged, kVertexFace);
   }
-  if (left >> 8 != 0)
-    left &=
-        ~(apart_in_plane(high_points(f), edges_of_first(f.first) > edges_of_second(f.first), Sign8{}) << 8);
+  if (left >> 8 != 0) {
+    const Sign8 exchanged = high_first(f.first) > high_second(f.first);
+    left &= ~(apart_in_plane(high_points(f), exchanged, Sign8{}) << 8);
+  }
   return static_cast<CarriedPlaces>(left);
 }
 
