@@ -146,7 +146,7 @@ void Certificates::certify_all_round() {
 }
 
 void Certificates::spoil_round(std::size_t p, std::size_t c) {
-  const unsigned corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
+  const Mask16 corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
   tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
     certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
     if (state_[q] != State::seen) state_[q] = State::spoiled;
