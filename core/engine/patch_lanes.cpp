@@ -11,10 +11,11 @@
 // values sum to 6 A B C (18 for the middle two, which are three times the Bernstein coefficients). Errors of
 // the factors change it by at most
 //   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C'.
-// Then come the roundings behind each product: of the 6 they are 21 in all, of the 18 of the middle two 111
-// (12 in `cross` with 1 to 4 and in the sum with 4 to 6, 6 with 1 or 2 and with 1 to 3), less than 8.1 each:
-// at most 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products
-// might underflow; nothing is certain then.
+// Then come the roundings behind each product. Where a product and a sum are rounded apart, the 6 have 28 in
+// all (2 in `cross`, then 3, 3, 2), the 18 of the middle two 137 (12 have 2 to 4 in `cross`, then 6, 6, 5;
+// the other 6 have 2, then 4, 3, 2); else 21 and 111. That is less than 8.1 each, hence at most
+// 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products might
+// underflow; nothing is certain then.
 namespace cscd::fast {
 namespace {
 

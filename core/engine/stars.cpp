@@ -10,8 +10,8 @@
 
 // Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is
 // a sum of two products (four for the middle one, which is twice the control vector) of edges not longer than
-// A and B, hence off by 4 d (A' + B') + 10 u A' B'; its dot product with the direction, which is exact by
-// definition and has components up to D, by D (12 d (A' + B') + 48 u A' B'). 12.2 and 50 also pay for the
+// A and B, hence off by 4 d (A' + B') + 10.5 u A' B'; its dot product with the direction, which is exact by
+// definition and has components up to D, by D (12 d (A' + B') + 49.5 u A' B'). 12.2 and 50 also pay for the
 // bound's own roundings. A component of `side`, of a direction with components up to D and a sum
 // of edges up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by
 // at most 12 u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge

@@ -43,20 +43,20 @@ inline Float16 absolute(Float16 a) {
   return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
 }
 
-// a b + c and a b - c, rounded once.
+// a b + c and a b - c, rounded once where that is one instruction, else twice: who bounds rounding has to
+// allow for both.
 inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmadd_ps(0xffff, a, b, c);
 #else
-  for (std::size_t l = 0; l < kLanes16; ++l) c[l] = std::fma(a[l], b[l], c[l]);
-  return c;
+  return a * b + c;
 #endif
 }
 inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmsub_ps(0xffff, a, b, c);
 #else
-  return product_plus(a, b, -c);
+  return a * b - c;
 #endif
 }
 
