@@ -43,16 +43,19 @@ class Representatives : public FeatureAssignment {
     orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
   }
 
-  void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const override {
+  void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const override {
     for (const TrianglePair& pair : block) {
-      unsigned places = 0;
-      for (std::size_t place = 0; place < kCarriedPlaces; ++place) {
-        const std::optional<TrianglePair> chosen = representative(carried(mesh_, pair, place));
-        places |= static_cast<unsigned>(chosen && ((chosen->a == pair.a && chosen->b == pair.b) ||
-                                                   (chosen->a == pair.b && chosen->b == pair.a)))
-                  << place;
-      }
-      if (places != 0) out.push_back({pair, static_cast<CarriedPlaces>(places)});
+      const auto take = [&](const FeaturePair& features) {
+        const std::optional<TrianglePair> chosen = representative(features);
+        if (chosen &&
+            ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
+          out.push_back(features);
+      };
+      // They have no vertex in common.
+      for (const VertexId v : mesh_.corners(pair.a)) take(FeaturePair::of(v, pair.b));
+      for (const VertexId v : mesh_.corners(pair.b)) take(FeaturePair::of(v, pair.a));
+      for (const EdgeId e : mesh_.edges_of(pair.a))
+        for (const EdgeId f : mesh_.edges_of(pair.b)) take(FeaturePair::of(e, f));
     }
   }
   std::span<const FeaturePair> always() const override { return orphans_; }

@@ -42,11 +42,8 @@ TEST(RepresentativeTriangles, AndOrphansCoverEveryFeaturePairExactlyOnce) {
         // In either order, as descents meet them.
         if (!adjacent) distant.push_back((i + j) % 2 == 0 ? pair : TrianglePair{pair.b, pair.a});
       }
-    std::vector<CarriedPairs> assigned;
     std::vector<FeaturePair> tested;
-    assignment->append(distant, assigned);
-    for (const CarriedPairs& some : assigned)
-      for_each_carried(mesh, some, [&](const FeaturePair& features) { tested.push_back(features); });
+    assignment->append(distant, tested);
     const std::size_t by_pairs = tested.size();
     tested.insert(tested.end(), assignment->always().begin(), assignment->always().end());
     for (const FeaturePair& features : tested) ++brought[features];

@@ -33,10 +33,4 @@ CarriedPlaces carried_by(const Triangle& a, const Triangle& b) {
   return kCarriedBy[same];
 }
 
-FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place) {
-  if (place < 3) return FeaturePair::of(mesh.corners(pair.a)[place], pair.b);
-  if (place < 6) return FeaturePair::of(mesh.corners(pair.b)[place - 3], pair.a);
-  return FeaturePair::of(mesh.edges_of(pair.a)[(place - 6) / 3], mesh.edges_of(pair.b)[(place - 6) % 3]);
-}
-
 }  // namespace cscd

@@ -18,7 +18,11 @@ using CarriedPlaces = std::uint16_t;
 inline constexpr std::size_t kCarriedPlaces = 15;
 inline constexpr CarriedPlaces kAllCarried = (1 << kCarriedPlaces) - 1;
 CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
-FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place);
+inline FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place) {
+  if (place < 3) return FeaturePair::of(mesh.corners(pair.a)[place], pair.b);
+  if (place < 6) return FeaturePair::of(mesh.corners(pair.b)[place - 3], pair.a);
+  return FeaturePair::of(mesh.edges_of(pair.a)[(place - 6) / 3], mesh.edges_of(pair.b)[(place - 6) % 3]);
+}
 
 // Some of them.
 struct CarriedPairs {
@@ -42,7 +46,7 @@ class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;
   // Appends what the pairs of a block have to be tested for.
-  virtual void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const = 0;
+  virtual void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const = 0;
   // Tested in every interval.
   virtual std::span<const FeaturePair> always() const = 0;
 };

@@ -35,22 +35,34 @@ class PairTester : public TrianglePairSink {
     flush();
     if (!options_.assignment) return;
     clock_.enter(Stage::elementary);
-    const std::span<const FeaturePair> always = options_.assignment->always();
-    counts_.feature_pairs += always.size();
-    left_.clear();
-    filter(mesh_, *motion_, always, left_);
-    test_left();
+    test_assigned(options_.assignment->always());
   }
   const PairCounts& counts() const { return counts_; }
 
  private:
   void take(const std::vector<TrianglePair>& block) override {
     clock_.enter(Stage::elementary);
-    carried_.clear();
-    if (options_.assignment)
-      options_.assignment->append(block, carried_);
-    else
+    if (options_.assignment) {
+      assigned_.clear();
+      options_.assignment->append(block, assigned_);
+      test_assigned(assigned_);
+    } else {
+      carried_.clear();
       for (const TrianglePair& pair : block) take_all_carried(pair);
+      test_carried();
+    }
+    clock_.enter(Stage::traversal);
+  }
+
+  // Few of what each two triangles carry, hence one by one.
+  void test_assigned(std::span<const FeaturePair> pairs) {
+    counts_.feature_pairs += pairs.size();
+    left_.clear();
+    filter(mesh_, *motion_, pairs, left_);
+    test_left();
+  }
+
+  void test_carried() {
     for (const CarriedPairs& carried : carried_)
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
@@ -61,7 +73,6 @@ class PairTester : public TrianglePairSink {
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
     if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
     test_left();
-    clock_.enter(Stage::traversal);
   }
 
   void take_all_carried(const TrianglePair& pair) {
@@ -114,6 +125,7 @@ class PairTester : public TrianglePairSink {
   ContactSet* out_ = nullptr;
   PairCounts counts_;
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one may be carried by several
+  std::vector<FeaturePair> assigned_;  // to the block's triangle pairs
   std::vector<FeaturePair> left_;      // of those, what the filter could not prove apart
   FeaturePairSet met_;                 // met in this interval
   bool first_only_ = false;

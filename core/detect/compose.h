@@ -16,7 +16,8 @@ enum class PairFilter { certain_sign, plain_sign, none };
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
   PairFilter filter = PairFilter::certain_sign;
-  // What triangle pairs are tested for; null: all that they carry. Comes without relative boxes.
+  // What triangle pairs are tested for; null: all that they carry. Comes without relative boxes and with the
+  // certain sign.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
 };
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#ifdef __AVX512DQ__
+#ifdef __AVX512F__
 #include <immintrin.h>
 #endif
 
@@ -33,7 +33,7 @@ inline Lane8 absolute(Lane8 a) {
 
 // One bit a lane: where it is not 0.
 inline unsigned bits_of(Sign8 lanes) {
-#ifdef __AVX512DQ__
+#ifdef __AVX512F__
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(lanes), reinterpret_cast<__m512i>(lanes));
 #else
   unsigned bits = 0;
