@@ -51,7 +51,7 @@ class Representatives : public FeatureAssignment {
             ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
           out.push_back(features);
       };
-      // They have no vertex in common.
+      // All fifteen, as the two have no vertex in common, in loops that compilers unroll.
       for (const VertexId v : mesh_.corners(pair.a)) take(FeaturePair::of(v, pair.b));
       for (const VertexId v : mesh_.corners(pair.b)) take(FeaturePair::of(v, pair.a));
       for (const EdgeId e : mesh_.edges_of(pair.a))

@@ -69,50 +69,31 @@ struct Points {
   VectorLanes of_first[2], of_second[2];  // edges, or the face but its third corner, and that and the vertex
 };
 
-unsigned never_coplanar(const VectorLanes& a, const VectorLanes& b, Lane8 area, const VectorLanes& c) {
-  return bits_of(certain_signs(cross(a, b, area), c));
-}
+// Which edges are the first and the second of the pairs at eight places, of whatever is known of edges.
+// Places 0 to 7: what vertices carry, with the edges at the first corner of their face; edge 0 of the first
+// triangle with edges 0 and 1 of the second. Places 8 to 14, and the last again: the other edges.
+constexpr auto kLowFirst = [](const auto& edges) { return shuffled<3, 3, 3, 0, 0, 0, 0, 0>(edges); };
+constexpr auto kLowSecond = [](const auto& edges) { return shuffled<5, 5, 5, 2, 2, 2, 3, 4>(edges); };
+constexpr auto kHighFirst = [](const auto& edges) { return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(edges); };
+constexpr auto kHighSecond = [](const auto& edges) { return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(edges); };
+constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};  // at places 0 to 7
 
-// Places 0 to 7: what vertices carry, and edge 0 of the first with edges 0 and 1 of the second. Of the face
-// of a vertex: the edges at its first corner.
-template <class Lanes>
-Lanes low_first(const Lanes& edges) {
-  return shuffled<3, 3, 3, 0, 0, 0, 0, 0>(edges);
-}
-template <class Lanes>
-Lanes low_second(const Lanes& edges) {
-  return shuffled<5, 5, 5, 2, 2, 2, 3, 4>(edges);
-}
-constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};
 Points low_points(const Features& f) {
   return {{shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
            shuffled<4, 4, 4, 1, 1, 1, 8 + 0, 8 + 0>(f.corner, f.other_end)},
           {shuffled<5, 5, 5, 2, 2, 2, 8 + 3, 8 + 4>(f.corner, f.first_end),
            shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.other_end)}};
 }
-unsigned low_never_coplanar(const Features& f) {
-  return never_coplanar(low_first(f.edge), low_second(f.edge), low_first(f.longest) * low_second(f.longest),
-                        shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
-                            shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end));
+Points high_points(const Features& f) {
+  return {{kHighFirst(f.first_end), kHighFirst(f.other_end)},
+          {kHighSecond(f.first_end), kHighSecond(f.other_end)}};
 }
 
-// Places 8 to 14, and the last again: the other edges.
-template <class Lanes>
-Lanes high_first(const Lanes& edges) {
-  return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(edges);
-}
-template <class Lanes>
-Lanes high_second(const Lanes& edges) {
-  return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(edges);
-}
-Points high_points(const Features& f) {
-  return {{high_first(f.first_end), high_first(f.other_end)},
-          {high_second(f.first_end), high_second(f.other_end)}};
-}
-unsigned high_never_coplanar(const Features& f) {
-  return never_coplanar(high_first(f.edge), high_second(f.edge),
-                        high_first(f.longest) * high_second(f.longest),
-                        high_second(f.first_end) - high_first(f.first_end));
+template <class First, class Second>
+unsigned never_coplanar(const Features& f, const First& first, const Second& second,
+                        const VectorLanes& third) {
+  return bits_of(
+      certain_signs(cross(first(f.edge), second(f.edge), first(f.longest) * second(f.longest)), third));
 }
 
 // `exchanged`: where the second edge comes first.
@@ -133,13 +114,18 @@ unsigned apart_in_plane(const Points& points, Sign8 exchanged, Sign8 vertex_face
 
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places) {
   const Features f = features_of(motion, a, b);
-  unsigned left = places & ~(low_never_coplanar(f) | high_never_coplanar(f) << 8);
+  const unsigned low = never_coplanar(f, kLowFirst, kLowSecond,
+                                      shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
+                                          shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end));
+  const unsigned high =
+      never_coplanar(f, kHighFirst, kHighSecond, kHighSecond(f.first_end) - kHighFirst(f.first_end));
+  unsigned left = places & ~(low | high << 8);
   if ((left & 0xff) != 0) {
-    const Sign8 exchanged = (low_first(f.first) > low_second(f.first)) & ~kVertexFace;
+    const Sign8 exchanged = (kLowFirst(f.first) > kLowSecond(f.first)) & ~kVertexFace;
     left &= ~apart_in_plane(low_points(f), exchanged, kVertexFace);
   }
   if (left >> 8 != 0) {
-    const Sign8 exchanged = high_first(f.first) > high_second(f.first);
+    const Sign8 exchanged = kHighFirst(f.first) > kHighSecond(f.first);
     left &= ~(apart_in_plane(high_points(f), exchanged, Sign8{}) << 8);
   }
   return static_cast<CarriedPlaces>(left);

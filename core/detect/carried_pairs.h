@@ -15,8 +15,7 @@ namespace cscd {
 // corners of the first against the second, 3 to 5 those of the second against the first, 6 + 3 i + k edge i
 // of the first against edge k of the second.
 using CarriedPlaces = std::uint16_t;
-inline constexpr std::size_t kCarriedPlaces = 15;
-inline constexpr CarriedPlaces kAllCarried = (1 << kCarriedPlaces) - 1;
+inline constexpr CarriedPlaces kAllCarried = 0x7fff;
 CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
 inline FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place) {
   if (place < 3) return FeaturePair::of(mesh.corners(pair.a)[place], pair.b);

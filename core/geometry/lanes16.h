@@ -19,7 +19,7 @@ using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
-// The same in all lanes. (Nothing is taken away: to add nothing to -0 would make it 0, which takes time.)
+// The same in all lanes. (x - 0 is x, which compilers know; x + 0 is not where x is -0, so they would add.)
 inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
