@@ -17,12 +17,12 @@ constexpr ElementaryTest kPutOff{"put off",
                                  "everything is undecided",
                                  false,
                                  false,
-                                 [](const MovingVertexFace&, const TestParameters&) -> Answer {
+                                 one_by_one<[](const MovingVertexFace&) -> Answer {
                                    return {Verdict::undecided, 0};
-                                 },
-                                 [](const MovingEdgeEdge&, const TestParameters&) -> Answer {
+                                 }>,
+                                 one_by_one<[](const MovingEdgeEdge&) -> Answer {
                                    return {Verdict::undecided, 0};
-                                 }};
+                                 }>};
 
 scenes::RandomInterval made(std::uint64_t seed, bool torn) {
   return torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);

@@ -23,12 +23,12 @@ constexpr ElementaryTest kLiar{"liar",
                                "",
                                true,
                                true,
-                               [](const MovingVertexFace&, const TestParameters&) -> Answer {
+                               one_by_one<[](const MovingVertexFace&) -> Answer {
                                  return {verdict, 1};
-                               },
-                               [](const MovingEdgeEdge&, const TestParameters&) -> Answer {
+                               }>,
+                               one_by_one<[](const MovingEdgeEdge&) -> Answer {
                                  return {verdict, 1};
-                               }};
+                               }>};
 
 struct Measured {
   std::vector<Query> queries;

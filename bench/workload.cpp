@@ -25,14 +25,14 @@ constexpr ElementaryTest kRecorder{
     "keeps what it is asked",
     false,
     false,
-    [](const MovingVertexFace& q, const TestParameters&) -> Answer {
+    one_by_one<[](const MovingVertexFace& q) -> Answer {
       if (g_vertex_face) g_vertex_face->push_back({{q.vertex, q.corner[0], q.corner[1], q.corner[2]}, {}});
       return {Verdict::apart, 0};
-    },
-    [](const MovingEdgeEdge& q, const TestParameters&) -> Answer {
+    }>,
+    one_by_one<[](const MovingEdgeEdge& q) -> Answer {
       if (g_edge_edge) g_edge_edge->push_back({{q.first[0], q.first[1], q.second[0], q.second[1]}, {}});
       return {Verdict::apart, 0};
-    }};
+    }>};
 
 // A scene's pairs of one kind, interval by interval.
 class ScenePairs {

@@ -39,8 +39,8 @@ ElementaryTest fcl_elementary_test() {
           "FCL 0.7's own vertex-face and edge-edge tests (Pan et al. 2012)",
           false,
           false,
-          plain<MovingVertexFace, fcl_vertex_face>,
-          plain<MovingEdgeEdge, fcl_edge_edge>};
+          one_by_one<fcl_vertex_face>,
+          one_by_one<fcl_edge_edge>};
 }
 
 }  // namespace cscd

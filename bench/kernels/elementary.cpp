@@ -40,14 +40,14 @@ const ElementaryTest kKeep{"keep",
                            "",
                            false,
                            false,
-                           [](const MovingVertexFace& query, const TestParameters&) {
+                           one_by_one<[](const MovingVertexFace& query) {
                              kept->vertex_face.push_back(query);
                              return Answer{Verdict::apart, 0};
-                           },
-                           [](const MovingEdgeEdge& query, const TestParameters&) {
+                           }>,
+                           one_by_one<[](const MovingEdgeEdge& query) {
                              kept->edge_edge.push_back(query);
                              return Answer{Verdict::apart, 0};
-                           }};
+                           }>};
 
 class EverySixteenth : public TrianglePairSink {
  public:

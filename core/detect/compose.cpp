@@ -15,6 +15,20 @@ namespace {
 // More than times are off (2^-50, core/elementary/exact.h): equal ones are all looked at.
 constexpr double kTimeSlack = 0x1p-48;
 
+// Of one kind, to be tested together.
+template <class Query>
+struct Tests {
+  std::vector<FeaturePair> pairs;
+  std::vector<Query> queries;
+  std::vector<Answer> answers;
+
+  void clear() { pairs.clear(), queries.clear(); }
+  void add(const FeaturePair& pair, const Query& query) {
+    pairs.push_back(pair);
+    queries.push_back(query);
+  }
+};
+
 // Where pairs become contacts: triangle pairs in, contacts out.
 class PairTester : public TrianglePairSink {
  public:
@@ -94,8 +108,21 @@ class PairTester : public TrianglePairSink {
 
   void test_left() {
     if (first_only_) return test_first();
-    for (const FeaturePair& pair : left_)
-      if (met_.insert(pair)) test(pair);
+    vertex_faces_.clear(), edge_edges_.clear();
+    for (const FeaturePair& pair : left_) {
+      if (!met_.insert(pair)) continue;
+      if (pair.kind == FeaturePair::Kind::vertex_face)
+        vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
+      else
+        edge_edges_.add(pair, edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}));
+    }
+    test_all(vertex_faces_), test_all(edge_edges_);
+  }
+  template <class Query>
+  void test_all(Tests<Query>& tests) {
+    tests.answers.resize(tests.pairs.size());
+    test_.answer(tests.queries, tests.answers);
+    for (std::size_t i = 0; i < tests.pairs.size(); ++i) take_answer(tests.pairs[i], tests.answers[i]);
   }
   // In the order in which they can touch, up to the earliest contact so far.
   void test_first() {
@@ -110,9 +137,9 @@ class PairTester : public TrianglePairSink {
       order_.pop_back();
     }
   }
-  void test(const FeaturePair& pair) {
+  void test(const FeaturePair& pair) { take_answer(pair, ask(test_, mesh_, *motion_, pair)); }
+  void take_answer(const FeaturePair& pair, const Answer& answer) {
     ++counts_.elementary_tests;
-    const Answer answer = ask(test_, mesh_, *motion_, pair);
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
     if (answer.verdict == Verdict::contact) earliest_ = std::min(earliest_, answer.time);
   }
@@ -128,6 +155,8 @@ class PairTester : public TrianglePairSink {
   std::vector<FeaturePair> assigned_;  // to the block's triangle pairs
   std::vector<FeaturePair> left_;      // of those, what the filter could not prove apart
   FeaturePairSet met_;                 // met in this interval
+  Tests<MovingVertexFace> vertex_faces_;
+  Tests<MovingEdgeEdge> edge_edges_;
   bool first_only_ = false;
   double earliest_ = 1;  // contact so far
   using Bounded = std::pair<double, FeaturePair>;

@@ -51,15 +51,15 @@ const ElementaryTest kRecorder{
     "",
     false,
     false,
-    [](const MovingVertexFace& q, const TestParameters&) {
+    one_by_one<[](const MovingVertexFace& q) {
       ++g_asked[{q.vertex.start.x(), q.corner[0].start.x(), q.corner[1].start.x(), q.corner[2].start.x()}];
       return Answer{Verdict::apart, 0};
-    },
-    [](const MovingEdgeEdge& q, const TestParameters&) {
+    }>,
+    one_by_one<[](const MovingEdgeEdge& q) {
       ++g_asked[{-1, q.first[0].start.x(), q.first[1].start.x(), q.second[0].start.x(),
                  q.second[1].start.x()}];
       return Answer{Verdict::apart, 0};
-    }};
+    }>};
 
 // In the plane z = 0, no two vertices with the same x. Mirrored within the interval, so that the filter
 // proves nothing.
@@ -260,12 +260,12 @@ TEST(Compose, UndecidedPairsAreKept) {
                              "",
                              false,
                              false,
-                             [](const MovingVertexFace&, const TestParameters&) {
+                             one_by_one<[](const MovingVertexFace&) {
                                return Answer{Verdict::undecided, 0.5};
-                             },
-                             [](const MovingEdgeEdge&, const TestParameters&) {
+                             }>,
+                             one_by_one<[](const MovingEdgeEdge&) {
                                return Answer{Verdict::apart, 0};
-                             }};
+                             }>};
   ContactSet out;
   run(mesh, flat(6), mirrored(flat(6)), {pair_of(0, 1)}, out, shrug);
   ASSERT_EQ(out.contacts.size(), 6u);

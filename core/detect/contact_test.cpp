@@ -85,14 +85,14 @@ TEST(Ask, FindsTheFeaturesOfThePair) {
                                 "",
                                 false,
                                 false,
-                                [](const MovingVertexFace& q, const TestParameters&) {
+                                one_by_one<[](const MovingVertexFace& q) {
                                   asked_vf = q;
                                   return Answer{Verdict::contact, 0.25};
-                                },
-                                [](const MovingEdgeEdge& q, const TestParameters&) {
+                                }>,
+                                one_by_one<[](const MovingEdgeEdge& q) {
                                   asked_ee = q;
                                   return Answer{Verdict::undecided, 0.5};
-                                }};
+                                }>};
   const Motion motion(start, end);
   const Answer vf = ask(recorder, mesh, motion, FeaturePair::of(VertexId{4}, TriangleId{0}));
   EXPECT_EQ(vf.time, 0.25);

@@ -21,26 +21,30 @@ Answer filtered_referee(const Query& query) {
   return time ? Answer{Verdict::contact, time->lo} : Answer{Verdict::apart, 0};
 }
 
+template <class Query>
+void all_of_filtered_exact(std::span<const Query> queries, const TestParameters&, std::span<Answer> answers) {
+  filtered_exact(queries, answers);
+}
+
 constexpr std::array kTests = {
-    ElementaryTest{
-        "newton", "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
-        false, plain<MovingVertexFace, newton_vertex_face>, plain<MovingEdgeEdge, newton_edge_edge>},
+    ElementaryTest{"newton",
+                   "non-penetration filter (Tang et al. 2010) and interval Newton, double precision", false,
+                   false, one_by_one<newton_vertex_face>, one_by_one<newton_edge_edge>},
     ElementaryTest{"newton_float", "the same in single precision, coordinates rounded to floats", false,
-                   false, plain<MovingVertexFace, newton_float_vertex_face>,
-                   plain<MovingEdgeEdge, newton_float_edge_edge>},
+                   false, one_by_one<newton_float_vertex_face>, one_by_one<newton_float_edge_edge>},
     ElementaryTest{"filtered_exact",
                    "ours: certified signs in double precision, then in integers of fixed capacity", true,
-                   true, plain<MovingVertexFace, filtered_exact_vertex_face>,
-                   plain<MovingEdgeEdge, filtered_exact_edge_edge>},
+                   true, all_of_filtered_exact, all_of_filtered_exact},
     ElementaryTest{"exact", "the referee: exact arithmetic behind certified filters", true, true,
-                   plain<MovingVertexFace, filtered_referee>, plain<MovingEdgeEdge, filtered_referee>},
+                   one_by_one<filtered_referee<MovingVertexFace>>,
+                   one_by_one<filtered_referee<MovingEdgeEdge>>},
     ElementaryTest{
         "cubic",
         "closed root finding on the coplanarity cubic, distance at the roots (Bridson et al. 2002)",
         false,
         false,
-        cubic_vertex_face,
-        cubic_edge_edge,
+        one_by_one<cubic_vertex_face>,
+        one_by_one<cubic_edge_edge>,
         {.tolerance = 1e-6},
         "distance that counts as touching, in extents of the query"},
     ElementaryTest{
@@ -48,16 +52,16 @@ constexpr std::array kTests = {
         "inclusion-based root finding over (t, u, v) with an error bound (Snyder 1992, Wang et al. 2021)",
         true,
         false,
-        inclusion_vertex_face,
-        inclusion_edge_edge,
+        one_by_one<inclusion_vertex_face>,
+        one_by_one<inclusion_edge_edge>,
         {.tolerance = 1e-6, .steps = 20'000},
         "distance that counts as touching, along each axis, in extents of the query"},
     ElementaryTest{"additive",
                    "conservative advancement by distance over relative displacement (Li et al. 2021)",
                    false,
                    false,
-                   additive_vertex_face,
-                   additive_edge_edge,
+                   one_by_one<additive_vertex_face>,
+                   one_by_one<additive_edge_edge>,
                    {.tolerance = 0.1, .steps = 10'000},
                    "share of the starting distance that counts as touching"},
 };

@@ -45,18 +45,19 @@ struct Count {
   template <class Query>
   void add(const FourMovingPoints& points) {
     const Query query = query_of<Query>(points);
-    const Triple v = triple(query);
+    const Triple v = triple(triple_points(query));
     const BernsteinCubic f = triple_product(v.p, v.q, v.r);
     if (!std::isfinite(f.error)) return;
     const DoublesResult found = decide_in_doubles<Query>(v, f);
     if (found.kind != DoublesResult::contact) return;
     ++proved;
-    const auto time = time_in_pairs(query, v, f, found.low, found.high);
-    if (!time) return;
+    const CertainTime<double> certain =
+        time_in_pairs(triple_points(query), v.sizes(), Cubic(f, 1), found.low, found.high);
+    if (!certain.known) return;
     ++timed;
     const auto truth = exact::first_contact(query);
     ASSERT_TRUE(truth);
-    ASSERT_EQ(*time, truth->lo);
+    ASSERT_EQ(certain.time, truth->lo);
   }
 };
 

@@ -2,114 +2,46 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "core/elementary/filter.h"
+#include "core/elementary/sides.h"
 
 // The stage of `filtered_exact` in double precision: contact decided by certified signs, or not at all.
 //
 // The roots of the coplanarity cubic are enclosed between doubles by certain signs; at each, over its whole
-// enclosure, it is told where the features would touch by the sides of integer_contact.cpp: combinations of
-// components of n = p x q, g = p x r and h = r x q along an axis. Two with certain opposite signs all through
-// an interval prove "apart" there; all with one certain sign prove "contact" at any root in it. After the
-// idea of Bernstein sign classification (Tang, Tong, Wang and Manocha, TOG 2014); what differs: every sign
-// has a forward error bound, and what is not certain is left to exact arithmetic instead of being decided.
+// enclosure, it is told where the features are (sides.h). What is not certain is left to exact arithmetic.
 namespace cscd {
 
-// What both kinds of query are made of; points are coplanar where (p x q) . r = 0.
+// What both kinds of query are made of: vectors p, q and r between points, the first and the last from the
+// same one. The points of a query are coplanar where (p x q) . r = 0.
+template <class Point>
+struct TriplePoints {
+  Point from, p_to, q_from, q_to, r_to;
+};
+inline TriplePoints<MovingPoint> triple_points(const MovingVertexFace& v) {
+  return {v.corner[0], v.corner[1], v.corner[0], v.corner[2], v.vertex};
+}
+inline TriplePoints<MovingPoint> triple_points(const MovingEdgeEdge& e) {
+  return {e.first[0], e.first[1], e.second[0], e.second[1], e.second[0]};
+}
 struct Triple {
   MovingVector p, q, r;
+
+  Sizes<double> sizes() const { return {p.largest(), q.largest(), r.largest()}; }
 };
-inline Triple triple(const MovingVertexFace& v) {
-  return {difference(v.corner[0], v.corner[1]), difference(v.corner[0], v.corner[2]),
-          difference(v.corner[0], v.vertex)};
-}
-inline Triple triple(const MovingEdgeEdge& e) {
-  return {difference(e.first[0], e.first[1]), difference(e.second[0], e.second[1]),
-          difference(e.first[0], e.second[0])};
+inline Triple triple(const TriplePoints<MovingPoint>& v) {
+  return {difference(v.from, v.p_to), difference(v.q_from, v.q_to), difference(v.from, v.r_to)};
 }
 
-enum class Place { outside, inside, unclear };
-
-// A component of a product of two moving vectors over an interval: Bernstein coefficients, and how far each
-// may be off.
-struct Component {
-  double b[3];
-  double error;
-};
-
-// One vector component is off by at most 4 u L: a difference, and two products and a sum between the ends of
-// the interval; L is the largest component at t = 0 and 1. A coefficient has two products of two of those,
-// (2 * 2 * 4 + 2) u L L', and a difference of them, 2 u L L'; the middle one is half of twice as much, and
-// one more sum: 22 u L L' altogether. Sides add up to three of these, at most 4 u more for each. 28 also pays
-// for terms in u^2 and the bound's own roundings. What underflows is less than the last term.
-struct ProvenBounds {
-  static constexpr double component = 28 * kUnitRoundoff, cubic = 1;  // the latter in units of the proven one
-};
-inline constexpr double kUnderflow = 1e-300;
-
-template <class Bounds>
-Component component(const MovingVector& x, const MovingVector& y, int k, double size) {
+inline SeenAlong<double> along(const MovingVector& v, int k) {
   const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-  const auto wedge = [i, j](const Vec3& a, const Vec3& b) { return a[i] * b[j] - a[j] * b[i]; };
-  return {
-      {wedge(x.start, y.start), 0.5 * (wedge(x.start, y.end) + wedge(x.end, y.start)), wedge(x.end, y.end)},
-      Bounds::component * size + kUnderflow};
+  return {{{v.start[i], v.start[j]}, {v.end[i], v.end[j]}}};
 }
-inline Component operator+(const Component& x, const Component& y) {
-  return {{x.b[0] + y.b[0], x.b[1] + y.b[1], x.b[2] + y.b[2]}, x.error + y.error};
-}
-inline Component operator-(const Component& x, const Component& y) {
-  return {{x.b[0] - y.b[0], x.b[1] - y.b[1], x.b[2] - y.b[2]}, x.error + y.error};
-}
-inline Component operator-(const Component& x) {
-  return {{-x.b[0], -x.b[1], -x.b[2]}, x.error};
-}
-
-// The signs that sides certainly have all through an interval.
-struct SideSigns {
-  bool some_positive = false, some_negative = false, all_positive = true, all_negative = true;
-  void add(const Component& side) {
-    const double e = side.error;
-    const bool positive = (side.b[0] > e) & (side.b[1] > e) & (side.b[2] > e);
-    const bool negative = (side.b[0] < -e) & (side.b[1] < -e) & (side.b[2] < -e);
-    some_positive |= positive;
-    some_negative |= negative;
-    all_positive &= positive;
-    all_negative &= negative;
-  }
-  Place place() const {
-    if (some_positive && some_negative) return Place::outside;
-    return all_positive || all_negative ? Place::inside : Place::unclear;
-  }
-};
-
-template <class Query>
-constexpr bool kIsVertexFace = std::is_same_v<Query, MovingVertexFace>;
-
-struct Sizes {
-  double p, q, r;
-};
-
-// Seen along axis k, over the interval at whose ends the vectors are given.
+// Over the interval at whose ends the vectors are given.
 template <class Query, class Bounds>
-Place place_along(const Triple& v, const Sizes& size, int k) {
-  const Component n = component<Bounds>(v.p, v.q, k, size.p * size.q),
-                  g = component<Bounds>(v.p, v.r, k, size.p * size.r),
-                  h = component<Bounds>(v.r, v.q, k, size.r * size.q);
-  SideSigns signs;
-  if (kIsVertexFace<Query>) {
-    signs.add(g);
-    signs.add(h);
-    signs.add(n - g - h);
-  } else {
-    signs.add(-g);
-    signs.add(n + g);
-    signs.add(h);
-    signs.add(n - h);
-  }
-  return signs.place();
+Place<double> place_along(const Triple& v, const Sizes<double>& size, int k) {
+  return place_along<Query, Bounds>(along(v.p, k), along(v.q, k), along(v.r, k), size);
 }
 
 inline MovingVector between(const MovingVector& x, double low, double high) {
@@ -117,37 +49,40 @@ inline MovingVector between(const MovingVector& x, double low, double high) {
 }
 
 template <class Query, class Bounds>
-Place place_between(const Triple& v, const Sizes& size, double low, double high) {
+Place<double> place_between(const Triple& v, const Sizes<double>& size, double low, double high) {
   const Triple part{between(v.p, low, high), between(v.q, low, high), between(v.r, low, high)};
   // Along the axis that shows most of the plane first; the others may only tell in wide intervals.
   int axis = 0;
   part.p.start.cross(part.q.start).cwiseAbs().maxCoeff(&axis);
-  const Place place = place_along<Query, Bounds>(part, size, axis);
-  if (place != Place::unclear || high - low < 0x1p-20) return place;
+  const Place<double> place = place_along<Query, Bounds>(part, size, axis);
+  if (place.outside || place.inside || high - low < 0x1p-20) return place;
   for (const int other : {axis == 2 ? 0 : axis + 1, axis == 0 ? 2 : axis - 1})
-    if (place_along<Query, Bounds>(part, size, other) == Place::outside) return Place::outside;
-  return Place::unclear;
+    if (place_along<Query, Bounds>(part, size, other).outside) return {.outside = true, .inside = false};
+  return place;
 }
 
 // The coplanarity cubic with one bound for all that is computed from it: 10 u times the largest coefficient
 // pays for `at` and for control points of a part of the interval (three levels of (1 - t) x + t y, each off
 // by 3 u).
-struct Cubic {
-  BernsteinCubic f;
-  double error;
+template <class Real>
+struct CubicOf {
+  BernsteinCubicOf<Real> f;
+  Real error;
 
-  Cubic(const BernsteinCubic& cubic, double scale)
+  CubicOf(const BernsteinCubicOf<Real>& cubic, double scale)
       : f(cubic),
         error(scale * cubic.error + scale * 10 * kUnitRoundoff *
-                                        std::max(std::max(std::abs(cubic.c[0]), std::abs(cubic.c[1])),
-                                                 std::max(std::abs(cubic.c[2]), std::abs(cubic.c[3])))) {}
-  int sign(double value) const { return (value > error) - (value < -error); }
-  double at(double t) const { return f.at(t); }
-  double slope(double t) const {
-    const double s = 1 - t;
+                                        larger(larger(absolute(cubic.c[0]), absolute(cubic.c[1])),
+                                               larger(absolute(cubic.c[2]), absolute(cubic.c[3])))) {}
+  int sign(Real value) const { return (value > error) - (value < -error); }
+  Real at(Real t) const { return f.at(t); }
+  Real slope(Real t) const {
+    const Real s = 1 - t;
     return 3 * (s * s * (f.c[1] - f.c[0]) + 2 * s * t * (f.c[2] - f.c[1]) + t * t * (f.c[3] - f.c[2]));
   }
 };
+
+using Cubic = CubicOf<double>;
 
 enum class Roots { none, one, unclear };
 
@@ -262,17 +197,17 @@ struct DoublesResult {
 // `cubic` is the coplanarity cubic with a finite error.
 template <class Query, class Bounds = ProvenBounds>
 DoublesResult decide_in_doubles(const Triple& v, const BernsteinCubic& cubic) {
-  const Sizes size{v.p.largest(), v.q.largest(), v.r.largest()};
+  const Sizes<double> size = v.sizes();
   for (int k = 0; k < 3; ++k)
-    if (place_along<Query, Bounds>(v, size, k) == Place::outside) return {DoublesResult::apart};
+    if (place_along<Query, Bounds>(v, size, k).outside) return {DoublesResult::apart};
   const Cubic f(cubic, Bounds::cubic);
   Parts parts = parts_with_roots(f);
   for (int i = 0; i < parts.count; ++i) {
     Part& part = parts.at[i];
     if (part.one_root) narrow(f, part);
-    const Place place = place_between<Query, Bounds>(v, size, part.low, part.high);
-    if (place == Place::outside) continue;
-    if (place == Place::unclear || !part.one_root) return {DoublesResult::unclear};
+    const Place<double> place = place_between<Query, Bounds>(v, size, part.low, part.high);
+    if (place.outside) continue;
+    if (!place.inside || !part.one_root) return {DoublesResult::unclear};
     return {DoublesResult::contact, part.low, part.high};
   }
   return {DoublesResult::apart};

@@ -9,11 +9,13 @@
 // Nothing allocates before the last.
 #include "core/elementary/filtered_exact.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/elementary/contact_time.h"
 #include "core/elementary/doubles_stage.h"
 #include "core/elementary/exact.h"
+#include "core/elementary/exact_lanes.h"
 #include "core/elementary/integer_contact.h"
 #include "core/elementary/relative_box.h"
 #include "core/elementary/unit_scale.h"
@@ -52,7 +54,7 @@ Decision time_by_integers(const Query& query, const DoublesResult& contact) {
 template <class Query>
 Decision decide_beyond_range(const Query& query) {
   const Query scaled = axes_scaled_to_unit(query);
-  const Triple v = triple(scaled);
+  const Triple v = triple(triple_points(scaled));
   const BernsteinCubic f = triple_product(v.p, v.q, v.r);
   if (certain_sign(f) != 0) return {kApart, ExactStage::filter};
   if (!std::isfinite(f.error)) return by_integers(query);
@@ -63,16 +65,30 @@ Decision decide_beyond_range(const Query& query) {
 
 template <class Query>
 Decision decide(const Query& query) {
-  const Triple v = triple(query);
+  const TriplePoints<MovingPoint> points = triple_points(query);
+  const Triple v = triple(points);
   const BernsteinCubic f = triple_product(v.p, v.q, v.r);
   if (certain_sign(f) != 0 || relative_boxes_apart(query)) return {kApart, ExactStage::filter};
   if (!std::isfinite(f.error)) return decide_beyond_range(query);
   const DoublesResult found = decide_in_doubles<Query>(v, f);
   if (found.kind == DoublesResult::apart) return {kApart, ExactStage::doubles};
   if (found.kind == DoublesResult::unclear) return by_integers(query);
-  if (const auto time = time_in_pairs(query, v, f, found.low, found.high))
-    return {{Verdict::contact, *time}, ExactStage::doubles};
-  return time_by_integers(query, found);
+  const CertainTime<double> certain =
+      time_in_pairs(points, v.sizes(), Cubic(f, ProvenBounds::cubic), found.low, found.high);
+  if (!certain.known) return time_by_integers(query, found);
+  return {{Verdict::contact, certain.time}, ExactStage::doubles};
+}
+
+constexpr std::size_t kWorthLanes = 2;
+
+template <class Query>
+void decide_all(std::span<const Query> queries, std::span<Answer> answers) {
+  for (std::size_t first = 0; first < queries.size(); first += kLanes) {
+    const std::span<const Query> block = queries.subspan(first, std::min(kLanes, queries.size() - first));
+    const LaneAnswers found = block.size() < kWorthLanes ? LaneAnswers{} : decide_in_lanes(block);
+    for (std::size_t l = 0; l < block.size(); ++l)
+      answers[first + l] = (found.decided >> l & 1) != 0 ? found.answer[l] : decide(block[l]).answer;
+  }
 }
 
 }  // namespace
@@ -82,6 +98,12 @@ Answer filtered_exact_vertex_face(const MovingVertexFace& query) {
 }
 Answer filtered_exact_edge_edge(const MovingEdgeEdge& query) {
   return decide(query).answer;
+}
+void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer> answers) {
+  decide_all(queries, answers);
+}
+void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers) {
+  decide_all(queries, answers);
 }
 ExactStage filtered_exact_stage(const MovingVertexFace& query) {
   return decide(query).stage;

@@ -9,6 +9,7 @@
 #include "core/elementary/brute_referee.h"
 #include "core/elementary/doubles_stage.h"
 #include "core/elementary/exact.h"
+#include "core/elementary/exact_lanes.h"
 #include "core/elementary/test_queries.h"
 
 namespace cscd {
@@ -60,16 +61,31 @@ struct Family {
   }
 };
 
+// Many at once have the answers that they have one by one.
+template <class Query>
+void expect_same_of_all(const std::vector<FourMovingPoints>& points) {
+  std::vector<Query> queries;
+  for (const FourMovingPoints& p : points) queries.push_back(query_of<Query>(p));
+  std::vector<Answer> answers(queries.size());
+  filtered_exact(queries, answers);
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    ASSERT_TRUE(same(answers[i], ask(queries[i]))) << text(points[i]);
+}
+
 class FilteredExact : public testing::Test {
  protected:
   // Both kinds of query with the points that `make_points` gives.
   template <class MakePoints>
   void compare(int count, MakePoints&& make_points) {
+    std::vector<FourMovingPoints> all;
     for (int i = 0; i < count && !HasFatalFailure(); ++i) {
       const FourMovingPoints points = make_points(i);
       vf_.add<MovingVertexFace>(points);
       ee_.add<MovingEdgeEdge>(points);
+      all.push_back(points);
     }
+    expect_same_of_all<MovingVertexFace>(all);
+    expect_same_of_all<MovingEdgeEdge>(all);
   }
   QueryMaker make_{11};
   Family vf_, ee_;
@@ -289,6 +305,38 @@ TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
   EXPECT_EQ(ask(stays).verdict, Verdict::apart);
 }
 
+// Side by side, all that meets inside is decided, and most of what does not; and no number of queries is
+// left over.
+TEST_F(FilteredExact, DecidesMostQueriesSideBySide) {
+  const auto decided = [&](auto&& make_query) {
+    std::size_t count = 0;
+    for (int i = 0; i < 500; ++i) {
+      std::vector<decltype(make_query())> queries;
+      for (int l = 0; l <= i % 8; ++l) queries.push_back(make_query());
+      const LaneAnswers found = decide_in_lanes(queries);
+      for (std::size_t l = 0; l < queries.size(); ++l)
+        if ((found.decided >> l & 1) != 0) {
+          ++count;
+          EXPECT_TRUE(same(found.answer[l], ask(queries[l])));
+        }
+    }
+    return count;
+  };
+  constexpr std::size_t kQueries = 500 / 8 * 36 + 1 + 2 + 3 + 4;
+  EXPECT_GT(decided([&] { return query_of<MovingVertexFace>(make_.any()); }), kQueries * 4 / 10);
+  EXPECT_GT(decided([&] { return query_of<MovingEdgeEdge>(make_.any()); }), kQueries * 4 / 10);
+  const auto inside = [&] { return make_.uniform(0.01, 0.49); };
+  const auto time = [&] { return make_.uniform(0, 1); };
+  EXPECT_GT(decided([&] {
+              return query_of<MovingVertexFace>(test::vertex_meets_face(make_, time(), inside(), inside()));
+            }),
+            kQueries * 9 / 10);
+  EXPECT_GT(decided([&] {
+              return query_of<MovingEdgeEdge>(test::edge_meets_edge(make_, time(), inside(), inside()));
+            }),
+            kQueries * 9 / 10);
+}
+
 // The tests of the tests: with one bound gone, the stage in double precision claims what is not so, and the
 // families above would show it.
 struct NoComponentBound : ProvenBounds {
@@ -317,7 +365,7 @@ int wrong_claims(QueryMaker& make) {
       if (std::is_same_v<Query, MovingEdgeEdge>) p = {p[1], p[2], p[0], p[3]};
     }
     const Query query = query_of<Query>(p);
-    const Triple v = triple(query);
+    const Triple v = triple(triple_points(query));
     const BernsteinCubic f = triple_product(v.p, v.q, v.r);
     if (!std::isfinite(f.error)) continue;
     const DoublesResult found = decide_in_doubles<Query, Bounds>(v, f);

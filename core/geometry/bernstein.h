@@ -22,16 +22,19 @@ struct MovingVector {
 };
 
 // Bernstein coefficients on [0, 1], each within `error` of the exact one for the exact input. `error` is
-// infinite where nothing is known (underflow or overflow in between).
-struct BernsteinCubic {
-  double c[4];
-  double error;
+// infinite where nothing is known (underflow or overflow in between). Of one cubic or of several side by
+// side.
+template <class Real>
+struct BernsteinCubicOf {
+  Real c[4];
+  Real error;
 
-  double at(double t) const {
-    const double s = 1 - t;
+  Real at(Real t) const {
+    const Real s = 1 - t;
     return s * s * (s * c[0] + 3 * t * c[1]) + t * t * (3 * s * c[2] + t * c[3]);
   }
 };
+using BernsteinCubic = BernsteinCubicOf<double>;
 
 // Below kTinyProduct, products in between may be subnormal and lose more than a relative rounding; above
 // kHugeProduct they may overflow.

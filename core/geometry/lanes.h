@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #ifdef __AVX512F__
@@ -15,7 +16,18 @@ inline constexpr std::size_t kLanes = 8;
 using Lane8 = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Sign8 = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
-// Of one number too, for code that is written once for both.
+// For code that is written once for one number and for eight: what a comparison gives.
+template <class Real>
+struct ComparisonOf {
+  using Mask = bool;
+};
+template <>
+struct ComparisonOf<Lane8> {
+  using Mask = Sign8;
+};
+template <class Real>
+using MaskOf = typename ComparisonOf<Real>::Mask;
+
 template <class Real>
 Real smaller(Real a, Real b) {
   return a < b ? a : b;
@@ -30,6 +42,21 @@ inline double absolute(double a) {
 inline Lane8 absolute(Lane8 a) {
   return reinterpret_cast<Lane8>(reinterpret_cast<Sign8>(a) & 0x7fff'ffff'ffff'ffff);
 }
+
+#ifdef __FMA__
+// a b + c, rounded once.
+inline double rounded_once(double a, double b, double c) {
+  return std::fma(a, b, c);
+}
+inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
+#ifdef __AVX512F__
+  return _mm512_maskz_fmadd_pd(0xff, a, b, c);
+#else
+  for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::fma(a[l], b[l], c[l]);
+  return a;
+#endif
+}
+#endif
 
 // One bit a lane: where it is not 0.
 inline unsigned bits_of(Sign8 lanes) {

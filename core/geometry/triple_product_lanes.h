@@ -75,11 +75,7 @@ inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
   return cross(a, b, a.largest_component() * b.largest_component());
 }
 
-// Eight BernsteinCubics.
-struct BernsteinLanes {
-  Lane8 c[4];
-  Lane8 error;
-};
+using BernsteinLanes = BernsteinCubicOf<Lane8>;
 
 // (a x b) . c. The components of c may be off by `c_slack`.
 inline BernsteinLanes triple_products(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
