@@ -81,7 +81,7 @@ class PairTester : public TrianglePairSink {
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
     if (options_.filter == PairFilter::certain_sign)
-      filter(mesh_, *motion_, carried_, left_);
+      filter(mesh_, *motion_, carried_, test_.single_precision_first, left_);
     else
       for (const CarriedPairs& carried : carried_)
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/detect/carried_filter.h"
+#include "core/detect/carried_look.h"
 #include "core/elementary/filter.h"
 #include "core/geometry/triple_product_lanes.h"
 
@@ -95,11 +96,14 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 }
 
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
-            std::vector<FeaturePair>& left) {
+            bool single_precision_first, std::vector<FeaturePair>& left) {
   for (const auto& [pair, places] : pairs) {
-    const CarriedPairs rest = {pair,
-                               not_filtered(motion, mesh.corners(pair.a), mesh.corners(pair.b), places)};
-    for_each_carried(mesh, rest, [&](const FeaturePair& features) { left.push_back(features); });
+    const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
+    std::optional<CarriedPlaces> rest;
+    if (single_precision_first) rest = not_filtered_at_a_look(motion, a, b, places);
+    if (!rest) rest = not_filtered(motion, a, b, places);
+    for_each_carried(mesh, CarriedPairs{pair, *rest},
+                     [&](const FeaturePair& features) { left.push_back(features); });
   }
 }
 

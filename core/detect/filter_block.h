@@ -12,9 +12,10 @@ namespace cscd {
 // (its scalar twins) say.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
-// The same of what pairs of triangles carry, all that two of them do at once.
+// The same of what pairs of triangles carry, all that two of them do at once; in single precision first, if
+// so wished: sooner, and nothing else.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
-            std::vector<FeaturePair>& left);
+            bool single_precision_first, std::vector<FeaturePair>& left);
 
 // Drops pairs by the signs of rounded coefficients, as published (Tang et al. 2010): an ablation that may
 // drop features that touch. Pair by pair.

@@ -78,8 +78,11 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
                           : !never_coplanar(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
         });
         filter(mesh, motion, features, expected);
-        filter(mesh, motion, std::span(&pairs, 1), left);
-        ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
+        for (const bool single_precision_first : {false, true}) {
+          left.clear();
+          filter(mesh, motion, std::span(&pairs, 1), single_precision_first, left);
+          ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
+        }
         dropped += features.size() - left.size();
         kept += left.size();
       }

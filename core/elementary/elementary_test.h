@@ -38,6 +38,9 @@ struct ElementaryTest {
   AskAll<MovingEdgeEdge> ask_edge_edges;
   TestParameters parameters = {};
   std::string_view tolerance = "";  // what the tolerance is
+  // Whether what goes before it (core/detect/filter_block.h) may be told in single precision, where that says
+  // the same: published tests have their filter in double precision.
+  bool single_precision_first = false;
 
   void answer(std::span<const MovingVertexFace> queries, std::span<Answer> answers) const {
     ask_vertex_faces(queries, parameters, answers);

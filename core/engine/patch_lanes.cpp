@@ -1,25 +1,10 @@
 #include "core/engine/patch_lanes.h"
 
-// Rounding. u = 2^-24; every coordinate is off by at most d = `error`, which is at least u times the largest.
-//
-// Bounds: a sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack from
-// it rounds by at most as much again and a little. So 7 d is enough for all directions.
-//
-// Orientation: (e1 x e2) . c with edges e1, e2 of the triangle and c from the viewpoint to a corner. A
-// difference of coordinates is off by 2 d and rounds by u of itself. Let A, B, C be the largest computed
-// components of the three and A' = A + 2 d, and so on. Every coefficient is a sum of products whose absolute
-// values sum to 6 A B C (18 for the middle two, which are three times the Bernstein coefficients). Errors of
-// the factors change it by at most
-//   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C'.
-// Then come the roundings behind each product. Where a product and a sum are rounded apart, the 6 have 28 in
-// all (2 in `cross`, then 3, 3, 2), the 18 of the middle two 137 (12 have 2 to 4 in `cross`, then 6, 6, 5;
-// the other 6 have 2, then 4, 3, 2); else 21 and 111. That is less than 8.1 each, hence at most
-// 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products might
-// underflow; nothing is certain then.
+// Rounding of bounds. u = 2^-24; every coordinate is off by at most d = `error`, which is at least u times
+// the largest. A sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack
+// from it rounds by at most as much again and a little. So 7 d is enough for all directions.
 namespace cscd::fast {
 namespace {
-
-constexpr float kTiny = 1e-30F;
 
 using Float8 = float __attribute__((vector_size(32)));
 
@@ -148,42 +133,16 @@ namespace {
   out.longest[1] = largest_component(b);
 }
 
-// What bounds the rounding, by the reach from the viewpoint: `apart` + reach `sloped`. `area`: the product of
-// the edges' largest components.
-struct Rounding {
-  Float16 area, apart, sloped;
-};
-[[gnu::always_inline]] inline Rounding rounding_of(const PatchNormals& normals, float error) {
-  const Float16 a = normals.longest[0] + all_lanes(2 * error), b = normals.longest[1] + all_lanes(2 * error);
-  const Float16 area = a * b, errors = all_lanes(12.1F * error);
-  return {area, errors * area, product_plus(errors, a + b, all_lanes(68 * 0x1p-24F) * area)};
-}
-
 [[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const PatchLanes& corner,
-                                         const Rounding& rounding, const Viewpoint& viewpoint, float error) {
+                                         const Rounding16& rounding, const Viewpoint& viewpoint,
+                                         float error) {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
-  const auto dot = [&](int n, int end) {
-    const Float16* const normal = normals.control[n];
-    return product_plus(normal[2], c.at[end][2],
-                        product_plus(normal[1], c.at[end][1], normal[0] * c.at[end][0]));
-  };
-  const auto plus_dot = [&](Float16 sum, int n, int end) {
-    for (int i = 0; i < 3; ++i) sum = product_plus(normals.control[n][i], c.at[end][i], sum);
-    return sum;
-  };
-  const Float16 reach = largest_component(c) + all_lanes(2 * error);
-  const Float16 bound = product_plus(reach, rounding.sloped, rounding.apart), bound3 = 3 * bound;
-
-  const Float16 c0 = dot(0, 0), c1 = plus_dot(dot(1, 0), 0, 1), c2 = plus_dot(dot(1, 1), 2, 0),
-                c3 = dot(2, 1);
-  const unsigned known =
-      above(rounding.area, all_lanes(kTiny)) & above(rounding.area * reach, all_lanes(kTiny));
-  const unsigned positive = above(c0, bound) & above(c1, bound3) & above(c2, bound3) & above(c3, bound);
-  if ((positive & known) == 0xffffU) return {0xffff, 0};  // as nearly always
-  const unsigned negative = above(-bound, c0) & above(-bound3, c1) & above(-bound3, c2) & above(-bound, c3);
-  return {static_cast<Mask16>(positive & known), static_cast<Mask16>(negative & known)};
+  const TripleProducts16 products = triple_products(normals.control, c, rounding, error);
+  const Mask16 positive = products.positive();
+  if (positive == 0xffff) return {0xffff, 0};  // as nearly always
+  return {positive, products.negative()};
 }
 
 }  // namespace
@@ -194,7 +153,7 @@ void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& nor
 
 Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
                   float error) {
-  return look(normals, corner, rounding_of(normals, error), viewpoint, error);
+  return look(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error), viewpoint, error);
 }
 
 Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
@@ -209,7 +168,7 @@ void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* 
   PatchNormals normals;
   PatchLanes corner;
   make_normals(lanes, patch, normals, corner);
-  const Rounding rounding = rounding_of(normals, error);
+  const Rounding16 rounding = rounding_of(normals.longest[0], normals.longest[1], error);
   for (std::size_t c = 0; c < kCovers; ++c)
     out[c] = from[c] ? look(normals, corner, rounding, *from[c], error) : Signs{};
 }

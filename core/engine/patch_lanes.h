@@ -4,36 +4,15 @@
 
 #include "core/engine/local_positions.h"
 #include "core/engine/patches.h"
-#include "core/geometry/lanes16.h"
+#include "core/geometry/triple_product16.h"
 
 // What is computed of one patch at a time, all of its vertices and triangles side by side.
 namespace cscd::fast {
 
-// The vertices of a patch: [end][axis].
-struct PatchLanes {
-  Float16 at[2][3];
-};
+// The vertices of a patch.
+using PatchLanes = VectorLanes16;
 PatchLanes load(std::span<const LocalPositions::Record> records,
                 const std::array<std::int32_t, kLanes16>& vertex);
-
-// Of each vertex, over both ends and all axes.
-inline Float16 largest_component(const PatchLanes& v) {
-  const auto largest = [&](int end) {
-    return larger_size(larger_size(v.at[end][0], v.at[end][1]), v.at[end][2]);
-  };
-  return larger_size(largest(0), largest(1));
-}
-
-// a(t) x b(t): control vectors on [0, 1], the middle one twice.
-inline void cross(const PatchLanes& a, const PatchLanes& b, Float16 (&control)[3][3]) {
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    control[0][i] = product_minus(a.at[0][j], b.at[0][k], a.at[0][k] * b.at[0][j]);
-    const Float16 less = product_plus(a.at[0][k], b.at[1][j], a.at[1][k] * b.at[0][j]);
-    control[1][i] = product_plus(a.at[0][j], b.at[1][k], product_minus(a.at[1][j], b.at[0][k], less));
-    control[2][i] = product_minus(a.at[1][j], b.at[1][k], a.at[1][k] * b.at[1][j]);
-  }
-}
 
 // Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
 inline constexpr std::size_t kDirections = 8;

@@ -4,19 +4,17 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "core/engine/patch_lanes.h"
 
-// Rounding, as in patch_lanes.cpp: edges are off by 2 d + u of themselves. A component of a control vector is
-// a sum of two products (four for the middle one, which is twice the control vector) of edges not longer than
-// A and B, hence off by 4 d (A' + B') + 10.5 u A' B'; its dot product with the direction, which is exact by
-// definition and has components up to D, by D (12 d (A' + B') + 49.5 u A' B'). 12.2 and 50 also pay for the
-// bound's own roundings. A component of `side`, of a direction with components up to D and a sum
-// of edges up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by
-// at most 12 u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge
-// with components up to A is then off by less than 120 sqrt(3) u A of that, by roundings and by 2 d:
-// kOffSide.
+// Rounding, as in triple_product16.h: edges are off by 2 d + u of themselves. A component of a control vector
+// is a sum of two products (four for the middle one, which is twice the control vector) of edges not longer
+// than A and B, hence off by 4 d (A' + B') + 10.5 u A' B'; its dot product with the direction, which is exact
+// by definition and has components up to D, by D (12 d (A' + B') + 49.5 u A' B'). 12.2 and 50 also pay for
+// the bound's own roundings. A component of `side`, of a direction with components up to D and a sum of edges
+// up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by at most 12
+// u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge with
+// components up to A is then off by less than 120 sqrt(3) u A of that, by roundings and by 2 d: kOffSide.
 namespace cscd::fast {
 namespace {
 
@@ -24,15 +22,7 @@ constexpr float kTiny = 1e-30F;
 constexpr float kLeastSide = 0.1F, kOffSide = 1e-4F;
 
 float sum(Float16 v) {
-  using Float8 = float __attribute__((vector_size(32)));
-  using Float4 = float __attribute__((vector_size(16)));
-  Float8 eight[2];
-  std::memcpy(&eight, &v, sizeof v);
-  eight[0] += eight[1];
-  Float4 four[2];
-  std::memcpy(&four, &eight[0], sizeof four);
-  four[0] += four[1];
-  return (four[0][0] + four[0][1]) + (four[0][2] + four[0][3]);
+  return folded(v, [](auto a, auto b) { return a + b; });
 }
 
 // Of rings that are repeated over all lanes: the lane of the vertex after each, by length of the ring.

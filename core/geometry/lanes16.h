@@ -90,6 +90,20 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
+// All lanes by an operation that takes two vectors of any length, or two numbers: halves first.
+template <class Operation>
+float folded(Float16 v, const Operation& operation) {
+  using Float8 = float __attribute__((vector_size(32)));
+  using Float4 = float __attribute__((vector_size(16)));
+  Float8 eight[2];
+  std::memcpy(&eight, &v, sizeof v);
+  eight[0] = operation(eight[0], eight[1]);
+  Float4 four[2];
+  std::memcpy(&four, &eight[0], sizeof four);
+  four[0] = operation(four[0], four[1]);
+  return operation(operation(four[0][0], four[0][1]), operation(four[0][2], four[0][3]));
+}
+
 // Lane l of the result is lane place[l] of v.
 inline Float16 permuted(Float16 v, const Places16& place) {
 #ifdef __AVX512F__

@@ -1,0 +1,174 @@
+#include "core/detect/carried_look.h"
+
+#include "core/geometry/triple_product16.h"
+
+// Whatever is certain here is what the filter says in double precision: a sign that exceeds its bound here
+// exceeds the much smaller one there, and where two certain signs are opposite here, nothing is certain
+// there. So it does not matter which points vectors start from or which edge comes first, as long as the
+// cubics and the directions are the same but for their sign.
+namespace cscd {
+namespace {
+
+// The corners of the first triangle, then those of the second, seen from the first of all at either end.
+struct Corners {
+  // Rows of four: x, y, z and 0 of four corners, then of two and of none.
+  struct End {
+    Float16 first, last;
+  } end[2];
+  float error;  // of a coordinate: u of the largest, and what the difference in doubles lost
+};
+
+using Double4 = double __attribute__((vector_size(32)));
+using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
+
+Double4 load(const Vec3& p) {
+  return Double4{p[0], p[1], p[2], 0};
+}
+Float8 joined(Float4 a, Float4 b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+Float16 joined(Float8 a, Float8 b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+Corners::End load(std::span<const Vec3> x, const Triangle& a, const Triangle& b) {
+  const Double4 from = load(x[+a[0]]);
+  const auto seen = [&](VertexId v) { return __builtin_convertvector(load(x[+v]) - from, Float4); };
+  const Float8 last = joined(seen(b[1]), seen(b[2]));
+  return {joined(joined(Float4{}, seen(a[1])), joined(seen(a[2]), seen(b[0]))), joined(last, last)};
+}
+
+Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b) {
+  Corners c{{load(motion.start(), a, b), load(motion.end(), a, b)}, 0};
+  const float largest = folded(
+      larger_size(larger_size(c.end[0].first, c.end[0].last), larger_size(c.end[1].first, c.end[1].last)),
+      [](auto x, auto y) { return x < y ? y : x; });
+  c.error = 1.01F * 0x1p-24F * largest;
+  return c;
+}
+
+// Of one corner a lane; of the sixteen lanes, the first fifteen are places.
+template <int... kCorner>
+VectorLanes16 points(const Corners& c) {
+  VectorLanes16 out;
+  for (int end = 0; end < 2; ++end) {
+    const auto [first, last] = c.end[end];
+    out.at[end][0] = __builtin_shufflevector(first, last, 4 * kCorner...);
+    out.at[end][1] = __builtin_shufflevector(first, last, 4 * kCorner + 1 ...);
+    out.at[end][2] = __builtin_shufflevector(first, last, 4 * kCorner + 2 ...);
+  }
+  return out;
+}
+VectorLanes16 operator-(const VectorLanes16& to, const VectorLanes16& from) {
+  VectorLanes16 out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
+  return out;
+}
+
+constexpr Int16 kVertexFace = {-1, -1, -1, -1, -1, -1};
+VectorLanes16 chosen(const VectorLanes16& vertex_face, const VectorLanes16& edge_edge) {
+  VectorLanes16 out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = kVertexFace ? vertex_face.at[end][i] : edge_edge.at[end][i];
+  return out;
+}
+
+// Where edge i of the first triangle and edge k of the second, in the triangles' order, run both from their
+// vertex with the smaller number or both to it: 1, else -1.
+Float16 alike(const Triangle& a, const Triangle& b) {
+  const auto up = [](const Triangle& t, std::size_t i) { return t[i] < t[(i + 1) % 3] ? 1.0F : -1.0F; };
+  const float a0 = up(a, 0), a1 = up(a, 1), a2 = up(a, 2), b0 = up(b, 0), b1 = up(b, 1), b2 = up(b, 2);
+  return Float16{1, 1, 1, 1, 1, 1, a0, a0, a0, a1, a1, a1, a2, a2, a2, a2} *
+         Float16{1, 1, 1, 1, 1, 1, b0, b1, b2, b0, b1, b2, b0, b1, b2, b2};
+}
+
+// Of the test in sideways.h: certainly apart, and certainly not found apart.
+struct Sideways {
+  Mask16 apart, kept;
+};
+
+// Rounding. d = `error` is at least u times the largest coordinate, so that a difference of two is off by
+// D = 4 d at most and not longer than S; twice its mean by 3 D. A difference of two of these is off by 8 D,
+// of that and one of them by 14 D = 56 d, the most of what stands in `along`. Call that e, and A and B the
+// largest components of the first two of `along`, X of that which m is across. Then the normal is off by
+//   2 e (A + B) + 4.1 u A B,
+// m, which is not larger than 4 A B X, by twice that times X, 4.1 e A B and 8.2 u A B X, and a projection by
+//   3 S of that, 12.1 A B X D, and 36 u A B X S for its own roundings.
+// Two projections and their difference, with u A B <= u (A + B)^2 / 4, u (A + B) <= 0.22 e and X <= 6 S: less
+// than 35 e S (X (A + B) + A B). A, B, S and X are meant with what they may be off by. 36 also pays for the
+// bound's own roundings.
+Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
+  const Float16 slack = all_lanes(56 * error);
+  Float16 along[3][3];
+  for (int i = 0; i < 3; ++i) {
+    const auto twice = [&](int k) { return p[k].at[0][i] + p[k].at[1][i]; };
+    along[0][i] = twice(0);
+    along[1][i] = kVertexFace ? twice(1) : twice(2) - twice(1);
+    along[2][i] = along[1][i] - alike * along[0][i];
+  }
+  const auto cross = [](const Float16(&a)[3], const Float16(&b)[3], Float16(&out)[3]) {
+    for (int i = 0; i < 3; ++i)
+      out[i] = product_minus(a[(i + 1) % 3], b[(i + 2) % 3], a[(i + 2) % 3] * b[(i + 1) % 3]);
+  };
+  const auto size = [&](const Float16(&v)[3]) { return larger_size(larger_size(v[0], v[1]), v[2]) + slack; };
+  Float16 normal[3];
+  cross(along[0], along[1], normal);
+  const Float16 a = size(along[0]), b = size(along[1]);
+  const Float16 most =
+      larger(larger(largest_component(p[0]), largest_component(p[1])), largest_component(p[2]));
+  const Float16 scale = 36 * slack * (most + slack);
+
+  unsigned apart = 0, kept = 0xffff;
+  for (const Float16(&edge)[3] : along) {
+    Float16 m[3];
+    cross(normal, edge, m);
+    const Float16 bound = scale * (size(edge) * (a + b) + a * b);
+    unsigned above_all = 0xffff, below_all = 0xffff, not_above = 0, not_below = 0;
+    for (int end = 0; end < 2; ++end) {
+      const auto at = [&](int k) {
+        const Float16(&x)[3] = p[k].at[end];
+        return product_plus(m[2], x[2], product_plus(m[1], x[1], m[0] * x[0]));
+      };
+      const Float16 zero = {}, x = at(0), y = at(1), z = at(2);
+      const Float16 in_first = kVertexFace ? y : zero, in_second = kVertexFace ? z : y;
+      const Float16 over = smaller(in_second, z) - larger(larger(zero, x), in_first);
+      const Float16 under = smaller(smaller(zero, x), in_first) - larger(in_second, z);
+      above_all &= above(over, bound), below_all &= above(under, bound);
+      not_above |= above(-bound, over), not_below |= above(-bound, under);
+    }
+    const unsigned known = above(bound, all_lanes(1e-30F));
+    apart |= (above_all | below_all) & known;
+    kept &= not_above & not_below & known;
+  }
+  return {static_cast<Mask16>(apart), static_cast<Mask16>(kept)};
+}
+
+}  // namespace
+
+std::optional<CarriedPlaces> not_filtered_at_a_look(const Motion& motion, const Triangle& a,
+                                                    const Triangle& b, CarriedPlaces places) {
+  const Corners c = corners_of(motion, a, b);
+  const VectorLanes16 from = points<3, 3, 3, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2>(c),
+                      second = points<5, 5, 5, 2, 2, 2, 4, 5, 3, 4, 5, 3, 4, 5, 3, 3>(c),
+                      second_from = points<3, 3, 3, 0, 0, 0, 3, 4, 5, 3, 4, 5, 3, 4, 5, 5>(c);
+  const VectorLanes16 p = points<4, 4, 4, 1, 1, 1, 1, 1, 1, 2, 2, 2, 0, 0, 0, 0>(c) - from,
+                      q = second - second_from,
+                      r = points<0, 1, 2, 3, 4, 5, 3, 4, 5, 3, 4, 5, 3, 4, 5, 5>(c) - from;
+  Float16 normal[3][3];
+  cross(p, q, normal);
+  const TripleProducts16 products =
+      triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), c.error), c.error);
+  const unsigned never = products.positive() | products.negative(), sometime = products.mixed();
+  if ((places & ~(never | sometime)) != 0) return std::nullopt;
+  const unsigned left = places & sometime;
+  if (left == 0) return CarriedPlaces{0};
+
+  const VectorLanes16 seen[3] = {p, chosen(q, r), chosen(r, second - from)};
+  const auto [apart, kept] = sideways(seen, alike(a, b), c.error);
+  if ((left & ~(apart | kept)) != 0) return std::nullopt;
+  return static_cast<CarriedPlaces>(left & kept);
+}
+
+}  // namespace cscd

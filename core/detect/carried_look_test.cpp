@@ -1,0 +1,189 @@
+#include "core/detect/carried_look.h"
+
+#include <algorithm>
+#include <array>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/elementary/filter.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+// What the scalar twins of the filter keep of two triangles.
+CarriedPlaces kept(const TriangleMesh& mesh, const Motion& motion, const TrianglePair& pair) {
+  const auto drops = [](const auto& query) { return never_coplanar(query) || never_meet_in_plane(query); };
+  unsigned places = 0;
+  for (std::size_t k = 0; k < 15; ++k) {
+    const FeaturePair features = carried(mesh, pair, k);
+    const bool drop = features.kind == FeaturePair::Kind::vertex_face
+                          ? drops(vertex_face(mesh, motion, VertexId{features.a}, TriangleId{features.b}))
+                          : drops(edge_edge(mesh, motion, EdgeId{features.a}, EdgeId{features.b}));
+    places |= static_cast<unsigned>(!drop) << k;
+  }
+  return static_cast<CarriedPlaces>(places);
+}
+
+using Six = std::array<MovingPoint, 6>;  // corners of one triangle, then of another
+
+struct Tally {
+  int open = 0, none = 0, some = 0;
+};
+
+// Triangles that `make` draws, their corners numbered in any order; at all places or at one.
+template <class Make>
+Tally look(int count, const Make& make) {
+  Tally tally;
+  std::mt19937_64 random(3);
+  for (int i = 0; i < count && !testing::Test::HasFailure(); ++i) {
+    const Six points = make(random);
+    std::array<std::int32_t, 6> number = {0, 1, 2, 3, 4, 5};
+    std::shuffle(number.begin(), number.end(), random);
+    std::vector<Vec3> start(6), end(6);
+    for (std::size_t v = 0; v < 6; ++v) {
+      const auto at = static_cast<std::size_t>(number[v]);
+      start[at] = points[v].start, end[at] = points[v].end;
+    }
+    const TriangleMesh mesh(
+        {test::corners(number[0], number[1], number[2]), test::corners(number[3], number[4], number[5])}, 6);
+    const Motion motion(start, end);
+    const TrianglePair pair{TriangleId{0}, TriangleId{1}};
+    const CarriedPlaces places = i % 2 ? kAllCarried : static_cast<CarriedPlaces>(1 << random() % 15);
+    const auto truth = static_cast<CarriedPlaces>(places & kept(mesh, motion, pair));
+    const auto seen = not_filtered_at_a_look(motion, mesh.corners(pair.a), mesh.corners(pair.b), places);
+    tally.open += !seen;
+    if (!seen) continue;
+    EXPECT_EQ(*seen, truth) << "interval " << i;
+    tally.none += truth == 0;
+    tally.some += truth != 0;
+  }
+  return tally;
+}
+
+Vec3 any(std::mt19937_64& random, double size = 1) {
+  std::uniform_real_distribution<double> unit(-size, size);
+  return {unit(random), unit(random), unit(random)};
+}
+
+// In another frame, so that no coordinate is more exact than others.
+Six turned(std::mt19937_64& random, Six six) {
+  const Vec3 shift = any(random, 10), x = any(random), y = any(random), z = x.cross(y);
+  for (auto& point : six)
+    for (Vec3* p : {&point.start, &point.end}) *p = Vec3(shift + p->x() * x + p->y() * y + p->z() * z);
+  return six;
+}
+
+// Near one another, and moving by about a third of their size.
+TEST(CarriedLook, TellsOfNearlyAllTrianglesWhatTheFilterKeeps) {
+  const Vec3 far(12, -7, 31);
+  const Tally tally = look(20'000, [&](std::mt19937_64& random) {
+    Six six;
+    for (auto& [start, end] : six) start = far + any(random), end = start + any(random, 0.3);
+    return six;
+  });
+  EXPECT_LT(tally.open, 1000);
+  EXPECT_GT(tally.none, 5000);
+  EXPECT_GT(tally.some, 3000);
+}
+
+// Within a few of the bounds of single precision and of doubles from where the answer changes.
+class NearlyTouching : public testing::TestWithParam<double> {
+ protected:
+  const double off = GetParam();
+};
+INSTANTIATE_TEST_SUITE_P(CarriedLook, NearlyTouching,
+                         testing::Values(0.0, 1e-16, 1e-13, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4));
+
+TEST_P(NearlyTouching, InOnePlane) {
+  const Tally tally = look(3000, [&](std::mt19937_64& random) {
+    Six six;
+    for (std::size_t v = 0; v < 6; ++v) {
+      auto& [start, end] = six[v];
+      start = any(random), end = start + any(random, 0.1);
+      start.z() *= off, end.z() *= v % 2 ? off : -off;
+    }
+    return turned(random, six);
+  });
+  if (off < 1e-7) {
+    EXPECT_GT(tally.open, 2000);
+  }
+}
+TEST_P(NearlyTouching, InOnePlaneAtFirst) {
+  look(3000, [&](std::mt19937_64& random) {
+    Six six;
+    for (std::size_t v = 0; v < 6; ++v) {
+      auto& [start, end] = six[v];
+      start = any(random), end = start;
+      start.z() *= off, end.z() = v < 3 ? start.z() : -0.1;
+    }
+    return turned(random, six);
+  });
+}
+TEST_P(NearlyTouching, InOneLine) {
+  look(3000, [&](std::mt19937_64& random) {
+    Six six;
+    for (std::size_t v = 0; v < 6; ++v) {
+      const Vec3 along = any(random).x() * Vec3(1, 0.3, 0.1);
+      six[v] = {along + any(random, v ? off : 1), along + any(random, v ? off : 1)};
+    }
+    return six;
+  });
+}
+// A small triangle, and in its plane a long one with a corner on it.
+TEST_P(NearlyTouching, SmallBesideLong) {
+  look(3000, [&](std::mt19937_64& random) {
+    Six six;
+    const Vec3 at = any(random), p = any(random, 1e-4), q = any(random, 1e-4);
+    const Vec3 small[3] = {at, at + p, at + q};
+    for (std::size_t v = 0; v < 6; ++v) {
+      const double reach = v == 0 ? 1e4 : 0.3;
+      const Vec3 in_plane = reach * (0.5 + any(random).x()) * p + reach * (0.5 + any(random).x()) * q;
+      const Vec3 x = v < 3 ? Vec3(at + in_plane + any(random, 1e-4 * off)) : small[v - 3];
+      six[v] = {x, x};
+    }
+    return six;
+  });
+}
+// Borders pass one another, straight on or askew.
+TEST_P(NearlyTouching, AtBorders) {
+  int count = 0;
+  look(6000, [&](std::mt19937_64& random) {
+    constexpr double at[6][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 0}, {1.2, 1}, {2, 0.5}};
+    const Vec3 across = ++count % 3 ? Vec3(0, 0, 0.1) : Vec3(0.03, -0.02, 0.1);
+    Six six;
+    for (std::size_t v = 0; v < 6; ++v) {
+      const Vec3 place(at[v][0], at[v][1], 0), move = v < 3 ? Vec3(Vec3::Zero()) : across;
+      six[v] = {place + any(random, off) + move, place + any(random, off) - move};
+    }
+    return turned(random, six);
+  });
+}
+
+// What underflows or overflows in single precision is left open.
+TEST(CarriedLook, LeavesOpenWhatIsBeyondItsRange) {
+  for (const double scale :
+       {1e-160, 1e-40, 1e-30, 1e-20, 1e-12, 1e-9, 3e-10, 1e-8, 1e8, 1e12, 1e30, 1e40, 1e160}) {
+    SCOPED_TRACE(scale);
+    const Tally tally = look(500, [&](std::mt19937_64& random) {
+      Six six;
+      for (auto& [start, end] : six) start = scale * any(random), end = scale * any(random);
+      return six;
+    });
+    if (scale < 1e-10 || scale > 1e20) {
+      EXPECT_EQ(tally.open, 500);
+    }
+  }
+  const Tally unlike = look(500, [&](std::mt19937_64& random) {
+    Six six;
+    for (std::size_t v = 0; v < 6; ++v) {
+      const double scale = v == 2 ? 1e25 : v == 4 ? 1e-12 : 1;
+      six[v] = {scale * any(random), scale * any(random)};
+    }
+    return six;
+  });
+  EXPECT_GT(unlike.open, 150);
+}
+
+}  // namespace
+}  // namespace cscd
