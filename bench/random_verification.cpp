@@ -12,7 +12,9 @@ namespace cscd::bench {
 namespace {
 
 // The elementary test while a strategy runs: every pair that gets past the certified filter is put off, so
-// that the referee answers it once, however many strategies pass it on.
+// that the referee answers it once, however many strategies pass it on. The filter is told in single
+// precision first for every other seed.
+template <bool kSinglePrecisionFirst>
 constexpr ElementaryTest kPutOff{"put off",
                                  "everything is undecided",
                                  false,
@@ -22,7 +24,10 @@ constexpr ElementaryTest kPutOff{"put off",
                                  }>,
                                  one_by_one<[](const MovingEdgeEdge&) -> Answer {
                                    return {Verdict::undecided, 0};
-                                 }>};
+                                 }>,
+                                 {},
+                                 "",
+                                 kSinglePrecisionFirst};
 
 scenes::RandomInterval made(std::uint64_t seed, bool torn) {
   return torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);
@@ -49,8 +54,9 @@ struct Subject {
     Report report;
   };
   Result run(const Strategy& strategy, const ElementaryTest& referee) {
+    const ElementaryTest& put_off = seed % 2 == 0 ? kPutOff<false> : kPutOff<true>;
     const std::unique_ptr<Detector> detector =
-        strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, kPutOff}).detector;
+        strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, put_off}).detector;
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     result.report =
