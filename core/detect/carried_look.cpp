@@ -19,8 +19,6 @@ struct Corners {
 };
 
 using Double4 = double __attribute__((vector_size(32)));
-using Float4 = float __attribute__((vector_size(16)));
-using Float8 = float __attribute__((vector_size(32)));
 
 Double4 load(const Vec3& p) {
   return Double4{p[0], p[1], p[2], 0};

@@ -132,12 +132,12 @@ class PairTester : public TrianglePairSink {
     const auto later = [](const Bounded& a, const Bounded& b) { return a.first > b.first; };
     std::make_heap(order_.begin(), order_.end(), later);
     while (!order_.empty() && order_.front().first <= earliest_ + kTimeSlack) {
-      test(order_.front().second);
+      const FeaturePair& pair = order_.front().second;
+      take_answer(pair, ask(test_, mesh_, *motion_, pair));
       std::pop_heap(order_.begin(), order_.end(), later);
       order_.pop_back();
     }
   }
-  void test(const FeaturePair& pair) { take_answer(pair, ask(test_, mesh_, *motion_, pair)); }
   void take_answer(const FeaturePair& pair, const Answer& answer) {
     ++counts_.elementary_tests;
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
@@ -151,11 +151,11 @@ class PairTester : public TrianglePairSink {
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   PairCounts counts_;
-  std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one may be carried by several
-  std::vector<FeaturePair> assigned_;  // to the block's triangle pairs
-  std::vector<FeaturePair> left_;      // of those, what the filter could not prove apart
-  FeaturePairSet met_;                 // met in this interval
-  Tests<MovingVertexFace> vertex_faces_;
+  std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one may be carried by several
+  std::vector<FeaturePair> assigned_;     // to the block's triangle pairs
+  std::vector<FeaturePair> left_;         // of those, what the filter could not prove apart
+  FeaturePairSet met_;                    // met in this interval
+  Tests<MovingVertexFace> vertex_faces_;  // of what is left, what is met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   bool first_only_ = false;
   double earliest_ = 1;  // contact so far

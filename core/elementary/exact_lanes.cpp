@@ -54,8 +54,8 @@ Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
     if (step == kSteps || bits_of(which & ~found) == 0) break;
     low = value > 0 ? t : low, high = value > 0 ? high : t;
     const Lane8 next = t - value / slope;
-    const Sign8 between = (next > low) & (next < high);
-    const Lane8 better = between ? next : 0.5 * (low + high);
+    const Sign8 inside = (next > low) & (next < high);
+    const Lane8 better = inside ? next : 0.5 * (low + high);
     t = found ? t : better;
   }
   const Lane8 reach = 2 * (absolute(value) + cubic.error) / absolute(slope) + 0x1p-52;

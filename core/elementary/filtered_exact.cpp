@@ -79,7 +79,7 @@ Decision decide(const Query& query) {
   return {{Verdict::contact, certain.time}, ExactStage::doubles};
 }
 
-constexpr std::size_t kWorthLanes = 2;
+constexpr std::size_t kWorthLanes = 2;  // a query by itself is answered sooner alone
 
 template <class Query>
 void decide_all(std::span<const Query> queries, std::span<Answer> answers) {

@@ -305,36 +305,36 @@ TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
   EXPECT_EQ(ask(stays).verdict, Verdict::apart);
 }
 
-// Side by side, all that meets inside is decided, and most of what does not; and no number of queries is
-// left over.
+// Side by side, nearly all that meets inside is decided, and much of what goes through more roots than one.
 TEST_F(FilteredExact, DecidesMostQueriesSideBySide) {
-  const auto decided = [&](auto&& make_query) {
-    std::size_t count = 0;
+  // Share of 500 blocks of one to eight.
+  const auto decided = [](auto&& make_query) {
+    double count = 0, asked = 0;
     for (int i = 0; i < 500; ++i) {
       std::vector<decltype(make_query())> queries;
       for (int l = 0; l <= i % 8; ++l) queries.push_back(make_query());
       const LaneAnswers found = decide_in_lanes(queries);
+      asked += static_cast<double>(queries.size());
       for (std::size_t l = 0; l < queries.size(); ++l)
         if ((found.decided >> l & 1) != 0) {
           ++count;
           EXPECT_TRUE(same(found.answer[l], ask(queries[l])));
         }
     }
-    return count;
+    return count / asked;
   };
-  constexpr std::size_t kQueries = 500 / 8 * 36 + 1 + 2 + 3 + 4;
-  EXPECT_GT(decided([&] { return query_of<MovingVertexFace>(make_.any()); }), kQueries * 4 / 10);
-  EXPECT_GT(decided([&] { return query_of<MovingEdgeEdge>(make_.any()); }), kQueries * 4 / 10);
+  EXPECT_GT(decided([&] { return query_of<MovingVertexFace>(make_.any()); }), 0.4);
+  EXPECT_GT(decided([&] { return query_of<MovingEdgeEdge>(make_.any()); }), 0.4);
   const auto inside = [&] { return make_.uniform(0.01, 0.49); };
   const auto time = [&] { return make_.uniform(0, 1); };
   EXPECT_GT(decided([&] {
               return query_of<MovingVertexFace>(test::vertex_meets_face(make_, time(), inside(), inside()));
             }),
-            kQueries * 9 / 10);
+            0.9);
   EXPECT_GT(decided([&] {
               return query_of<MovingEdgeEdge>(test::edge_meets_edge(make_, time(), inside(), inside()));
             }),
-            kQueries * 9 / 10);
+            0.9);
 }
 
 // The tests of the tests: with one bound gone, the stage in double precision claims what is not so, and the

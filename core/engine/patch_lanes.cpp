@@ -6,8 +6,6 @@
 namespace cscd::fast {
 namespace {
 
-using Float8 = float __attribute__((vector_size(32)));
-
 void directions(const Float16 (&p)[3], Float16* out) {
   out[0] = p[0], out[1] = p[1], out[2] = p[2];
   out[3] = p[0] + p[1], out[4] = p[0] + p[2], out[5] = p[1] + p[2];

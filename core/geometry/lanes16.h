@@ -15,6 +15,8 @@ namespace cscd {
 // and clang lack stands here twice: one instruction where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
 using Float16 = float __attribute__((vector_size(kLanes16 * sizeof(float))));
+using Float8 = float __attribute__((vector_size(32)));  // a half of it, and a quarter
+using Float4 = float __attribute__((vector_size(16)));
 using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int32_t))));
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
@@ -93,8 +95,6 @@ inline Mask16 above(Float16 a, Float16 b) {
 // All lanes by an operation that takes two vectors of any length, or two numbers: halves first.
 template <class Operation>
 float folded(Float16 v, const Operation& operation) {
-  using Float8 = float __attribute__((vector_size(32)));
-  using Float4 = float __attribute__((vector_size(16)));
   Float8 eight[2];
   std::memcpy(&eight, &v, sizeof v);
   eight[0] = operation(eight[0], eight[1]);
