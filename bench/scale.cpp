@@ -1,6 +1,8 @@
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <random>
 #include <thread>
 
 #include "bench/catalogue.h"
@@ -12,13 +14,13 @@
 #include "bench/output.h"
 #include "bench/progress.h"
 #include "bench/scale_study.h"
-#include "bench/scaling.h"
+#include "bench/scale_summary.h"
 #include "bench/schema.h"
-#include "bench/statistics.h"
 #include "core/base/error.h"
+#include "scenes/catalog/scene.h"
 
-// How cost grows: with triangles, with the length of the step, with bones (schema cscd.scale/1). What is run
-// unless told otherwise is data, scale_plan.json.
+// How cost grows: with triangles, with the length of the step, with bones, threads and contacts (schema
+// cscd.scale/1). What is run unless told otherwise is data, scale_plan.json.
 namespace cscd::bench {
 namespace {
 
@@ -35,13 +37,7 @@ struct ScaleOptions {
   std::string output;
 };
 
-constexpr const char* kStudies[] = {"size", "step", "bones", "threads"};
-
-// One subject and the scene that it is of.
-struct Planned {
-  std::string scene;
-  ScaleSubject subject;
-};
+constexpr const char* kStudies[] = {"size", "step", "bones", "threads", "contacts"};
 
 // Those of the named rows that this build has: packages may be missing. Throws InputError where the user
 // named one that is not known.
@@ -58,7 +54,7 @@ std::vector<const Strategy*> chosen_rows(const ScaleOptions& options, const orde
 }
 
 // What a full, or small, run consists of.
-std::vector<Planned> plan(const ScaleOptions& options) {
+std::vector<ScaleSubject> plan(const ScaleOptions& options) {
   const ordered_json defaults = data_json("scale_plan.json").at(options.smoke ? "smoke" : "full");
   const auto or_default = [&](const auto& given, const char* key) {
     using List = std::remove_cvref_t<decltype(given)>;
@@ -66,7 +62,8 @@ std::vector<Planned> plan(const ScaleOptions& options) {
   };
   for (const std::string& study : options.studies)
     if (std::ranges::find(kStudies, study) == std::end(kStudies))
-      throw InputError("--study " + study + ": is not known; choose among size, step, bones, threads");
+      throw InputError("--study " + study +
+                       ": is not known; choose among size, step, bones, threads, contacts");
   const auto wanted = [&](const char* study) {
     return options.studies.empty() || std::ranges::find(options.studies, study) != options.studies.end();
   };
@@ -78,7 +75,7 @@ std::vector<Planned> plan(const ScaleOptions& options) {
   common.reference_limit = options.reference_limit;
   common.threads = options.threads;
 
-  std::vector<Planned> all;
+  std::vector<ScaleSubject> all;
   const auto scenes = or_default(options.scenes, "scenes");
   auto sizes = or_default(options.sizes, "sizes");
   if (options.largest) sizes.push_back(defaults.at("largest"));
@@ -89,54 +86,66 @@ std::vector<Planned> plan(const ScaleOptions& options) {
     if (step > 1 && step != std::floor(step))
       throw InputError("--steps: " + ordered_json(step).dump() +
                        " is neither a share of a frame nor a whole number of frames; round it");
-  const auto add = [&](const std::string& scene, ScaleSubject subject) {
-    subject.starts = spread_starts(scenes::load_scene(scene).frames, intervals, subject.steps.back());
-    all.push_back({scene, std::move(subject)});
+  const auto add = [&](ScaleSubject subject, std::size_t count) {
+    subject.starts =
+        spread_starts(scenes::load_scene(subject.scene).frames, count, subject.steps.back().frames);
+    all.push_back(std::move(subject));
   };
   const auto named = [&](const char* key, const std::string& scene) {
     return std::ranges::find(defaults.at(key), ordered_json(scene)) != defaults.at(key).end();
   };
   for (const std::string& scene : scenes) {
     ScaleSubject subject = common;
+    subject.scene = scene;
+    subject.steps = {{scene}};
     if (wanted("size")) {
       subject.study = "size";
-      subject.steps = {1};
       subject.strategies = chosen_rows(options, defaults.at("size_strategies"));
-      for (const std::size_t size : sizes) subject.triangles = size, add(scene, subject);
+      for (const std::size_t size : sizes) subject.triangles = size, add(subject, intervals);
     }
     subject.triangles = defaults.at("other_triangles");
     if (wanted("step")) {
-      subject.study = "step";
-      subject.steps = steps;
-      subject.strategies = chosen_rows(options, defaults.at("step_strategies"));
-      add(scene, subject);
+      ScaleSubject stepped = subject;
+      stepped.study = "step";
+      stepped.steps.clear();
+      for (const double step : steps) stepped.steps.push_back({scene, step});
+      stepped.strategies = chosen_rows(options, defaults.at("step_strategies"));
+      add(std::move(stepped), intervals);
     }
     if (wanted("bones") && named("bone_scenes", scene)) {
       subject.study = "bones";
-      subject.steps = {1};
       subject.strategies = chosen_rows(options, defaults.at("bone_strategies"));
-      for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(scene, subject);
+      for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(subject, intervals);
       subject.bones = 0;
     }
     if (wanted("threads") && named("thread_scenes", scene)) {
       subject.study = "threads";
-      subject.steps = {1};
       subject.triangles = defaults.at("thread_triangles");
       subject.strategies = chosen_rows(options, defaults.at("thread_strategies"));
       for (const int threads : defaults.at("threads"))
         if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
-          subject.threads = threads, add(scene, subject);
+          subject.threads = threads, add(subject, intervals);
+      subject.threads = common.threads;
+    }
+    if (wanted("contacts") && named("contact_scenes", scene)) {
+      subject.study = "contacts";
+      subject.recorded = true;
+      subject.triangles = 0;
+      subject.steps.push_back({scene + "_contact"});
+      subject.strategies = chosen_rows(options, defaults.at("contact_strategies"));
+      add(std::move(subject),
+          options.intervals > 0 ? intervals : defaults.at("contact_intervals").get<std::size_t>());
     }
   }
   return all;
 }
 
 // Queries that will be asked, weighed by triangles: about what a run costs.
-double estimated_minutes(std::span<const Planned> all) {
+double estimated_minutes(std::span<const ScaleSubject> all) {
   constexpr double kMicrosecondsATriangle = 80, kSecondsOnce = 1;
   double seconds = 0;
-  for (const auto& [name, subject] : all) {
-    const scenes::Scene scene = scenes::load_scene(name);
+  for (const ScaleSubject& subject : all) {
+    const scenes::Scene scene = scenes::load_scene(subject.scene);
     const auto triangles =
         static_cast<double>(subject.triangles > 0 ? subject.triangles : scene.expected.triangles);
     const auto intervals = static_cast<double>(subject.steps.size() * subject.starts.size());
@@ -145,7 +154,7 @@ double estimated_minutes(std::span<const Planned> all) {
   return seconds / 60;
 }
 
-std::vector<std::string> command_line(const ScaleOptions& o, std::span<const Planned> all) {
+std::vector<std::string> command_line(const ScaleOptions& o, std::span<const ScaleSubject> all) {
   std::vector<std::string> words = {"cscd", "scale"};
   const auto add = [&](const char* name, const auto& values) {
     std::string text;
@@ -162,88 +171,12 @@ std::vector<std::string> command_line(const ScaleOptions& o, std::span<const Pla
   add("--sizes", o.sizes);
   add("--steps", o.steps);
   add("--strategy", o.strategies);
-  add("--intervals", std::vector{all.front().subject.starts.size()});
-  add("--repetitions", std::vector{all.front().subject.repetitions});
+  if (o.intervals > 0) add("--intervals", std::vector{o.intervals});
+  add("--repetitions", std::vector{all.front().repetitions});
   add("--reference-up-to", std::vector{o.reference_limit});
   add("--seed", std::vector{o.seed});
   add("--threads", std::vector{o.threads});
   return words;
-}
-
-const ordered_json* row_named(const ordered_json& rows, const std::string& name) {
-  for (const ordered_json& row : rows)
-    if (row.at("name") == name) return &row;
-  return nullptr;
-}
-
-// Exponents over what a study varies: triangles, bones, threads.
-ordered_json fits(const ordered_json& subjects) {
-  struct Series {
-    std::vector<double> x, y;
-  };
-  // In order of their first appearance: study, scene, strategy, quantity.
-  std::vector<std::pair<std::array<std::string, 4>, Series>> series;
-  for (const ordered_json& subject : subjects) {
-    const std::string study = subject.at("study");
-    if (study == "step") continue;
-    const double x = subject.at(study == "size" ? "triangles" : study);
-    const auto add = [&](const std::string& strategy, const std::string& quantity, double y) {
-      const std::array<std::string, 4> key = {study, subject.at("scene"), strategy, quantity};
-      auto place = std::ranges::find(series, key, [](const auto& entry) { return entry.first; });
-      if (place == series.end()) place = series.insert(series.end(), {key, {}});
-      place->second.x.push_back(x);
-      place->second.y.push_back(y);
-    };
-    for (const ordered_json& strategy : subject.at("strategies")) {
-      const std::string name = strategy.at("name");
-      for (const char* quantity : {"make_ms", "held_bytes", "peak_bytes"})
-        if (strategy.contains(quantity)) add(name, quantity, strategy.at(quantity));
-      const ordered_json& row = *row_named(subject.at("steps").at(0).at("strategies"), name);
-      for (const char* quantity : {"bvot", "pctp"})
-        if (row.at("counts").contains(quantity)) add(name, quantity, row.at("counts").at(quantity));
-      if (row.contains("ms"))
-        for (const auto& [stage, ms] : row.at("ms").items()) add(name, stage, ms);
-    }
-  }
-  ordered_json out = ordered_json::array();
-  for (const auto& [key, one] : series) {
-    ordered_json row = {{"study", key[0]}, {"scene", key[1]}, {"strategy", key[2]}, {"quantity", key[3]}};
-    if (const auto law = fit_power_law(one.x, one.y))
-      row.update({{"exponent", law->exponent}, {"factor", law->factor}, {"points", law->points}});
-    else
-      row["exponent"] = nullptr;  // fewer than three positive values
-    out.push_back(std::move(row));
-  }
-  return out;
-}
-
-// What a step of other length costs against one of a frame; both of the same repetitions.
-ordered_json step_ratios(const ordered_json& subjects) {
-  ordered_json out = ordered_json::array();
-  for (const ordered_json& subject : subjects) {
-    if (subject.at("study") != "step") continue;
-    const auto& steps = subject.at("steps");
-    const auto one =
-        std::ranges::find_if(steps, [](const ordered_json& step) { return step.at("step") == 1; });
-    if (one == steps.end()) continue;
-    for (const ordered_json& step : steps)
-      for (const ordered_json& row : step.at("strategies")) {
-        const ordered_json& unit = *row_named(one->at("strategies"), row.at("name"));
-        if (!row.contains("ms") || !unit.contains("ms")) continue;
-        const auto a = row.at("total_samples").get<std::vector<double>>();
-        const auto b = unit.at("total_samples").get<std::vector<double>>();
-        ordered_json ratio = {{"scene", subject.at("scene")},
-                              {"strategy", row.at("name")},
-                              {"step", step.at("step")},
-                              {"ratio", median(a) / median(b)}};
-        if (a.size() == b.size()) {  // else one of them was too slow to be repeated
-          const Estimate interval = bootstrap_ratio_of_medians(a, b);
-          ratio.update({{"low", interval.low}, {"high", interval.high}});
-        }
-        out.push_back(std::move(ratio));
-      }
-  }
-  return out;
 }
 
 void print(const ordered_json& subject) {
@@ -254,8 +187,9 @@ void print(const ordered_json& subject) {
   for (const ordered_json& step : subject.at("steps")) {
     for (const ordered_json& failure : step.at("verified").at("failures"))
       std::printf("  %s\n", failure.get<std::string>().c_str());
-    std::printf("  step %-5s %zu of %zu collide:", step.at("step").dump().c_str(),
-                step.at("colliding").get<std::size_t>(), step.at("starts").size());
+    std::printf("  %s, step %-5s %zu of %zu collide:", step.at("scene").get<std::string>().c_str(),
+                step.at("step").dump().c_str(), step.at("colliding").get<std::size_t>(),
+                step.at("starts").size());
     for (const ordered_json& row : step.at("strategies"))
       if (row.contains("ms"))
         std::printf("  %s %.2f ms", row.at("name").get<std::string>().c_str(),
@@ -266,7 +200,7 @@ void print(const ordered_json& subject) {
 }
 
 void run_scale(const ScaleOptions& options) {
-  const std::vector<Planned> all = plan(options);
+  const std::vector<ScaleSubject> all = plan(options);
   if (all.empty()) throw InputError("--study, --scene: leave nothing to measure; name a scene of the study");
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
@@ -278,8 +212,8 @@ void run_scale(const ScaleOptions& options) {
   const ordered_json where = environment();  // with the load before the work
   Progress progress("scale", all.size());
   bool ok = true;
-  for (const auto& [scene, subject] : all) {
-    subjects.push_back(measure_subject(pose_scene(scene, subject.steps, subject.starts), subject, random));
+  for (const ScaleSubject& subject : all) {
+    subjects.push_back(measure_subject(subject, random));
     ok = ok && subjects.back().at("ok");
     print(subjects.back());
     progress.advance();
@@ -292,6 +226,7 @@ void run_scale(const ScaleOptions& options) {
                                {"ok", ok},
                                {"fits", fits(subjects)},
                                {"step_ratios", step_ratios(subjects)},
+                               {"contact_ratios", contact_ratios(subjects)},
                                {"subjects", std::move(subjects)}};
   if (const std::string violation = schema_violation(record, "scale.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
@@ -305,18 +240,22 @@ void add_scale(CLI::App& app) {
   auto options = std::make_shared<ScaleOptions>();
   CLI::App* command = app.add_subcommand(
       "scale",
-      "Measure how cost grows: with triangles, with the length of the step, with bones, with threads.\n\n"
+      "Measure how cost grows: with triangles, with the length of the step, with bones, with threads, with\n"
+      "contacts.\n\n"
       "  cscd scale --json scale.json\n"
       "  cscd scale --smoke\n"
       "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
       "size     the scenes with other numbers of triangles in the same motion, and memory a triangle\n"
       "step     intervals between frames that lie further apart, or nearer\n"
       "bones    chains of bones merged or cut, on the same surface\n"
-      "threads  the same surface on one thread and more, up to those of the machine\n\n"
+      "threads  the same surface on one thread and more, up to those of the machine\n"
+      "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n\n"
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong.");
-  command->add_option("--study", options->studies, "size, step, bones, threads, with commas; default all")
+  command
+      ->add_option("--study", options->studies,
+                   "size, step, bones, threads, contacts, with commas; default all")
       ->delimiter(',');
   command->add_option("--scene", options->scenes, "scenes with commas; default the six")->delimiter(',');
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")

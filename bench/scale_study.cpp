@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <set>
 
 #include "bench/catalogue.h"
 #include "bench/footprint.h"
 #include "bench/record.h"
-#include "bench/scaling.h"
 #include "bench/statistics.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
@@ -33,64 +31,6 @@ constexpr const char* kStages[] = {"refit", "rv_update", "traversal", "elementar
 
 double milliseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-// Frames between which a step from one frame lies.
-std::size_t last_frame(std::size_t start, double step) {
-  return start + static_cast<std::size_t>(std::ceil(step));
-}
-
-// A subject's surface on its intervals: those of its first step, then those of the next.
-struct Scaled {
-  Input input;
-  double build_ms;
-};
-
-Scaled scaled_input(const PosedScene& posed, const ScaleSubject& subject) {
-  const auto begin = Clock::now();
-  const scenes::Scene& scene = posed.scene;
-  scenes::Shape shape =
-      scenes::resized_shape(scene, subject.triangles > 0 ? subject.triangles : scene.expected.triangles);
-  const auto bones_of = [&](const std::vector<Bone>& bones) {
-    return subject.bones > 0 ? resampled_chain(bones, subject.bones) : bones;
-  };
-  if (subject.bones > 0 && !is_chain(shape.rig))
-    throw InputError("scene " + scene.name + ": its bones form no chain; vary the bones of another scene");
-
-  std::vector<Moment> moments;
-  std::vector<MomentSource::Pair> intervals;
-  std::map<std::size_t, std::size_t> moment_at;  // by frame
-  const auto moment = [&](std::size_t frame) {
-    const auto [place, added] = moment_at.try_emplace(frame, moments.size());
-    if (added) {
-      const auto pose = std::ranges::find(posed.poses, frame, &scenes::Pose::frame);
-      moments.push_back({scenes::carried(scene, shape, *pose), bones_of(pose->bones)});
-    }
-    return place->second;
-  };
-  for (const double step : subject.steps)
-    for (const std::size_t start : subject.starts) {
-      const std::size_t first = moment(start);
-      std::size_t last = moment(last_frame(start, step));
-      if (step < 1) {
-        moments.push_back(between(moments[first], moments[last], step));
-        last = moments.size() - 1;
-      }
-      intervals.push_back({first, last});
-    }
-
-  Rig rig{shape.rig.parent, bones_of(shape.rig.reference)};
-  if (subject.bones > 0) {
-    rig.parent.clear();
-    for (std::size_t i = 0; i < subject.bones; ++i) rig.parent.push_back(BoneId{static_cast<int>(i) - 1});
-  }
-  TriangleMesh mesh(shape.triangles, shape.positions.size(), scene.name);
-  auto clip = std::make_unique<MomentSource>(
-      scenes::ClipHeader{std::move(shape.triangles), shape.positions.size(), rig.parent, false},
-      std::move(moments), std::move(intervals));
-  Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(rig)};
-  input.threads = subject.threads;
-  return {std::move(input), milliseconds_since(begin)};
 }
 
 struct Contestant {
@@ -124,8 +64,7 @@ ordered_json first_time(const ContactSet& sorted) {
 
 class Measurement {
  public:
-  Measurement(const PosedScene& posed, const ScaleSubject& subject)
-      : subject_(subject), scaled_(scaled_input(posed, subject)) {
+  explicit Measurement(const ScaleSubject& subject) : subject_(subject), scaled_(scale_input(subject)) {
     const ElementaryTest& test = elementary_test_named(kElementary);
     std::vector<const Strategy*> strategies = subject.strategies;
     if (std::ranges::find(strategies, &complete_reference()) == strategies.end())
@@ -147,12 +86,13 @@ class Measurement {
   // Every strategy answers every interval, the reference where it takes part.
   void verify() {
     EmbeddingTest embedding(input().mesh, input().reference);
-    std::map<std::size_t, bool> embedded;  // by start: steps share them
+    std::map<std::pair<std::string, std::size_t>, bool> embedded;  // by scene and start: steps share them
     ContactSet truth, found;
     for (std::size_t i = 0; i < interval_count(); ++i) {
       Verified& verified = verified_[step_of(i)];
       const scenes::ClipInterval interval = input().clip->load(i);
-      const auto [start, fresh] = embedded.try_emplace(i % subject_.starts.size(), false);
+      const auto [start, fresh] =
+          embedded.try_emplace({subject_.steps[step_of(i)].scene, i % subject_.starts.size()}, false);
       if (fresh) start->second = embedding.embedded(interval.motion.start());
       verified.embedded += start->second;
 
@@ -212,13 +152,13 @@ class Measurement {
     return std::ranges::all_of(verified_, [](const Verified& v) { return v.failures.empty(); });
   }
 
-  ordered_json json(const std::string& scene) const {
+  ordered_json json() const {
     ordered_json strategies = ordered_json::array(), steps = ordered_json::array();
     for (const Contestant& c : contestants_)
       if (is_timed(c)) strategies.push_back(preparation_json(c));
     for (std::size_t s = 0; s < subject_.steps.size(); ++s) steps.push_back(step_json(s));
     return {{"study", subject_.study},
-            {"scene", scene},
+            {"scene", subject_.scene},
             {"triangles", input().mesh.triangle_count()},
             {"vertices", input().mesh.vertex_count()},
             {"bones", input().rig->parent.size()},
@@ -304,7 +244,8 @@ class Measurement {
     ordered_json rows = ordered_json::array();
     for (const Contestant& c : contestants_)
       if (is_timed(c)) rows.push_back(row_json(c, s));
-    return {{"step", subject_.steps[s]},
+    return {{"step", subject_.steps[s].frames},
+            {"scene", subject_.steps[s].scene},
             {"starts", subject_.starts},
             {"embedded", verified.embedded},
             {"colliding", verified.colliding},
@@ -319,11 +260,11 @@ class Measurement {
 
   ordered_json row_json(const Contestant& c, std::size_t s) const {
     ordered_json row = {{"name", c.strategy->name}};
-    ordered_json means = ordered_json::object();
+    ordered_json counts = ordered_json::object();
     for (const auto& [name, values] : c.counts[s])
-      means[name] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+      counts[name] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
     row["intervals"] = c.counts[s].empty() ? 0 : c.counts[s].begin()->second.size();
-    row["counts"] = std::move(means);
+    row["counts"] = std::move(counts);
     if (!verified_[s].failures.empty()) return row;  // no time without a verified answer
     const TimeColumns& columns = c.ms[s].empty() ? c.once[s] : c.ms[s];
     if (columns.empty()) {
@@ -331,57 +272,45 @@ class Measurement {
       return row;
     }
     ordered_json ms = ordered_json::object();
-    std::vector<double> total(columns.begin()->second.size(), 0);
+    std::vector<std::vector<double>> queries(columns.begin()->second.size());  // [repetition][interval]
     for (const char* stage : kStages) {
       const auto column = columns.find(stage);
       if (column == columns.end()) continue;
       std::vector<double> samples;
-      for (const std::vector<double>& repetition : column->second) samples.push_back(mean(repetition));
-      for (std::size_t r = 0; r < samples.size(); ++r) total[r] += samples[r];
+      for (std::size_t r = 0; r < queries.size(); ++r) {
+        const std::vector<double>& times = column->second[r];
+        samples.push_back(mean(times));
+        queries[r].resize(times.size(), 0);
+        std::ranges::transform(queries[r], times, queries[r].begin(), std::plus());
+      }
       ms[stage] = median(samples);
     }
-    ms["total"] = median(total);
+    std::vector<double> means, medians;  // of a repetition's intervals
+    for (const std::vector<double>& query : queries) {
+      means.push_back(mean(query));
+      medians.push_back(median(query));
+    }
+    ms["total"] = median(means);
+    ms["median_interval"] = median(medians);
     row["ms"] = std::move(ms);
-    row["total_samples"] = total;
+    row["total_samples"] = means;
+    row["median_interval_samples"] = medians;
     return row;
   }
 
   const ScaleSubject& subject_;
-  Scaled scaled_;
+  ScaleInput scaled_;
   std::vector<Contestant> contestants_;
   std::vector<Verified> verified_;  // by step
 };
 
 }  // namespace
 
-std::vector<std::size_t> spread_starts(std::size_t frames, std::size_t count, double longest_step) {
-  const std::size_t reach = last_frame(0, longest_step);
-  if (frames < reach + 1 + count)
-    throw InputError("a step of " + std::to_string(reach) + " frames from " + std::to_string(count) +
-                     " places does not fit into " + std::to_string(frames) +
-                     " frames; take shorter steps or fewer intervals");
-  std::vector<std::size_t> starts;
-  for (std::size_t i = 0; i < count; ++i) starts.push_back((2 * i + 1) * (frames - 1 - reach) / (2 * count));
-  return starts;
-}
-
-PosedScene pose_scene(const std::string& name, std::span<const double> steps,
-                      std::span<const std::size_t> starts) {
-  PosedScene posed{scenes::load_scene(name), {}};
-  std::set<std::size_t> frames;
-  for (const std::size_t start : starts) {
-    frames.insert(start);
-    for (const double step : steps) frames.insert(last_frame(start, step));
-  }
-  posed.poses = scenes::poses_at(posed.scene, std::vector<std::size_t>(frames.begin(), frames.end()));
-  return posed;
-}
-
-ordered_json measure_subject(const PosedScene& posed, const ScaleSubject& subject, std::mt19937_64& random) {
-  Measurement measurement(posed, subject);
+ordered_json measure_subject(const ScaleSubject& subject, std::mt19937_64& random) {
+  Measurement measurement(subject);
   measurement.verify();
   measurement.time(random);
-  return measurement.json(posed.scene.name);
+  return measurement.json();
 }
 
 }  // namespace cscd::bench

@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bench/scale_study.h"
+#include "bench/scale_input.h"
+#include "bench/scale_summary.h"
 #include "bench/scaling.h"
 #include "bench/schema.h"
 #include "bench/test_program.h"
@@ -98,6 +99,55 @@ TEST(SpreadStarts, LeaveRoomForTheLongestStep) {
   EXPECT_THROW(spread_starts(16, 3, 16), InputError);
 }
 
+TEST(ScaleInput, HoldsRecordedIntervalsOfItsSceneAsItPosesThem) {
+  ScaleSubject posed;
+  posed.scene = "urchin";
+  posed.steps = {{"urchin"}};
+  posed.starts = {10, 100};
+  ScaleSubject recorded = posed;
+  recorded.recorded = true;
+  recorded.steps.push_back({"urchin_contact"});
+  const ScaleInput a = scale_input(posed), b = scale_input(recorded);
+  ASSERT_EQ(a.input.clip->interval_count(), 2u);
+  ASSERT_EQ(b.input.clip->interval_count(), 4u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const scenes::ClipInterval own = a.input.clip->load(i), same = b.input.clip->load(i),
+                               other = b.input.clip->load(2 + i);
+    double farthest = 0, other_farthest = 0;
+    for (std::size_t v = 0; v < own.motion.vertex_count(); ++v) {
+      farthest = std::max(farthest, (own.motion.end()[v] - same.motion.end()[v]).norm());
+      other_farthest = std::max(other_farthest, (own.motion.end()[v] - other.motion.end()[v]).norm());
+    }
+    EXPECT_LT(farthest, 1e-12);
+    EXPECT_GT(other_farthest, 1e-2) << "spikes of the variant sway wider";
+    EXPECT_EQ(own.bones->end.size(), other.bones->end.size());
+  }
+}
+
+// [scene with or without contacts][repetition]
+nlohmann::ordered_json contact_subject(const std::vector<double>& without, const std::vector<double>& with) {
+  const auto step = [](const char* scene, const std::vector<double>& samples) {
+    const nlohmann::ordered_json row = {
+        {"name", "base"}, {"ms", 0}, {"total_samples", samples}, {"median_interval_samples", samples}};
+    return nlohmann::ordered_json{{"scene", scene}, {"strategies", nlohmann::ordered_json::array({row})}};
+  };
+  return {{"study", "contacts"},
+          {"steps", nlohmann::ordered_json::array({step("rope", without), step("rope_contact", with)})}};
+}
+
+TEST(ContactRatios, AreMediansOfRepetitionsWithOverWithout) {
+  const auto ratios = contact_ratios(nlohmann::ordered_json::array(
+      {contact_subject({1, 2, 3}, {5, 4, 6}), contact_subject({1, 2, 3}, {9})}));
+  ASSERT_EQ(ratios.size(), 4u) << "of the median interval, and of all";
+  EXPECT_EQ(ratios[0].at("scene"), "rope");
+  EXPECT_EQ(ratios[0].at("with"), "rope_contact");
+  EXPECT_EQ(ratios[0].at("of"), "median_interval");
+  EXPECT_EQ(ratios[0].at("ratio"), 2.5);
+  EXPECT_LT(ratios[0].at("low"), ratios[0].at("high"));
+  EXPECT_EQ(ratios[2].at("ratio"), 4.5);
+  EXPECT_FALSE(ratios[2].contains("low")) << "one of them was not repeated";
+}
+
 // The program, on surfaces so small that it takes seconds.
 class ScaleProgram : public testing::Test {
  protected:
@@ -187,6 +237,21 @@ TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {
   EXPECT_LT(pairs(1), pairs(2));
 }
 
+TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
+  const auto out = record({"--smoke", "--study", "contacts", "--strategy", "drvbc,base"}, "contacts");
+  ASSERT_EQ(out.at("subjects").size(), 1u);
+  const auto& subject = out.at("subjects")[0];
+  EXPECT_EQ(subject.at("study"), "contacts");
+  EXPECT_EQ(subject.at("scene"), "urchin");
+  EXPECT_EQ(subject.at("triangles"), 2840);
+  EXPECT_EQ(subject.at("steps")[0].at("scene"), "urchin");
+  EXPECT_EQ(subject.at("steps")[0].at("colliding"), 0);
+  EXPECT_EQ(subject.at("steps")[1].at("scene"), "urchin_contact");
+  EXPECT_GT(subject.at("steps")[1].at("colliding"), 0);
+  EXPECT_EQ(out.at("contact_ratios").size(), 4u);
+  EXPECT_TRUE(out.at("fits").empty());
+}
+
 TEST_F(ScaleProgram, RefusesInOneLine) {
   const auto refusal = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "scale");
@@ -195,7 +260,7 @@ TEST_F(ScaleProgram, RefusesInOneLine) {
     EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
     return outcome.errors;
   };
-  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones, threads"),
+  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones, threads, contacts"),
             std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,2.5"}).find("round it"), std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,500"}).find("does not fit"), std::string::npos);
@@ -203,6 +268,8 @@ TEST_F(ScaleProgram, RefusesInOneLine) {
   EXPECT_NE(refusal({"--strategy", "nosuch"}).find("is not known"), std::string::npos);
   EXPECT_NE(refusal({"--scene", "hand_contact"}).find("name a scene without it"), std::string::npos);
   EXPECT_NE(refusal({"--study", "bones", "--scene", "urchin"}).find("leave nothing to measure"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--study", "contacts", "--scene", "urchin_contact"}).find("leave nothing to measure"),
             std::string::npos);
   EXPECT_NE(refusal({"--smoke", "--json", "/nosuch/folder/x.json"}).find("/nosuch/folder"),
             std::string::npos);
