@@ -1,5 +1,8 @@
 #include "core/detect/carried_look.h"
 
+#include <array>
+#include <cstring>
+
 #include "core/geometry/triple_product16.h"
 
 // Whatever is certain here is what the filter says in double precision: a sign that exceeds its bound here
@@ -58,12 +61,6 @@ VectorLanes16 points(const Corners& c) {
   }
   return out;
 }
-VectorLanes16 operator-(const VectorLanes16& to, const VectorLanes16& from) {
-  VectorLanes16 out;
-  for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
-  return out;
-}
 
 constexpr Int16 kVertexFace = {-1, -1, -1, -1, -1, -1};
 VectorLanes16 chosen(const VectorLanes16& vertex_face, const VectorLanes16& edge_edge) {
@@ -73,13 +70,25 @@ VectorLanes16 chosen(const VectorLanes16& vertex_face, const VectorLanes16& edge
   return out;
 }
 
-// Where edge i of the first triangle and edge k of the second, in the triangles' order, run both from their
-// vertex with the smaller number or both to it: 1, else -1.
+// By bit 3 side + i, whether edge i of that triangle runs from its vertex with the smaller number: 1 where
+// edge i of the first and edge k of the second both do or both do not, else -1.
+constexpr auto kAlike = [] {
+  std::array<std::array<float, kLanes16>, 64> alike{};
+  for (unsigned up = 0; up < alike.size(); ++up)
+    for (unsigned place = 0; place < kLanes16; ++place) {
+      const unsigned edge = place < 6 ? 0 : (place - 6) / 3 % 3, other = place < 6 ? 0 : (place - 6) % 3;
+      const bool same = (up >> edge & 1) == (up >> (3 + other) & 1);
+      alike[up][place] = place < 6 || same ? 1.0F : -1.0F;
+    }
+  return alike;
+}();
 Float16 alike(const Triangle& a, const Triangle& b) {
-  const auto up = [](const Triangle& t, std::size_t i) { return t[i] < t[(i + 1) % 3] ? 1.0F : -1.0F; };
-  const float a0 = up(a, 0), a1 = up(a, 1), a2 = up(a, 2), b0 = up(b, 0), b1 = up(b, 1), b2 = up(b, 2);
-  return Float16{1, 1, 1, 1, 1, 1, a0, a0, a0, a1, a1, a1, a2, a2, a2, a2} *
-         Float16{1, 1, 1, 1, 1, 1, b0, b1, b2, b0, b1, b2, b0, b1, b2, b2};
+  const auto up = [](const Triangle& t) {
+    return unsigned{t[0] < t[1]} | unsigned{t[1] < t[2]} << 1 | unsigned{t[2] < t[0]} << 2;
+  };
+  Float16 out;
+  std::memcpy(&out, kAlike[up(a) | up(b) << 3].data(), sizeof out);
+  return out;
 }
 
 // Of the test in sideways.h: certainly apart, and certainly not found apart.

@@ -58,6 +58,8 @@ class Certificates {
       for (std::size_t s = 0; s < p.size(); ++s) dropped |= p[s] >> lane & 1 ? q[s] : 0U;
       return static_cast<Mask16>(lanes_q & ~dropped);
     }
+    // The same of the patches in turn; `lanes_p`: all triangles of p.
+    Shared turned(Mask16 lanes_p) const { return {q, p, lanes_p}; }
   };
   Shared shared(std::size_t p, std::size_t q) const {
     Shared sets{{}, {}, cell_[q].lanes};

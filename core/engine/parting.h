@@ -1,6 +1,11 @@
 #pragma once
 
-#include "core/engine/patch_lanes.h"
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/engine/local_positions.h"
+#include "core/geometry/lanes16.h"
 
 // Pairs that the plane of one of the two triangles parts.
 //
@@ -11,22 +16,12 @@
 // corners, too.
 namespace cscd::fast {
 
-// The planes of the triangles of a patch, a corner of each, and its vertices.
-struct PatchPlanes {
-  PatchLanes vertices, corner;
-  PatchNormals normals;
+// Sixteen pairs of triangles by their vertices: [corner][lane].
+struct PairLanes {
+  using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;
+  Vertices first{}, second{};
 };
-PatchPlanes planes_of(std::span<const LocalPositions::Record> records, const Patch& patch);
-
-// A triangle of another patch, or of the same one.
-struct PlaneOf {
-  const PatchPlanes& planes;
-  const Patch& patch;
-  std::size_t lane;
-};
-// Those of the triangles in `mask` that neither their own plane nor that of `other` parts from it. `common`:
-// what `other`'s patch has in common with this one, null for nothing. `error`: of every coordinate.
-Mask16 not_parted(const PatchPlanes& planes, const Patch& patch, Mask16 mask, const PlaneOf& other,
-                  const Common* common, float error);
+// Pairs of two different triangles that neither plane parts. `error`: of every coordinate.
+Mask16 not_parted(std::span<const LocalPositions::Record> records, const PairLanes& pairs, float error);
 
 }  // namespace cscd::fast

@@ -9,37 +9,37 @@
 namespace cscd::fast {
 namespace {
 
-// Pairs of triangles that a plane parts, by all pairs of patches.
-std::set<std::pair<TriangleId, TriangleId>> parted(const PatchTree& tree, const LocalPositions& local) {
-  std::set<std::pair<TriangleId, TriangleId>> found;
-  for (std::size_t p = 0; p < tree.patches.size(); ++p)
-    for (std::size_t q = 0; q < tree.patches.size(); ++q) {
-      const Patch &a = tree.patches[p], &b = tree.patches[q];
-      const PatchPlanes of_a = planes_of(local.records(), a), of_b = planes_of(local.records(), b);
-      for (std::size_t l = 0; a.lanes >> l != 0; ++l) {
-        const Mask16 asked = p == q ? static_cast<Mask16>(b.lanes & ~(1U << l)) : b.lanes;
-        const Mask16 left = not_parted(of_b, b, asked, {of_a, a, l}, tree.common_of(p, q), local.error());
-        EXPECT_EQ(left & ~asked, 0);
-        for (std::size_t m = 0; b.lanes >> m != 0; ++m)
-          if ((asked & ~left) >> m & 1) found.emplace(tree.triangles[p][l], tree.triangles[q][m]);
-      }
-    }
-  return found;
-}
-
 struct Interval {
   TriangleMesh mesh;
   std::vector<Vec3> start, end;
 
-  // Of the mesh cut as one cluster.
+  // Pairs of triangles, either way round, that a plane parts.
   std::set<std::pair<TriangleId, TriangleId>> parted() const {
-    Covers covers;
-    for (Cover& cover : covers) cover.cluster_of.assign(mesh.triangle_count(), kNone);
-    covers[0].cluster_of.assign(mesh.triangle_count(), 0);
-    const PatchTree tree = make_patches(mesh, start, covers);
     LocalPositions local(start);
     local.update(motion());
-    return fast::parted(tree, local);
+    std::set<std::pair<TriangleId, TriangleId>> found;
+    PairLanes lanes;
+    std::vector<std::pair<TriangleId, TriangleId>> pairs;  // of these lanes
+    const auto ask = [&] {
+      const Mask16 left = not_parted(local.records(), lanes, local.error());
+      for (std::size_t l = 0; l < pairs.size(); ++l)
+        if ((left >> l & 1) == 0) found.insert(pairs[l]);
+      pairs.clear();
+    };
+    const auto count = static_cast<std::int32_t>(mesh.triangle_count());
+    for (std::int32_t i = 0; i < count; ++i)
+      for (std::int32_t j = 0; j < count; ++j) {
+        if (i == j) continue;
+        const TriangleId a{i}, b{j};
+        for (std::size_t k = 0; k < 3; ++k) {
+          lanes.first[k][pairs.size()] = static_cast<std::int32_t>(mesh.corners(a)[k]);
+          lanes.second[k][pairs.size()] = static_cast<std::int32_t>(mesh.corners(b)[k]);
+        }
+        pairs.emplace_back(a, b);
+        if (pairs.size() == kLanes16) ask();
+      }
+    ask();
+    return found;
   }
   Motion motion() const { return Motion(start, end); }
 };

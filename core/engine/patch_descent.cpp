@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace cscd::fast {
 
@@ -10,21 +11,20 @@ PatchDescent::PatchDescent(const DescentInput& input)
       nodes_(input.tree.nodes),
       patches_(input.tree.patches),
       star_(input.positions.records().size()),
-      triangle_bounds_(input.tree.patches.size()),
-      planes_(input.tree.patches.size()) {}
+      triangle_bounds_(input.tree.patches.size()) {}
 
 void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid) {
   bounds_ = bounds;
   grid_ = grid;
   tests_ = 0;
   triangle_bounds_.start_interval();
-  planes_.start_interval();
   std::fill(star_.begin(), star_.end(), Star::unknown);
 }
 
 void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
   sink_ = &sink;
   visit<Depth::all>(at);
+  pass_on_waiting();
 }
 
 void PatchDescent::open(NodePair at, std::vector<NodePair>& below) {
@@ -89,8 +89,8 @@ inline void PatchDescent::inside(std::size_t p) {
 
 // Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
 inline void PatchDescent::between(std::size_t a, std::size_t b) {
-  const std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
-  const Certificates::Shared shared = input_.certificates.shared(p, q);
+  std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
+  Certificates::Shared shared = input_.certificates.shared(p, q);
   Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;
   for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
     if (shared.q[s] == patches_[q].lanes) rows &= static_cast<Mask16>(~shared.p[s]);
@@ -101,6 +101,10 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
   if (rows == 0) return;
   columns = near_counted(bounds_of_triangles(q), columns, grid_.in_units(bounds_[a]));
   if (columns == 0) return;
+  if (std::popcount(columns) < std::popcount(rows)) {  // the fewer, the less work
+    std::swap(p, q), std::swap(rows, columns);
+    shared = shared.turned(patches_[q].lanes);
+  }
   const Common* common = input_.tree.common_of(p, q);
   for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
@@ -123,7 +127,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
     left |= input_.positions.known() ? near(bounds_of_triangles(q), wanted, bounds_of_triangles(p), lane)
                                      : wanted;
   }
-  if (left != 0) pass_on(p, lane, q, left, common);
+  if (left != 0) pass_on(p, lane, q, left);
 }
 
 // Without the pairs that the star of a common corner proves apart.
@@ -138,15 +142,31 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
   return wanted;
 }
 
-// Those that no plane parts. Rare, hence not in the caller.
-[[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes,
-                                             const Common* common) {
+// One triangle of patch p and some of patch q. Rare, hence not in the caller.
+[[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
+  const Patch &first = patches_[p], &second = patches_[q];
+  for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+    const auto other = static_cast<std::size_t>(std::countr_zero(rest));
+    for (std::size_t k = 0; k < 3; ++k) {
+      waiting_vertices_.first[k][waiting_count_] = first.vertex[first.corner[k][lane]];
+      waiting_vertices_.second[k][waiting_count_] = second.vertex[second.corner[k][other]];
+    }
+    waiting_[waiting_count_++] = {input_.tree.triangles[p][lane], input_.tree.triangles[q][other]};
+    if (waiting_count_ == waiting_.size()) pass_on_waiting();
+  }
+}
+
+// Those that no plane parts, in the order in which they were found.
+void PatchDescent::pass_on_waiting() {
+  if (waiting_count_ == 0) return;
+  unsigned left = (1U << waiting_count_) - 1;
   if (input_.planes && input_.positions.known())
-    lanes = not_parted(planes(q), patches_[q], lanes, {planes(p), patches_[p], lane}, common,
-                       input_.positions.error());
-  for (unsigned rest = lanes; rest != 0; rest &= rest - 1)
-    sink_->add(input_.tree.triangles[p][lane],
-               input_.tree.triangles[q][static_cast<std::size_t>(std::countr_zero(rest))]);
+    left &= not_parted(input_.positions.records(), waiting_vertices_, input_.positions.error());
+  for (; left != 0; left &= left - 1) {
+    const TrianglePair& pair = waiting_[static_cast<std::size_t>(std::countr_zero(left))];
+    sink_->add(pair.a, pair.b);
+  }
+  waiting_count_ = 0;
 }
 
 inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,
@@ -167,10 +187,6 @@ const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
       }
     return bounds;
   });
-}
-
-const PatchPlanes& PatchDescent::planes(std::size_t p) {
-  return planes_.of(p, [&] { return planes_of(input_.positions.records(), patches_[p]); });
 }
 
 inline bool PatchDescent::flat(VertexId vertex) {

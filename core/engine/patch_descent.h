@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <new>
@@ -95,10 +96,10 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Common* common);
   Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common);
   bool flat(VertexId vertex);
-  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes, const Common* common);
+  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
+  void pass_on_waiting();
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
-  const PatchPlanes& planes(std::size_t p);
 
   const DescentInput input_;
   const std::span<const PatchTree::Node> nodes_;
@@ -107,8 +108,11 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   Grid grid_{1};
   std::vector<Star> star_;  // of each vertex
   OnDemand<TriangleBounds> triangle_bounds_;
-  OnDemand<PatchPlanes> planes_;
   TrianglePairSink* sink_ = nullptr;
+  // Pairs that wait until planes are asked about sixteen. Behind them stand those of before.
+  std::array<TrianglePair, kLanes16> waiting_{};
+  PairLanes waiting_vertices_;
+  std::size_t waiting_count_ = 0;
   std::vector<NodePair>* opened_ = nullptr;
   std::uint64_t tests_ = 0;
 };

@@ -118,6 +118,12 @@ Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& 
 
 namespace {
 
+// Control vectors of the normals, and what bounds their rounding.
+struct PatchNormals {
+  Float16 control[3][3];
+  Float16 longest[2];  // largest component of the two edges
+};
+// Of the triangles of a patch; `corner` is one of each.
 [[gnu::always_inline]] inline void make_normals(const PatchLanes& lanes, const Patch& patch,
                                                 PatchNormals& out, PatchLanes& corner) {
   PatchLanes a, b;
@@ -145,20 +151,11 @@ namespace {
 
 }  // namespace
 
-void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& normals, PatchLanes& corner) {
-  make_normals(lanes, patch, normals, corner);
-}
-
-Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
-                  float error) {
-  return look(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error), viewpoint, error);
-}
-
 Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
   PatchNormals normals;
   PatchLanes corner;
   make_normals(lanes, patch, normals, corner);
-  return orientation(normals, corner, viewpoint, error);
+  return look(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error), viewpoint, error);
 }
 
 void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],

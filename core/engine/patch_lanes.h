@@ -40,16 +40,6 @@ struct Signs {
   Mask16 positive, negative;
 };
 
-// Control vectors of the normals, and what bounds their rounding.
-struct PatchNormals {
-  Float16 control[3][3];
-  Float16 longest[2];  // largest component of the two edges
-};
-// Of the triangles of a patch; `corner` is one of each.
-void find_normals(const PatchLanes& lanes, const Patch& patch, PatchNormals& normals, PatchLanes& corner);
-// Of triangles with these normals and these corners.
-Signs orientation(const PatchNormals& normals, const PatchLanes& corner, const Viewpoint& viewpoint,
-                  float error);
 // Of the triangles of a patch.
 Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error);
 // The same towards several viewpoints, in one go; null gives none.

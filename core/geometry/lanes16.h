@@ -92,6 +92,18 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
+// Where the numbers are the same.
+inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
+                    const std::array<std::int32_t, kLanes16>& b) {
+#ifdef __AVX512F__
+  return _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(a.data()), _mm512_loadu_si512(b.data()));
+#else
+  Mask16 bits = 0;
+  for (std::size_t l = 0; l < kLanes16; ++l) bits |= static_cast<Mask16>((a[l] == b[l]) << l);
+  return bits;
+#endif
+}
+
 // All lanes by an operation that takes two vectors of any length, or two numbers: halves first.
 template <class Operation>
 float folded(Float16 v, const Operation& operation) {

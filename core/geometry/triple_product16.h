@@ -22,6 +22,13 @@ struct VectorLanes16 {
   Float16 at[2][3];
 };
 
+inline VectorLanes16 operator-(const VectorLanes16& to, const VectorLanes16& from) {
+  VectorLanes16 out;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = to.at[end][i] - from.at[end][i];
+  return out;
+}
+
 // Of each, over both ends and all axes.
 inline Float16 largest_component(const VectorLanes16& v) {
   const auto largest = [&](int end) {
