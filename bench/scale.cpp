@@ -41,15 +41,25 @@ constexpr const char* kStudies[] = {"size", "step", "bones", "threads", "contact
 
 // Those of the named rows that this build has: packages may be missing. Throws InputError where the user
 // named one that is not known.
-std::vector<const Strategy*> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
-  std::vector<const Strategy*> rows;
-  if (!options.strategies.empty()) {
-    for (const std::string& name : options.strategies) rows.push_back(&strategy_named(name));
-    return rows;
+std::vector<ScaleRow> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
+  const auto parts_of = [](std::string_view name) {
+    const bool first = name.ends_with(ScaleRow::kFirst);
+    return std::pair(name.substr(0, name.size() - (first ? ScaleRow::kFirst.size() : 0)), first);
+  };
+  std::vector<ScaleRow> rows;
+  for (const std::string& text : options.strategies) {
+    const auto [name, first] = parts_of(text);
+    rows.push_back({&strategy_named(std::string(name)), first});
+    if (first && rows.back().strategy->own_test)
+      throw InputError("--strategy " + text + ": tests pairs by itself and finds all; leave " +
+                       std::string(ScaleRow::kFirst.substr(1)) + " out");
   }
-  for (const std::string name : planned)
-    for (const Strategy& row : strategies())
-      if (row.name == name) rows.push_back(&row);
+  if (!rows.empty()) return rows;
+  for (const std::string text : planned) {
+    const auto [name, first] = parts_of(text);
+    for (const Strategy& strategy : strategies())
+      if (strategy.name == name) rows.push_back({&strategy, first});
+  }
   return rows;
 }
 
@@ -100,7 +110,7 @@ std::vector<ScaleSubject> plan(const ScaleOptions& options) {
     subject.steps = {{scene}};
     if (wanted("size")) {
       subject.study = "size";
-      subject.strategies = chosen_rows(options, defaults.at("size_strategies"));
+      subject.rows = chosen_rows(options, defaults.at("size_strategies"));
       for (const std::size_t size : sizes) subject.triangles = size, add(subject, intervals);
     }
     subject.triangles = defaults.at("other_triangles");
@@ -109,19 +119,19 @@ std::vector<ScaleSubject> plan(const ScaleOptions& options) {
       stepped.study = "step";
       stepped.steps.clear();
       for (const double step : steps) stepped.steps.push_back({scene, step});
-      stepped.strategies = chosen_rows(options, defaults.at("step_strategies"));
+      stepped.rows = chosen_rows(options, defaults.at("step_strategies"));
       add(std::move(stepped), intervals);
     }
     if (wanted("bones") && named("bone_scenes", scene)) {
       subject.study = "bones";
-      subject.strategies = chosen_rows(options, defaults.at("bone_strategies"));
+      subject.rows = chosen_rows(options, defaults.at("bone_strategies"));
       for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(subject, intervals);
       subject.bones = 0;
     }
     if (wanted("threads") && named("thread_scenes", scene)) {
       subject.study = "threads";
       subject.triangles = defaults.at("thread_triangles");
-      subject.strategies = chosen_rows(options, defaults.at("thread_strategies"));
+      subject.rows = chosen_rows(options, defaults.at("thread_strategies"));
       for (const int threads : defaults.at("threads"))
         if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
           subject.threads = threads, add(subject, intervals);
@@ -132,7 +142,7 @@ std::vector<ScaleSubject> plan(const ScaleOptions& options) {
       subject.recorded = true;
       subject.triangles = 0;
       subject.steps.push_back({scene + "_contact"});
-      subject.strategies = chosen_rows(options, defaults.at("contact_strategies"));
+      subject.rows = chosen_rows(options, defaults.at("contact_strategies"));
       add(std::move(subject),
           options.intervals > 0 ? intervals : defaults.at("contact_intervals").get<std::size_t>());
     }
@@ -252,7 +262,7 @@ void add_scale(CLI::App& app) {
       "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n\n"
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
-      "answer is wrong.");
+      "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
   command
       ->add_option("--study", options->studies,
                    "size, step, bones, threads, contacts, with commas; default all")

@@ -14,6 +14,7 @@
 #include "bench/timing.h"
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
+#include "core/detect/first_only.h"
 #include "core/detect/verify.h"
 
 namespace cscd::bench {
@@ -34,7 +35,7 @@ double milliseconds_since(Clock::time_point begin) {
 }
 
 struct Contestant {
-  const Strategy* strategy;
+  ScaleRow row;
   Made made;
   bool reference;
   // By step: one interval's counters a place, and [repetition][interval] of every stage.
@@ -48,7 +49,14 @@ Report answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
   const Report report = contestant.made.prepared.detector->detect(
       interval.motion, interval.bones ? &*interval.bones : nullptr, found);
   found.sort();
+  if (contestant.row.first) keep_first(found);
   return report;
+}
+
+// Whoever is asked for the earliest contact tells no others.
+Guarantee guarantee_of(const ScaleRow& row) {
+  const bool fewer = row.first && row.strategy->guarantee == Guarantee::complete;
+  return fewer ? Guarantee::first_contact : row.strategy->guarantee;
 }
 
 // What became of the intervals of one step.
@@ -66,13 +74,13 @@ class Measurement {
  public:
   explicit Measurement(const ScaleSubject& subject) : subject_(subject), scaled_(scale_input(subject)) {
     const ElementaryTest& test = elementary_test_named(kElementary);
-    std::vector<const Strategy*> strategies = subject.strategies;
-    if (std::ranges::find(strategies, &complete_reference()) == strategies.end())
-      strategies.push_back(&complete_reference());
-    for (const Strategy* strategy : strategies) {
-      if (!allows(input(), *strategy)) continue;
-      contestants_.push_back(
-          {strategy, make(*strategy, test), strategy == &complete_reference(), {}, {}, {}, {}});
+    std::vector<ScaleRow> rows = subject.rows;
+    const ScaleRow reference{&complete_reference()};
+    if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
+    for (const ScaleRow& row : rows) {
+      if (!allows(input(), *row.strategy)) continue;
+      contestants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
+      if (row.first) look_for_first_only(*contestants_.back().made.prepared.detector);
     }
     for (Contestant& c : contestants_) {
       c.counts.resize(subject.steps.size());
@@ -107,16 +115,15 @@ class Measurement {
       for (Contestant& c : contestants_) {
         if (c.reference || left_out(c, step_of(i))) continue;
         keep(c, i, answer(c, interval, found), found);
-        const std::string where = std::string(c.strategy->name) + ", interval " + std::to_string(i) + ": ";
+        const std::string where = c.row.name() + ", interval " + std::to_string(i) + ": ";
         if (judged) {
-          const Verification judgement = cscd::verify(truth, found, c.strategy->guarantee, start->second);
+          const Verification judgement = cscd::verify(truth, found, guarantee_of(c.row), start->second);
           if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
         } else if (!told) {
           first = first_time(found);
           told = &c;
         } else if (start->second && first != first_time(found)) {
-          verified.failures.push_back(where + "another first contact than " +
-                                      std::string(told->strategy->name));
+          verified.failures.push_back(where + "another first contact than " + told->row.name());
         }
       }
       verified.colliding += !first.is_null();
@@ -140,8 +147,8 @@ class Measurement {
           const Report report = answer(*c, interval, found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
           if (digest(found) != c->digests[i]) {
-            verified_[step_of(i)].failures.push_back(std::string(c->strategy->name) + ", interval " +
-                                                     std::to_string(i) + ": other contacts when timed");
+            verified_[step_of(i)].failures.push_back(c->row.name() + ", interval " + std::to_string(i) +
+                                                     ": other contacts when timed");
             break;
           }
         }
@@ -175,7 +182,7 @@ class Measurement {
   std::size_t interval_count() const { return subject_.steps.size() * subject_.starts.size(); }
   std::size_t step_of(std::size_t interval) const { return interval / subject_.starts.size(); }
   bool is_timed(const Contestant& c) const {
-    return std::ranges::find(subject_.strategies, c.strategy) != subject_.strategies.end();
+    return std::ranges::find(subject_.rows, c.row) != subject_.rows.end();
   }
   // Milliseconds of a query as it was verified, mean over a step's intervals; 0 if it answered none.
   double once_ms(const Contestant& c, std::size_t s) const {
@@ -220,8 +227,8 @@ class Measurement {
   }
 
   ordered_json preparation_json(const Contestant& c) const {
-    ordered_json out = {{"name", c.strategy->name},
-                        {"guarantee", to_string(c.strategy->guarantee)},
+    ordered_json out = {{"name", c.row.name()},
+                        {"guarantee", to_string(guarantee_of(c.row))},
                         {"threads", c.made.prepared.preparation.threads},
                         {"make_ms", c.made.make_ms}};
     const Preparation& preparation = c.made.prepared.preparation;
@@ -259,7 +266,7 @@ class Measurement {
   }
 
   ordered_json row_json(const Contestant& c, std::size_t s) const {
-    ordered_json row = {{"name", c.strategy->name}};
+    ordered_json row = {{"name", c.row.name()}};
     ordered_json counts = ordered_json::object();
     for (const auto& [name, values] : c.counts[s])
       counts[name] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

@@ -238,7 +238,7 @@ TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {
 }
 
 TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
-  const auto out = record({"--smoke", "--study", "contacts", "--strategy", "drvbc,base"}, "contacts");
+  const auto out = record({"--smoke", "--study", "contacts", "--strategy", "drvbc --first,base"}, "contacts");
   ASSERT_EQ(out.at("subjects").size(), 1u);
   const auto& subject = out.at("subjects")[0];
   EXPECT_EQ(subject.at("study"), "contacts");
@@ -249,6 +249,11 @@ TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
   EXPECT_EQ(subject.at("steps")[1].at("scene"), "urchin_contact");
   EXPECT_GT(subject.at("steps")[1].at("colliding"), 0);
   EXPECT_EQ(out.at("contact_ratios").size(), 4u);
+  const auto &first = subject.at("steps")[1].at("strategies")[0].at("counts"),
+             &all = subject.at("steps")[1].at("strategies")[1].at("counts");
+  EXPECT_EQ(subject.at("strategies")[0].at("name"), "drvbc --first");
+  EXPECT_LT(first.at("contacts"), all.at("contacts"));
+  EXPECT_LT(first.at("elementary_tests"), all.at("elementary_tests"));
   EXPECT_TRUE(out.at("fits").empty());
 }
 
@@ -269,6 +274,7 @@ TEST_F(ScaleProgram, RefusesInOneLine) {
   EXPECT_NE(refusal({"--scene", "hand_contact"}).find("name a scene without it"), std::string::npos);
   EXPECT_NE(refusal({"--study", "bones", "--scene", "urchin"}).find("leave nothing to measure"),
             std::string::npos);
+  EXPECT_NE(refusal({"--strategy", "fcl --first"}).find("fcl"), std::string::npos);
   EXPECT_NE(refusal({"--study", "contacts", "--scene", "urchin_contact"}).find("leave nothing to measure"),
             std::string::npos);
   EXPECT_NE(refusal({"--smoke", "--json", "/nosuch/folder/x.json"}).find("/nosuch/folder"),

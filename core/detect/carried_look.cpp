@@ -21,11 +21,6 @@ struct Corners {
   float error;  // of a coordinate: u of the largest, and what the difference in doubles lost
 };
 
-using Double4 = double __attribute__((vector_size(32)));
-
-Double4 load(const Vec3& p) {
-  return Double4{p[0], p[1], p[2], 0};
-}
 Float8 joined(Float4 a, Float4 b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
@@ -34,8 +29,8 @@ Float16 joined(Float8 a, Float8 b) {
 }
 
 Corners::End load(std::span<const Vec3> x, const Triangle& a, const Triangle& b) {
-  const Double4 from = load(x[+a[0]]);
-  const auto seen = [&](VertexId v) { return __builtin_convertvector(load(x[+v]) - from, Float4); };
+  const Double4 from = row_of(x[+a[0]]);
+  const auto seen = [&](VertexId v) { return __builtin_convertvector(row_of(x[+v]) - from, Float4); };
   const Float8 last = joined(seen(b[1]), seen(b[2]));
   return {joined(joined(Float4{}, seen(a[1])), joined(seen(a[2]), seen(b[0]))), joined(last, last)};
 }

@@ -60,12 +60,38 @@ class PairTester : public TrianglePairSink {
       assigned_.clear();
       options_.assignment->append(block, assigned_);
       test_assigned(assigned_);
+    } else if (first_only_) {
+      test_in_order(block);
     } else {
       carried_.clear();
       for (const TrianglePair& pair : block) take_all_carried(pair);
       test_carried();
     }
     clock_.enter(Stage::traversal);
+  }
+
+  // In the order in which they can touch, some at a time, up to the earliest contact so far.
+  void test_in_order(const std::vector<TrianglePair>& block) {
+    constexpr std::size_t kTogether = 16;
+    const auto matters = [&](const Bounded& pair) { return pair.before <= earliest_ + kTimeSlack; };
+    order_.clear();
+    for (std::size_t first = 0; first < block.size(); first += kLanes16) {
+      const auto pairs = std::span(block).subspan(first, std::min(kLanes16, block.size() - first));
+      const auto before = no_contact_before(mesh_, *motion_, pairs);
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (matters({before[i], pairs[i]})) order_.push_back({before[i], pairs[i]});
+    }
+    const auto later = [](const Bounded& a, const Bounded& b) { return a.before > b.before; };
+    std::make_heap(order_.begin(), order_.end(), later);
+    while (!order_.empty() && matters(order_.front())) {
+      carried_.clear();
+      for (std::size_t i = 0; i < kTogether && !order_.empty(); ++i) {
+        take_all_carried(order_.front().pair);
+        std::pop_heap(order_.begin(), order_.end(), later);
+        order_.pop_back();
+      }
+      test_carried();
+    }
   }
 
   // Few of what each two triangles carry, hence one by one.
@@ -107,7 +133,6 @@ class PairTester : public TrianglePairSink {
   }
 
   void test_left() {
-    if (first_only_) return test_first();
     vertex_faces_.clear(), edge_edges_.clear();
     for (const FeaturePair& pair : left_) {
       if (!met_.insert(pair)) continue;
@@ -123,20 +148,6 @@ class PairTester : public TrianglePairSink {
     tests.answers.resize(tests.pairs.size());
     test_.answer(tests.queries, tests.answers);
     for (std::size_t i = 0; i < tests.pairs.size(); ++i) take_answer(tests.pairs[i], tests.answers[i]);
-  }
-  // In the order in which they can touch, up to the earliest contact so far.
-  void test_first() {
-    order_.clear();
-    for (const FeaturePair& pair : left_)
-      if (met_.insert(pair)) order_.emplace_back(no_contact_before(mesh_, *motion_, pair), pair);
-    const auto later = [](const Bounded& a, const Bounded& b) { return a.first > b.first; };
-    std::make_heap(order_.begin(), order_.end(), later);
-    while (!order_.empty() && order_.front().first <= earliest_ + kTimeSlack) {
-      const FeaturePair& pair = order_.front().second;
-      take_answer(pair, ask(test_, mesh_, *motion_, pair));
-      std::pop_heap(order_.begin(), order_.end(), later);
-      order_.pop_back();
-    }
   }
   void take_answer(const FeaturePair& pair, const Answer& answer) {
     ++counts_.elementary_tests;
@@ -159,7 +170,10 @@ class PairTester : public TrianglePairSink {
   Tests<MovingEdgeEdge> edge_edges_;
   bool first_only_ = false;
   double earliest_ = 1;  // contact so far
-  using Bounded = std::pair<double, FeaturePair>;
+  struct Bounded {
+    float before;  // which the two certainly do not touch
+    TrianglePair pair;
+  };
   std::vector<Bounded> order_;
 };
 

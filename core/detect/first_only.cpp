@@ -2,37 +2,116 @@
 
 #include <algorithm>
 
-#include "core/elementary/filter.h"
+#include "core/geometry/triple_product16.h"
 
 namespace cscd {
 namespace {
 
-// The leftmost crossing of the axis by a line between a point of the hull before and one behind it, each
-// moved left by the error; and by the roundings in here.
-double no_root_before(const BernsteinCubic& f) {
-  const double side = f.c[0] < 0 ? -1 : 1;
-  double before = 2;
-  for (int i = 0; i < 4; ++i) {
-    const double height = side * f.c[i] - f.error;
-    if (!(height > 0)) {
-      if (i == 0) return 0;
-      continue;
-    }
-    for (int j = i + 1; j < 4; ++j) {
-      const double depth = f.error - side * f.c[j];
-      if (depth < 0) continue;
-      before = std::min(before, (i + (j - i) * (height / (height + depth))) / 3);
+// Sixteen pairs: the corners of the first triangles, then those of the second, seen from the first of all at
+// either end.
+struct PairCorners {
+  VectorLanes16 corner[6];
+};
+
+using Rows = std::array<Float4, kLanes16>;  // x, y, z and 0 of each pair
+
+void transpose(const Rows& rows, Float16 (&out)[3]) {
+  Float16 four[4];  // pairs each
+  std::memcpy(four, rows.data(), sizeof four);
+  const auto both = [](Float16 a, Float16 b) {  // x of eight pairs, then y
+    return __builtin_shufflevector(a, b, 0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+  };
+  const auto last = [](Float16 a, Float16 b) {
+    return __builtin_shufflevector(a, b, 2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
+  };
+  const Float16 low = both(four[0], four[1]), high = both(four[2], four[3]);
+  out[0] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
+  out[1] = __builtin_shufflevector(low, high, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  out[2] = __builtin_shufflevector(last(four[0], four[1]), last(four[2], four[3]), 0, 1, 2, 3, 4, 5, 6, 7, 16,
+                                   17, 18, 19, 20, 21, 22, 23);
+}
+
+PairCorners corners_of(const TriangleMesh& mesh, const Motion& motion, std::span<const TrianglePair> pairs) {
+  Rows rows[2][6] = {};
+  const std::span<const Vec3> ends[2] = {motion.start(), motion.end()};
+  for (std::size_t l = 0; l < pairs.size(); ++l) {
+    const Triangle &a = mesh.corners(pairs[l].a), &b = mesh.corners(pairs[l].b);
+    for (std::size_t end = 0; end < 2; ++end) {
+      const auto at = [&](VertexId v) { return row_of(ends[end][+v]); };
+      const Double4 from = at(a[0]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        rows[end][k][l] = __builtin_convertvector(at(a[k]) - from, Float4);
+        rows[end][3 + k][l] = __builtin_convertvector(at(b[k]) - from, Float4);
+      }
     }
   }
-  return before * (1 - 8 * kUnitRoundoff);
+  PairCorners out;
+  for (std::size_t end = 0; end < 2; ++end)
+    for (std::size_t k = 0; k < 6; ++k) transpose(rows[end][k], out.corner[k].at[end]);
+  return out;
+}
+
+// When straight lines from `start` to `end` meet 0, from above.
+Float16 meets_zero(Float16 start, Float16 end) {
+  const Float16 share = (1 - 0x1p-20F) * (start / (start - end)), zero = {}, never = all_lanes(2);
+  return start > 0 ? (end > 0 ? never : share) : zero;
+}
+
+// Rounding. u = 2^-24; coordinates are at most M and off by at most d = 1.01 u M: u of themselves, and what
+// the difference in doubles lost. A direction is what it is; its components are at most N. A projection is
+// off by 3 d N, and by 9 u M N for its own roundings; the gap between two by twice that and 6 u M N. That is
+// less than 31 u M N; 32 also pay for the roundings of this bound. Where it is below kTiny products might
+// underflow, above kHuge they might overflow. A time is of numbers that are then exact, with few roundings.
+Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3], Float16 reach) {
+  constexpr float kTiny = 1e-30F, kHuge = 1e30F;
+  const Float16 error =
+      (32 * 0x1p-24F) * reach * larger_size(larger_size(direction[0], direction[1]), direction[2]);
+  Float16 over[2], under[2];
+  for (int end = 0; end < 2; ++end) {
+    const auto along = [&](int k) {
+      const Float16(&x)[3] = pairs.corner[k].at[end];
+      return product_plus(direction[2], x[2], product_plus(direction[1], x[1], direction[0] * x[0]));
+    };
+    const Float16 zero = {}, a = along(1), b = along(2), c = along(3), d = along(4), e = along(5);
+    over[end] = smaller(smaller(c, d), e) - larger(larger(zero, a), b) - error;
+    under[end] = smaller(smaller(zero, a), b) - larger(larger(c, d), e) - error;
+  }
+  const Float16 before = larger(meets_zero(over[0], over[1]), meets_zero(under[0], under[1])), zero = {};
+  return ((error > kTiny) & (error < kHuge)) ? before : zero;
 }
 
 }  // namespace
 
-double no_contact_before(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair) {
-  return no_root_before(pair.kind == FeaturePair::Kind::vertex_face
-                            ? coplanarity(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
-                            : coplanarity(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b})));
+std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Motion& motion,
+                                              std::span<const TrianglePair> pairs) {
+  const PairCorners corners = corners_of(mesh, motion, pairs);
+  const VectorLanes16(&p)[6] = corners.corner;
+  Float16 reach = {}, before = {};
+  for (const VectorLanes16& corner : p) reach = larger(reach, largest_component(corner));
+  const auto take = [&](const Float16(&direction)[3]) {
+    before = larger(before, no_contact_before(corners, direction, reach));
+  };
+  const Float16 zero = {}, one = all_lanes(1);
+  take({one, zero, zero}), take({zero, one, zero}), take({zero, zero, one});
+  Float16 way[3] = {};
+  for (int end = 0; end < 2; ++end) {
+    for (int triangle = 0; triangle < 6; triangle += 3) {
+      Float16 a[3], b[3], normal[3];
+      for (int i = 0; i < 3; ++i) {
+        a[i] = p[triangle + 1].at[end][i] - p[triangle].at[end][i];
+        b[i] = p[triangle + 2].at[end][i] - p[triangle].at[end][i];
+        way[i] += (triangle == 0 ? -1.0F : 1.0F) *
+                  (p[triangle].at[end][i] + p[triangle + 1].at[end][i] + p[triangle + 2].at[end][i]);
+      }
+      for (int i = 0; i < 3; ++i)
+        normal[i] = product_minus(a[(i + 1) % 3], b[(i + 2) % 3], a[(i + 2) % 3] * b[(i + 1) % 3]);
+      take(normal);
+    }
+  }
+  take(way);
+  std::array<float, kLanes16> out;
+  std::memcpy(out.data(), &before, sizeof before);
+  return out;
 }
 
 void keep_first(ContactSet& sorted) {

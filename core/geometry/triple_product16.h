@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/base/vec3.h"
 #include "core/geometry/lanes16.h"
 
 // Sixteen triple products of moving vectors in single precision, with certified signs.
@@ -16,6 +17,11 @@
 // 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products might
 // underflow; nothing is certain then.
 namespace cscd {
+
+using Double4 = double __attribute__((vector_size(32)));
+inline Double4 row_of(const Vec3& p) {
+  return Double4{p[0], p[1], p[2], 0};
+}
 
 // Sixteen moving vectors, or points: [end][axis].
 struct VectorLanes16 {
