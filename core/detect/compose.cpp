@@ -72,7 +72,7 @@ class PairTester : public TrianglePairSink {
 
   // In the order in which they can touch, some at a time, up to the earliest contact so far.
   void test_in_order(const std::vector<TrianglePair>& block) {
-    constexpr std::size_t kTogether = 16;
+    constexpr std::size_t kTogether = 16;  // more would be asked in vain, fewer leave lanes of the test empty
     const auto matters = [&](const Bounded& pair) { return pair.before <= earliest_ + kTimeSlack; };
     order_.clear();
     for (std::size_t first = 0; first < block.size(); first += kLanes16) {

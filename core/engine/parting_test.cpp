@@ -65,7 +65,10 @@ TEST(Parting, NoPairThatTouchesIsParted) {
       EXPECT_FALSE(apart.contains({a, b}) || apart.contains({b, a}))
           << "seed " << seed << ": " << +a << ", " << +b;
     }
-    for (const auto& [a, b] : apart) ++by_shared[shared(body.mesh, a, b)];
+    for (const auto& [a, b] : apart) {
+      ++by_shared[shared(body.mesh, a, b)];
+      EXPECT_TRUE(apart.contains({b, a})) << "either plane may part them";
+    }
   }
   EXPECT_GT(met, 1000u);
   for (const std::size_t count : by_shared) EXPECT_GT(count, 1000u);

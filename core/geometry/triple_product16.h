@@ -18,6 +18,7 @@
 // underflow; nothing is certain then.
 namespace cscd {
 
+// A point in one register; the fourth number is 0.
 using Double4 = double __attribute__((vector_size(32)));
 inline Double4 row_of(const Vec3& p) {
   return Double4{p[0], p[1], p[2], 0};
