@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/catalogue.h"
+#include "bench/strategy_row.h"
 #include "bench/test_program.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
@@ -40,6 +41,27 @@ TEST(FirstOnly, EveryStrategyKeepsItsContactsOfTheEarliestTime) {
     }
   }
   EXPECT_GT(colliding, 100u);
+}
+
+// All contacts of the earliest time where all were promised, one of them where one was, and none of a later.
+TEST(FirstOnly, ARowIsHeldToWhatItWasAskedFor) {
+  const auto rows = rows_called(std::vector<std::string>{"base --first", "drvbc --first", "base"});
+  ASSERT_EQ(rows.size(), 3u);
+  const StrategyRow &all = rows[0], &one = rows[1], &every = rows[2];
+  EXPECT_EQ(all.name(), "base --first");
+  const auto contact = [](int vertex, double time) {
+    return Contact{{FeaturePair::Kind::vertex_face, vertex, 9}, Verdict::contact, time};
+  };
+  const ContactSet truth{{contact(1, 0.25), contact(2, 0.25), contact(3, 0.5)}};
+  const ContactSet earliest{{contact(1, 0.25), contact(2, 0.25)}}, half{{contact(2, 0.25)}},
+      later{{contact(3, 0.5)}};
+  EXPECT_TRUE(verify(truth, earliest, all, true).ok);
+  EXPECT_FALSE(verify(truth, half, all, true).ok);
+  EXPECT_TRUE(verify(truth, half, one, true).ok);
+  EXPECT_FALSE(verify(truth, later, one, true).ok);
+  EXPECT_FALSE(verify(truth, truth, all, true).ok);
+  EXPECT_TRUE(verify(truth, truth, every, true).ok);
+  EXPECT_FALSE(verify(truth, earliest, every, true).ok);
 }
 
 TEST(FirstOnly, QueryReportsTheEarliestTimeAloneAndRefusesWhatMayBeWrong) {

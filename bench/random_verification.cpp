@@ -5,6 +5,7 @@
 
 #include "bench/catalogue.h"
 #include "core/detect/embedding.h"
+#include "core/detect/first_only.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
@@ -53,10 +54,14 @@ struct Subject {
     ContactSet passed_on, found;
     Report report;
   };
-  Result run(const Strategy& strategy, const ElementaryTest& referee) {
-    const ElementaryTest& put_off = seed % 2 == 0 ? kPutOff<false> : kPutOff<true>;
+  Result run(const StrategyRow& row, const ElementaryTest& referee) {
+    const bool even = seed % 2 == 0;
+    // The earliest contact is known by its time, which cannot be put off.
+    const ElementaryTest& test = row.first ? elementary_test_named(even ? "exact" : "filtered_exact")
+                                           : (even ? kPutOff<false> : kPutOff<true>);
     const std::unique_ptr<Detector> detector =
-        strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, put_off}).detector;
+        row.strategy->make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test}).detector;
+    if (row.first) look_for_first_only(*detector);
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     result.report =
@@ -68,6 +73,7 @@ struct Subject {
         result.found.contacts.push_back({contact.pair, entry->second.verdict, entry->second.time});
     }
     result.found.sort();
+    if (row.first) keep_first(result.found);
     return result;
   }
   ContactSet ask_all(const ElementaryTest& test, const ContactSet& pairs) const {
@@ -92,10 +98,10 @@ std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& a
   return static_cast<std::size_t>(attaining_first(reference) - attaining_first(answer));
 }
 
-void judge(Subject subject, bool by_all_pairs, std::span<const Strategy> strategies, RandomSummary& summary) {
+void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows, RandomSummary& summary) {
   const ElementaryTest &exact = elementary_test_named("exact"), &inexact = elementary_tests().front();
   const Strategy& oracle = all_pairs();
-  const Strategy& judge = by_all_pairs ? oracle : complete_reference();
+  const StrategyRow judge{by_all_pairs ? &oracle : &complete_reference()};
   const Subject::Result judged = subject.run(judge, exact);
   const ContactSet& reference = judged.found;
   const std::span<const Vec3> start = subject.random.clip.frame(0).positions;
@@ -111,14 +117,14 @@ void judge(Subject subject, bool by_all_pairs, std::span<const Strategy> strateg
   if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
   summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
 
-  for (const Strategy& strategy : strategies) {
+  for (const StrategyRow& asked : rows) {
+    const Strategy& strategy = *asked.strategy;
     if (strategy.name == oracle.name && !by_all_pairs) continue;
     if (subject.torn && strategy.guarantee != Guarantee::complete) continue;  // promises nothing there
-    const Subject::Result own =
-        strategy.name == judge.name ? Subject::Result{} : subject.run(strategy, exact);
-    const Subject::Result& result = strategy.name == judge.name ? judged : own;
-    const Verification verdict = verify(reference, result.found, strategy.guarantee, embedded);
-    RandomRow& row = summary.rows[std::string(strategy.name)];
+    const Subject::Result own = asked == judge ? Subject::Result{} : subject.run(asked, exact);
+    const Subject::Result& result = asked == judge ? judged : own;
+    const Verification verdict = verify(reference, result.found, asked, embedded);
+    RandomRow& row = summary.rows[asked.name()];
     ++row.intervals;
     row.contacts_expected += verdict.reference_contacts;
     row.contacts_found += verdict.found_contacts;
@@ -132,21 +138,21 @@ void judge(Subject subject, bool by_all_pairs, std::span<const Strategy> strateg
       row.firsts_lost += missing == first_pairs_missing(reference, ContactSet{});
     }
     if (!verdict.ok)
-      summary.failures.push_back({subject.seed, subject.torn, std::string(subject.random.family),
-                                  std::string(strategy.name), verdict.failure});
+      summary.failures.push_back(
+          {subject.seed, subject.torn, std::string(subject.random.family), asked.name(), verdict.failure});
   }
 }
 
 }  // namespace
 
-RandomSummary verify_random(const RandomVerification& plan, std::span<const Strategy> strategies,
+RandomSummary verify_random(const RandomVerification& plan, std::span<const StrategyRow> rows,
                             const std::function<void(std::size_t)>& progress) {
   RandomSummary summary;
   for (std::size_t i = 0; i < plan.intervals; ++i) {
     const std::uint64_t seed = plan.first_seed + i;
     const bool by_all_pairs = i % plan.brute_every == 0;
-    judge(Subject(seed, false), by_all_pairs, strategies, summary);
-    if (i % plan.torn_every == 0) judge(Subject(seed, true), by_all_pairs, strategies, summary);
+    judge(Subject(seed, false), by_all_pairs, rows, summary);
+    if (i % plan.torn_every == 0) judge(Subject(seed, true), by_all_pairs, rows, summary);
     if (progress) progress(i + 1);
   }
   return summary;
@@ -181,9 +187,10 @@ std::string describe(const RandomSummary& summary) {
 
 std::string write_failure(const RandomFailure& failure, const std::filesystem::path& folder) {
   scenes::RandomInterval random = made(failure.seed, failure.torn);
-  const std::filesystem::path path =
-      folder / ("failure-" + failure.strategy + "-" + std::to_string(failure.seed) +
-                (failure.torn ? "-torn" : "") + ".h5");
+  std::string strategy = failure.strategy;
+  std::erase(strategy, ' ');
+  const std::filesystem::path path = folder / ("failure-" + strategy + "-" + std::to_string(failure.seed) +
+                                               (failure.torn ? "-torn" : "") + ".h5");
   scenes::PointCacheWriter writer(path, random.clip.header(), true);
   scenes::copy_frames(random.clip, writer);
   writer.finish();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/detect/strategy.h"
+#include "bench/strategy_row.h"
 #include "core/detect/verify.h"
 
 namespace cscd::bench {
@@ -42,15 +42,15 @@ struct RandomRow {
 struct RandomSummary {
   std::size_t intervals = 0, torn = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0,
               contacts = 0;
-  std::map<std::string, RandomRow> rows;                // by strategy
+  std::map<std::string, RandomRow> rows;                // by the row's name
   std::map<std::string, std::size_t> embedded_hits_of;  // embedded starts with contacts, by family
   Accuracy newton;                                      // of the first elementary test, on the same pairs
   std::vector<RandomFailure> failures;
 };
 
-// Runs every strategy with the elementary test `exact` on random intervals and holds it to its guarantee.
-// `progress` gets the number of intervals done.
-RandomSummary verify_random(const RandomVerification& plan, std::span<const Strategy> strategies,
+// Runs every row's strategy on random intervals, with exact answers for the pairs that it passes on, and
+// holds it to its guarantee. `progress` gets the number of intervals done.
+RandomSummary verify_random(const RandomVerification& plan, std::span<const StrategyRow> rows,
                             const std::function<void(std::size_t)>& progress = {});
 
 std::string describe(const RandomSummary& summary);

@@ -25,7 +25,8 @@ std::map<std::string, std::size_t> failures(std::span<const Strategy> strategies
   std::map<std::string, std::size_t> count;
   for (const Strategy& strategy : strategies) count[std::string(strategy.name)] = 0;
   const RandomVerification plan{intervals, 1, intervals};  // the first one by all pairs
-  for (const RandomFailure& failure : verify_random(plan, strategies).failures) ++count[failure.strategy];
+  for (const RandomFailure& failure : verify_random(plan, rows_of(strategies)).failures)
+    ++count[failure.strategy];
   for (const auto& [name, failed] : count) testing::Test::RecordProperty(name, static_cast<int>(failed));
   return count;
 }

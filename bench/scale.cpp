@@ -41,25 +41,13 @@ constexpr const char* kStudies[] = {"size", "step", "bones", "threads", "contact
 
 // Those of the named rows that this build has: packages may be missing. Throws InputError where the user
 // named one that is not known.
-std::vector<ScaleRow> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
-  const auto parts_of = [](std::string_view name) {
-    const bool first = name.ends_with(ScaleRow::kFirst);
-    return std::pair(name.substr(0, name.size() - (first ? ScaleRow::kFirst.size() : 0)), first);
-  };
-  std::vector<ScaleRow> rows;
-  for (const std::string& text : options.strategies) {
-    const auto [name, first] = parts_of(text);
-    rows.push_back({&strategy_named(std::string(name)), first});
-    if (first && rows.back().strategy->own_test)
-      throw InputError("--strategy " + text + ": tests pairs by itself and finds all; leave " +
-                       std::string(ScaleRow::kFirst.substr(1)) + " out");
-  }
+std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
+  std::vector<StrategyRow> rows = rows_called(options.strategies);
   if (!rows.empty()) return rows;
-  for (const std::string text : planned) {
-    const auto [name, first] = parts_of(text);
+  for (const std::string text : planned)
     for (const Strategy& strategy : strategies())
-      if (strategy.name == name) rows.push_back({&strategy, first});
-  }
+      for (const StrategyRow row : {StrategyRow{&strategy}, StrategyRow{&strategy, true}})
+        if (row.name() == text) rows.push_back(row);
   return rows;
 }
 

@@ -1,26 +1,14 @@
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bench/input.h"
+#include "bench/strategy_row.h"
 
 // What the study of growing work measures: one surface, prepared once, in intervals of its own or of other
 // motions.
 namespace cscd::bench {
-
-// A strategy, and what it is asked for: by `first`, the earliest contact alone.
-struct ScaleRow {
-  static constexpr std::string_view kFirst = " --first";
-
-  const Strategy* strategy;
-  bool first = false;
-
-  std::string name() const { return std::string(strategy->name) + std::string(first ? kFirst : ""); }
-  bool operator==(const ScaleRow&) const = default;
-};
 
 // Intervals that are alike.
 struct ScaleStep {
@@ -36,7 +24,7 @@ struct ScaleSubject {
   std::size_t bones = 0;            // of the chain, of a posed one; 0 for the scene's own
   std::vector<ScaleStep> steps;     // in order of their length
   std::vector<std::size_t> starts;  // frames at which intervals start
-  std::vector<ScaleRow> rows;
+  std::vector<StrategyRow> rows;
   std::size_t repetitions = 5;
   int threads = 1;  // for the strategies that can share their work
   std::size_t reference_limit =

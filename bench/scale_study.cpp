@@ -15,7 +15,6 @@
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
 #include "core/detect/first_only.h"
-#include "core/detect/verify.h"
 
 namespace cscd::bench {
 namespace {
@@ -35,7 +34,7 @@ double milliseconds_since(Clock::time_point begin) {
 }
 
 struct Contestant {
-  ScaleRow row;
+  StrategyRow row;
   Made made;
   bool reference;
   // By step: one interval's counters a place, and [repetition][interval] of every stage.
@@ -53,12 +52,6 @@ Report answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
   return report;
 }
 
-// Whoever is asked for the earliest contact tells no others.
-Guarantee guarantee_of(const ScaleRow& row) {
-  const bool fewer = row.first && row.strategy->guarantee == Guarantee::complete;
-  return fewer ? Guarantee::first_contact : row.strategy->guarantee;
-}
-
 // What became of the intervals of one step.
 struct Verified {
   std::size_t embedded = 0, colliding = 0, by_reference = 0;
@@ -74,10 +67,10 @@ class Measurement {
  public:
   explicit Measurement(const ScaleSubject& subject) : subject_(subject), scaled_(scale_input(subject)) {
     const ElementaryTest& test = elementary_test_named(kElementary);
-    std::vector<ScaleRow> rows = subject.rows;
-    const ScaleRow reference{&complete_reference()};
+    std::vector<StrategyRow> rows = subject.rows;
+    const StrategyRow reference{&complete_reference()};
     if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
-    for (const ScaleRow& row : rows) {
+    for (const StrategyRow& row : rows) {
       if (!allows(input(), *row.strategy)) continue;
       contestants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
       if (row.first) look_for_first_only(*contestants_.back().made.prepared.detector);
@@ -117,7 +110,7 @@ class Measurement {
         keep(c, i, answer(c, interval, found), found);
         const std::string where = c.row.name() + ", interval " + std::to_string(i) + ": ";
         if (judged) {
-          const Verification judgement = cscd::verify(truth, found, guarantee_of(c.row), start->second);
+          const Verification judgement = bench::verify(truth, found, c.row, start->second);
           if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
         } else if (!told) {
           first = first_time(found);
@@ -228,7 +221,7 @@ class Measurement {
 
   ordered_json preparation_json(const Contestant& c) const {
     ordered_json out = {{"name", c.row.name()},
-                        {"guarantee", to_string(guarantee_of(c.row))},
+                        {"guarantee", to_string(c.row.strategy->guarantee)},
                         {"threads", c.made.prepared.preparation.threads},
                         {"make_ms", c.made.make_ms}};
     const Preparation& preparation = c.made.prepared.preparation;

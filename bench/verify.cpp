@@ -1,7 +1,6 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 
 #include "bench/catalogue.h"
 #include "bench/command.h"
@@ -20,7 +19,9 @@ void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Hold every strategy to its guarantee on random small noisy meshes, the exact referee judging.\n\n"
-      "  cscd verify --intervals 10000\n\n"
+      "  cscd verify --intervals 10000\n"
+      "  cscd verify --intervals 10000 --strategy \"drvbc_fast,drvbc_fast --first\"\n\n"
+      "\"STRATEGY --first\" looks for the earliest contact alone.\n\n"
       "A failing interval is written as a point cache that `cscd query` replays. Exit status 1 if there is "
       "one.");
   command->add_option("--intervals", options->plan.intervals, "how many")->capture_default_str();
@@ -36,12 +37,11 @@ void add_verify(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--failures", options->folder, "folder for failing intervals")->capture_default_str();
   command->callback([options] {
-    std::vector<Strategy> chosen;
-    for (const std::string& name : options->strategies)
-      for (const Strategy* strategy : strategies_called(name)) chosen.push_back(*strategy);
+    std::vector<StrategyRow> rows = rows_called(options->strategies);
+    if (rows.empty()) rows = rows_of(strategies());
     Progress progress("verify", options->plan.intervals);
-    const RandomSummary summary = verify_random(options->plan, chosen.empty() ? strategies() : chosen,
-                                                [&](std::size_t done) { progress.set(done); });
+    const RandomSummary summary =
+        verify_random(options->plan, rows, [&](std::size_t done) { progress.set(done); });
     std::printf("%s", describe(summary).c_str());
     for (const RandomFailure& failure : summary.failures)
       std::printf("FAILED %s\n", write_failure(failure, options->folder).c_str());

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/detect/strategy.h"
+#include "core/detect/verify.h"
+
+namespace cscd::bench {
+
+// A strategy, and what it is asked for: by `first`, the earliest contact alone.
+struct StrategyRow {
+  static constexpr std::string_view kFirst = " --first";
+
+  const Strategy* strategy;
+  bool first = false;
+
+  std::string name() const { return std::string(strategy->name) + std::string(first ? kFirst : ""); }
+  bool operator==(const StrategyRow&) const = default;
+};
+
+// Each asked for all contacts. They point into `strategies`.
+std::vector<StrategyRow> rows_of(std::span<const Strategy> strategies);
+
+// What texts such as NAME or "NAME --first" mean, NAME a strategy or a group of them. Throws InputError where
+// it is not known, or where a strategy that brings its own elementary test is asked for the earliest contact
+// alone.
+std::vector<StrategyRow> rows_called(std::span<const std::string> texts);
+
+// Holds an answer to the row's guarantee: of the contacts that it was asked for. Both sets sorted, and what
+// was asked for `first` cut down by `keep_first`.
+Verification verify(const ContactSet& reference, const ContactSet& answer, const StrategyRow& row,
+                    bool starts_embedded);
+
+}  // namespace cscd::bench
