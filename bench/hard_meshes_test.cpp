@@ -9,6 +9,7 @@
 #include "core/detect/embedding.h"
 #include "core/detect/verify.h"
 #include "core/mesh/test_shapes.h"
+#include "scenes/random/random_interval.h"
 
 namespace cscd::bench {
 namespace {
@@ -141,6 +142,61 @@ TEST(HardMeshes, ScaleAndPlaceChangeNothing) {
   const auto far = [](const Vec3& p) { return Vec3(p + Vec3(0x1p30, -0x1p28, 0x1p20)); };
   expect_same(far, far, false);
   expect_same(stay, far, false);
+}
+
+// Two triangles whose projections overflow single precision, while bounds of their errors do not.
+TEST(HardMeshes, AFilterInSinglePrecisionDropsNothingOfHugeTriangles) {
+  const double unit = 1e8;
+  const std::vector<Vec3> start =
+      mapped({{0, -12, -12}, {-24, 6, -30}, {9, -30, 0}, {9, 27, -6}, {3, 9, -30}, {6, -18, 9}},
+             [&](const Vec3& p) { return Vec3(unit * p); });
+  const std::vector<Vec3> end =
+      mapped({{0, 0, 18}, {0, 30, 0}, {-15, 15, -18}, {-18, 21, 24}, {30, 15, 15}, {27, -24, -12}},
+             [&](const Vec3& p) { return Vec3(unit * p); });
+  const TriangleMesh mesh({test::corners(0, 1, 2), test::corners(3, 4, 5)}, 6);
+  for (const char* test : {"exact", "filtered_exact"}) {
+    ContactSet found;
+    complete_reference()
+        .make({mesh, start, nullptr, elementary_test_named(test)})
+        .detector->detect(Motion(start, end), nullptr, found);
+    EXPECT_EQ(found.contacts.size(), 1u) << test;
+  }
+}
+
+// Scale, of meshes whose features nearly touch at random: at any size, single precision and doubles end
+// somewhere else.
+TEST(HardMeshes, ScaleChangesNoAnswerOfRandomMeshes) {
+  const ElementaryTest &exact = elementary_test_named("exact"),
+                       &ours = elementary_test_named("filtered_exact");
+  std::size_t contacts = 0;
+  for (int exponent = -280; exponent <= 280; exponent += std::abs(exponent) < 60 ? 1 : 10) {
+    SCOPED_TRACE(exponent);
+    const scenes::RandomInterval random =
+        scenes::make_random_interval(static_cast<std::uint64_t>(300 + exponent));
+    const auto at = [&](std::size_t frame, double scale) {
+      const auto positions = random.clip.frame(frame).positions;
+      return mapped({positions.begin(), positions.end()}, [&](const Vec3& p) { return Vec3(scale * p); });
+    };
+    const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
+    const auto answer = [&](const char* name, const ElementaryTest& test, double scale) {
+      const std::vector<Vec3> start = at(0, scale), end = at(1, scale);
+      ContactSet found;
+      strategy_named(name)
+          .make({mesh, start, nullptr, test})
+          .detector->detect(Motion(start, end), nullptr, found);
+      found.sort();
+      return found;
+    };
+    const ContactSet truth = answer("base", exact, 1);
+    const bool embedded = EmbeddingTest(mesh, at(0, 1)).embedded(at(0, 1));
+    for (const char* name : {"base", "drvbc_fast", "drvbc_fast_complete"}) {
+      const Verification judgement = verify(truth, answer(name, ours, std::ldexp(1.0, exponent)),
+                                            strategy_named(name).guarantee, embedded);
+      EXPECT_TRUE(judgement.ok) << name << ": " << judgement.failure;
+    }
+    contacts += truth.contacts.size();
+  }
+  EXPECT_GT(contacts, 1000u);
 }
 
 }  // namespace

@@ -12,13 +12,20 @@
 namespace cscd {
 namespace {
 
+// What is beyond is not looked at: bounds stay finite where what they bound overflows. Of coordinates up to
+// M, nothing here is larger than the difference of two projections, 18432 M^4.
+constexpr float kLargest = 1e8F;
+
 // The corners of the first triangle, then those of the second, seen from the first of all at either end.
 struct Corners {
   // Rows of four: x, y, z and 0 of four corners, then of two and of none.
   struct End {
     Float16 first, last;
   } end[2];
-  float error;  // of a coordinate: u of the largest, and what the difference in doubles lost
+  float largest;  // coordinate
+
+  // Of a coordinate: u of the largest, and what the difference in doubles lost.
+  float error() const { return 1.01F * 0x1p-24F * largest; }
 };
 
 Float8 joined(Float4 a, Float4 b) {
@@ -37,10 +44,9 @@ Corners::End load(std::span<const Vec3> x, const Triangle& a, const Triangle& b)
 
 Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b) {
   Corners c{{load(motion.start(), a, b), load(motion.end(), a, b)}, 0};
-  const float largest = folded(
+  c.largest = folded(
       larger_size(larger_size(c.end[0].first, c.end[0].last), larger_size(c.end[1].first, c.end[1].last)),
       [](auto x, auto y) { return x < y ? y : x; });
-  c.error = 1.01F * 0x1p-24F * largest;
   return c;
 }
 
@@ -152,6 +158,8 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
 std::optional<CarriedPlaces> not_filtered_at_a_look(const Motion& motion, const Triangle& a,
                                                     const Triangle& b, CarriedPlaces places) {
   const Corners c = corners_of(motion, a, b);
+  if (!(c.largest <= kLargest)) return std::nullopt;
+  const float error = c.error();
   const VectorLanes16 from = points<3, 3, 3, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2>(c),
                       second = points<5, 5, 5, 2, 2, 2, 4, 5, 3, 4, 5, 3, 4, 5, 3, 3>(c),
                       second_from = points<3, 3, 3, 0, 0, 0, 3, 4, 5, 3, 4, 5, 3, 4, 5, 5>(c);
@@ -161,14 +169,14 @@ std::optional<CarriedPlaces> not_filtered_at_a_look(const Motion& motion, const 
   Float16 normal[3][3];
   cross(p, q, normal);
   const TripleProducts16 products =
-      triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), c.error), c.error);
+      triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), error), error);
   const unsigned never = products.positive() | products.negative(), sometime = products.mixed();
   if ((places & ~(never | sometime)) != 0) return std::nullopt;
   const unsigned left = places & sometime;
   if (left == 0) return CarriedPlaces{0};
 
   const VectorLanes16 seen[3] = {p, chosen(q, r), chosen(r, second - from)};
-  const auto [apart, kept] = sideways(seen, alike(a, b), c.error);
+  const auto [apart, kept] = sideways(seen, alike(a, b), error);
   if ((left & ~(apart | kept)) != 0) return std::nullopt;
   return static_cast<CarriedPlaces>(left & kept);
 }
