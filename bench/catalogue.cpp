@@ -63,7 +63,7 @@ constexpr std::array kStrategies = {
     Strategy{"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
              true,
              [](const Setup& setup) {
-               return make_drvbc(setup, {.name = "drvbc_unrefined", .refinement = false});
+               return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
              },
              kAblation},
     Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, true,

@@ -10,6 +10,7 @@
 #include "bench/knob_volumes.h"
 #include "bench/statistics.h"
 #include "bench/verification.h"
+#include "core/base/random.h"
 #include "core/detect/embedding.h"
 #include "core/engine/drvbc.h"
 
@@ -58,9 +59,10 @@ std::vector<Setting> settings() {
   for (const double gamma : {0.0, 0.02, 0.05, 0.1, 0.2, 0.3})
     add(varied("gamma", text(gamma), [&](DrvbcOptions& o) { o.gamma = gamma; }));
   for (const double theta : {2.0, 5.0, 10.0, 20.0, 45.0})
-    add(varied("theta (degrees)", text(theta), [&](DrvbcOptions& o) { o.theta_degrees = theta; }));
+    add(varied("theta (degrees)", text(theta), [&](DrvbcOptions& o) { o.bones.theta_degrees = theta; }));
   for (const int cells : {2, 4, 8})
-    add(varied("field cells (edges)", std::to_string(cells), [&](DrvbcOptions& o) { o.coarsening = cells; }));
+    add(varied("field cells (edges)", std::to_string(cells),
+               [&](DrvbcOptions& o) { o.bones.coarsening = cells; }));
   for (const char* name : {"drvbc", "base"}) {
     const Strategy& strategy = strategy_named(name);
     add({"guarantee", std::string(to_string(strategy.guarantee)), strategy.make});
@@ -141,7 +143,7 @@ nlohmann::ordered_json study_knobs(const std::string& scene, const KnobStudy& st
     }
     std::vector<std::vector<double>> samples(subjects.size());
     for (int repetition = 0; repetition < study.repetitions; ++repetition) {
-      for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
+      shuffle(order, random);
       for (const std::size_t k : order)
         samples[k].push_back(subjects[k].detector->detect(interval.motion, bones, answer).ms.total());
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench/statistics.h"
+#include "core/base/random.h"
 #include "core/elementary/extent.h"
 #include "core/elementary/filter.h"
 #include "core/elementary/relative_box.h"
@@ -146,7 +147,7 @@ void measure(std::span<const Query> queries, std::span<const Truth> truths, Kind
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::vector<Answer> answers(queries.size());
   for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+    shuffle(order, random);
     for (const std::size_t number : order) {
       Tally& tally = *tallies[number];
       double whole = 0;

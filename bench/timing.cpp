@@ -10,6 +10,7 @@
 #endif
 
 #include "bench/progress.h"
+#include "core/base/random.h"
 #include "core/geometry/lanes.h"
 
 namespace cscd::bench {
@@ -37,10 +38,6 @@ Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
       contestant.timed->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
   found.sort();
   return {report, digest(found)};
-}
-
-void shuffle(std::vector<std::size_t>& order, std::mt19937_64& random) {
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random() % i]);
 }
 
 }  // namespace

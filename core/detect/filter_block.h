@@ -13,7 +13,7 @@ namespace cscd {
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 // The same of what pairs of triangles carry, all that two of them do at once; in single precision first, if
-// so wished: sooner, and nothing else.
+// so wished, which is faster and gives the same answer.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include "core/base/error.h"
 #include "core/geometry/triangle_distance.h"

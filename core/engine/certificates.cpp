@@ -16,11 +16,6 @@ std::uint64_t count(unsigned mask) {
 
 constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states looked at
 
-template <class Take>
-void for_each_lane(unsigned mask, const Take& take) {
-  for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
-}
-
 }  // namespace
 
 Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped)
@@ -45,7 +40,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
 
 void Certificates::use_covers(std::size_t count) {
   assert(0 < count && count <= kCovers);
-  count_ = count;
+  covers_used_ = count;
   counts_ = {};
   for (std::size_t c = 0; c < kCovers; ++c) {
     viewpoint_[c].resize(c < count ? covers_[c].observers.size() : 0);
@@ -63,14 +58,14 @@ void Certificates::forget() {
 std::size_t Certificates::looks() const {
   std::size_t looks = 0;
   for (const Cell& cell : cell_)
-    for (std::size_t c = 0; c < count_; ++c) looks += cell.cluster[c] != kNone;
+    for (std::size_t c = 0; c < covers_used_; ++c) looks += cell.cluster[c] != kNone;
   return looks;
 }
 
 void Certificates::start(const LocalPositions& positions) {
   positions_ = &positions;
   place_viewpoints(positions.records());
-  for (std::size_t c = 0; c < std::min(count_, capped_.size()); ++c)
+  for (std::size_t c = 0; c < std::min(covers_used_, capped_.size()); ++c)
     capped_[c].start(positions, viewpoint_[c]);
 }
 
@@ -84,7 +79,7 @@ void Certificates::finish() {
 }
 
 void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
-  for (std::size_t c = 0; c < count_; ++c)
+  for (std::size_t c = 0; c < covers_used_; ++c)
     for (std::size_t i = 0; i < viewpoint_[c].size(); ++i)
       viewpoint_[c][i] = placed(covers_[c].observers[i], records);
 }
@@ -92,7 +87,7 @@ void Certificates::place_viewpoints(std::span<const LocalPositions::Record> reco
 void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   const Patch& patch = tree_.patches[p];
   const Viewpoint* from[kCovers] = {};
-  for (std::size_t c = 0; c < count_; ++c)
+  for (std::size_t c = 0; c < covers_used_; ++c)
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   orientations(lanes, patch, from, positions_->error(), seen);
@@ -100,17 +95,17 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (from[c] != nullptr)
       crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
   bool usual = capped_.empty();
-  for (std::size_t c = 0; c < count_; ++c)
+  for (std::size_t c = 0; c < covers_used_; ++c)
     usual &= from[c] == nullptr || (patch.lanes & ~static_cast<unsigned>(seen[c].positive)) == 0;
   if (usual) return make_usual(p);
   state_[p] = State::seen;
-  for (std::size_t c = 0; c < count_; ++c)
+  for (std::size_t c = 0; c < covers_used_; ++c)
     if (from[c] != nullptr)
       own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
                     static_cast<Mask16>(patch.lanes & seen[c].negative)};
   // The first cover holds every triangle. The others are certified unless `finish` finds something around.
   certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive), own_[p][0].negative};
-  for (std::size_t c = 1; c < count_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
 
 void Certificates::make_usual(std::size_t p) {
@@ -119,7 +114,7 @@ void Certificates::make_usual(std::size_t p) {
   own_[p] = {};
   certified_[p] = {};
   certified_[p][0].positive = cell_[p].lanes;
-  for (std::size_t c = 1; c < count_; ++c) certified_[p][c].positive = cell_[p].inside[c];
+  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c].positive = cell_[p].inside[c];
 }
 
 template <class Take>
@@ -136,7 +131,7 @@ void Certificates::for_each_unusual(const Take& take) const {
 void Certificates::certify_all_round() {
   for_each_unusual([&](std::size_t p) {
     if (state_[p] != State::seen) return;
-    for (std::size_t c = 1; c < count_; ++c) {
+    for (std::size_t c = 1; c < covers_used_; ++c) {
       if (own_[p][c].not_positive != 0) spoil_round(p, c);
       for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
         certified_[p][c].negative |= static_cast<Mask16>(negative_all_round(p, lane, c) << lane);
@@ -164,7 +159,7 @@ bool Certificates::negative_all_round(std::size_t p, std::size_t lane, std::size
 void Certificates::certify_clear() {
   const auto for_each_seen = [&](const auto& take) {
     for (std::size_t p = 0; p < certified_.size(); ++p)
-      for (std::size_t c = 0; c < count_; ++c)
+      for (std::size_t c = 0; c < covers_used_; ++c)
         if (cell_[p].cluster[c] != kNone)
           take(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own_[p][c].not_positive)));
   };

@@ -118,13 +118,13 @@ class Certificates {
 
   const PatchTree& tree_;
   const Covers& covers_;
-  std::size_t count_ = 0;
+  std::size_t covers_used_ = 0;
   const LocalPositions* positions_ = nullptr;
   std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
   std::vector<std::array<Own, kCovers>> own_;          // of each patch
-  std::vector<State> state_;                           // of each patch; some usual ones behind them
+  std::vector<State> state_;                           // of each patch; then usual ones up to a whole word
   std::vector<Label> label_;                           // of each node
   std::vector<std::int32_t> parent_;                   // of each node; kNone of the root
   std::vector<CappedClusters> capped_;

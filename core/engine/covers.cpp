@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <queue>
 #include <random>
 
+#include "core/base/random.h"
 #include "core/engine/viewpoint.h"
 
 namespace cscd::fast {
@@ -27,7 +27,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
-  std::mt19937 random(20140314);
+  std::mt19937 random(kPreparationSeed);
   FollowingPoint best;
   double least = std::numeric_limits<double>::infinity();
   for (int draw = 0; draw < 50; ++draw) {

@@ -62,23 +62,11 @@ class DrvbcCuller : public Culler {
 
 Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
   radial::require_radial_setup(setup, std::string(options.name));
-  const double theta = options.theta_degrees * std::numbers::pi / 180;
   StageClock clock;
-  clock.enter(Stage::distance_and_heat);
-  const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
-  std::vector<BoneId> bone_of =
-      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig,
-                                   {std::max(1, full / options.coarsening), options.smoothing_passes});
-
-  clock.enter(Stage::decomposition);
-  radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-  std::vector<radial::ObserverKind> kinds =
-      radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
-  if (options.refinement) {
-    bone_of = radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
-    clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-    kinds = radial::choose_by_rotation_trial(setup.mesh, setup.reference, *setup.rig, clusters, theta);
-  }
+  radial::AtomicClusters clusters =
+      radial::make_atomic_clusters(setup.mesh, radial::bones_of_triangles(setup, options.bones, clock));
+  std::vector<radial::ObserverKind> kinds = radial::choose_by_rotation_trial(
+      setup.mesh, setup.reference, *setup.rig, clusters, options.bones.theta());
   clock.stop();
 
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),

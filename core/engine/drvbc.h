@@ -4,6 +4,7 @@
 
 #include "core/detect/compose.h"
 #include "core/detect/strategy.h"
+#include "core/radial/bone_clusters.h"
 #include "core/radial/orientation.h"
 
 namespace cscd {
@@ -12,13 +13,10 @@ namespace cscd {
 struct DrvbcOptions {
   double gamma =
       0.05;  // merge while fewer than this share of a candidate's triangles is not positive; 0: never
-  double theta_degrees = 10;  // rotation trial of the choice of observers
-  int coarsening = 4;         // cells of the distance field, in mean edges (the paper gives none)
-  int smoothing_passes = 5;   // over the mesh, before the field (the paper gives none)
+  radial::BoneClusterOptions bones{};
   bool relative_boxes = true;
   // For the ablation.
   std::string_view name = "drvbc";  // begins error texts
-  bool refinement = true;           // of the atomic clusters by orientation (section 4)
   bool cache = true;                // of triangles that were not positive (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
   radial::SignTest orientation_sign = radial::SignTest::certain;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 #include "core/base/error.h"
 #include "core/base/stage_clock.h"
@@ -12,18 +11,17 @@
 #include "core/engine/shared_descent.h"
 #include "core/engine/surface_clusters.h"
 #include "core/engine/trial_poses.h"
-#include "core/radial/distance_field.h"
-#include "core/radial/observer.h"
-#include "core/radial/refinement.h"
-#include "core/radial/segmentation.h"
+#include "core/radial/atomic_clusters.h"
+#include "core/radial/bone_clusters.h"
 
 // Radial view based culling after the paper (drvbc.cpp), taken further: one tree over patches of sixteen
-// triangles; covers whose seams lie inside one another's clusters instead of mega clusters
-// (certificates.h); bounds of both ends of the interval instead of whole paths (patch_lanes.h); stars of
-// vertices for the neighbours that are left (stars.h). What a "no" proves stands there.
+// triangles; covers whose seams lie inside one another's clusters instead of mega clusters (certificates.h);
+// bounds of both ends of the interval instead of whole paths (node_bounds.h); stars of vertices for the
+// neighbours that are left (stars.h), planes of triangles for the pairs (parting.h); and, where all contacts
+// are promised, a contour test (capped_clusters.h). What a "no" proves stands there.
 //
-// A pass over all vertices, two over all patches, and a descent that meets what no cover certifies
-// (patch_descent.h), the first two and the descent on as many threads as there are to be.
+// A pass over all vertices, one over all patches, and a descent that meets what no cover certifies
+// (patch_descent.h), all three on as many threads as there are to be.
 namespace cscd {
 namespace fast {
 namespace {
@@ -121,19 +119,6 @@ bool has_bones(const Setup& setup) {
   return setup.rig != nullptr && !setup.rig->parent.empty();
 }
 
-// Bones of triangles, made as in drvbc.
-std::vector<BoneId> bones_of(const Setup& setup, StageClock& clock) {
-  clock.enter(Stage::distance_and_heat);
-  const int full = radial::resolution_of_mean_edge(setup.mesh, setup.reference);
-  const std::vector<BoneId> bone_of =
-      radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {std::max(1, full / 4), 5});
-  clock.enter(Stage::decomposition);
-  const radial::AtomicClusters clusters = radial::make_atomic_clusters(setup.mesh, bone_of);
-  const std::vector<radial::ObserverKind> kinds = radial::choose_by_rotation_trial(
-      setup.mesh, setup.reference, *setup.rig, clusters, 10 * std::numbers::pi / 180);
-  return radial::refine_by_orientation(setup.mesh, setup.reference, *setup.rig, clusters, kinds);
-}
-
 class CountingSink : public TrianglePairSink {
   void take(const std::vector<TrianglePair>&) override {}
 };
@@ -175,7 +160,7 @@ Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock
   using Clusters = DrvbcFastOptions::Clusters;
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
-  const std::vector<BoneId> bone_of = bones_of(setup, clock);
+  const std::vector<BoneId> bone_of = radial::bones_of_triangles(setup, {}, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
   if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
 

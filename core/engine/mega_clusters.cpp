@@ -4,6 +4,8 @@
 #include <numeric>
 #include <random>
 
+#include "core/base/random.h"
+
 namespace cscd {
 
 using radial::ClusterHierarchy;
@@ -27,9 +29,8 @@ MegaClusters::MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig,
       suspects_(seeds_.size()),
       refused_by_(seeds_.size()) {
   std::iota(seeds_.begin(), seeds_.end(), std::size_t{0});
-  // Fisher-Yates by hand: std::shuffle may differ between standard libraries.
-  std::mt19937 random(20140314);
-  for (std::size_t i = seeds_.size(); i > 1; --i) std::swap(seeds_[i - 1], seeds_[random() % i]);
+  std::mt19937 random(kPreparationSeed);
+  shuffle(seeds_, random);
 }
 
 void MegaClusters::regrow(const OrientationTable& table, const Rig::Interval& bones,

@@ -4,6 +4,8 @@
 #include <limits>
 #include <random>
 
+#include "core/base/random.h"
+
 // Patches grow one beside the other; what is left over between them is joined; then small ones are cut anew
 // together with what is about them, in random order, where that makes fewer.
 namespace cscd::fast {
@@ -168,7 +170,7 @@ void PatchCutter::repair(Patches& patches) {
   };
   const auto count = static_cast<std::int32_t>(patches.size());
   for (std::int32_t p = 0; p < count; ++p) enter(p);
-  std::mt19937 random(20140314);
+  std::mt19937 random(kPreparationSeed);
   std::vector<TriangleId> all;
   for (int round = 0; round < kRounds; ++round)
     for (std::int32_t p = 0; p < count; ++p) {
@@ -179,7 +181,7 @@ void PatchCutter::repair(Patches& patches) {
         all.insert(all.end(), patches[index(q)].begin(), patches[index(q)].end());
       if (all.size() > (group.size() - 1) * most_) continue;
       for (int attempt = 0; attempt < kAttempts; ++attempt) {
-        for (std::size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[random() % i]);
+        shuffle(all, random);
         Patches anew = pieces(all);
         if (anew.size() >= group.size()) join(anew);
         if (anew.size() >= group.size()) continue;

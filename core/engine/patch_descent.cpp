@@ -64,10 +64,7 @@ void PatchDescent::step(std::size_t a, std::size_t b) {
       tests_ += asked;
       open |= static_cast<unsigned>(asked & !apart(bounds_[a + i], bounds_[b + j])) << (i * kB + j);
     }
-  for (; open != 0; open &= open - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(open));
-    found<kDepth>({a + k / kB, b + k % kB});
-  }
+  for_each_lane(open, [&](std::size_t k) { found<kDepth>({a + k / kB, b + k % kB}); });
 }
 
 template <PatchDescent::Depth kDepth>
@@ -106,10 +103,9 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
     shared = shared.turned(patches_[q].lanes);
   }
   const Common* common = input_.tree.common_of(p, q);
-  for (unsigned rest = rows; rest != 0; rest &= rest - 1) {
-    const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+  for_each_lane(rows, [&](std::size_t lane) {
     row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), common);
-  }
+  });
 }
 
 // One triangle of patch p against some of patch q.
@@ -145,15 +141,14 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
 // One triangle of patch p and some of patch q. Rare, hence not in the caller.
 [[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
   const Patch &first = patches_[p], &second = patches_[q];
-  for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
-    const auto other = static_cast<std::size_t>(std::countr_zero(rest));
+  for_each_lane(lanes, [&](std::size_t other) {
     for (std::size_t k = 0; k < 3; ++k) {
       waiting_vertices_.first[k][waiting_count_] = first.vertex[first.corner[k][lane]];
       waiting_vertices_.second[k][waiting_count_] = second.vertex[second.corner[k][other]];
     }
     waiting_[waiting_count_++] = {input_.tree.triangles[p][lane], input_.tree.triangles[q][other]};
     if (waiting_count_ == waiting_.size()) pass_on_waiting();
-  }
+  });
 }
 
 // Those that no plane parts, in the order in which they were found.
@@ -162,10 +157,7 @@ void PatchDescent::pass_on_waiting() {
   unsigned left = (1U << waiting_count_) - 1;
   if (input_.planes && input_.positions.known())
     left &= not_parted(input_.positions.records(), waiting_vertices_, input_.positions.error());
-  for (; left != 0; left &= left - 1) {
-    const TrianglePair& pair = waiting_[static_cast<std::size_t>(std::countr_zero(left))];
-    sink_->add(pair.a, pair.b);
-  }
+  for_each_lane(left, [&](std::size_t k) { sink_->add(waiting_[k].a, waiting_[k].b); });
   waiting_count_ = 0;
 }
 

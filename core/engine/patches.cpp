@@ -146,11 +146,10 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
   tree.adjacent_offset.push_back(0);
   for (const Patch& patch : tree.patches) {
     std::map<std::int32_t, Common> touching;
-    for (unsigned places = patch.corners_of(patch.lanes); places != 0; places &= places - 1) {
-      const auto v = static_cast<std::size_t>(std::countr_zero(places));
+    for_each_lane(patch.corners_of(patch.lanes), [&](std::size_t v) {
       for (const TriangleId t : mesh.triangles_at(VertexId{patch.vertex[v]}))
         touching[place_of[+t].patch].at[v] |= static_cast<Mask16>(1U << place_of[+t].lane);
-    }
+    });
     for (const auto& [other, common] : touching) {
       tree.adjacent.push_back(other);
       tree.common.push_back(common);

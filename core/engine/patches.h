@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -24,8 +23,9 @@ struct alignas(64) Patch {
   // Places of the corners of some of its triangles.
   Mask16 corners_of(unsigned triangles) const {
     unsigned places = 0;
-    for (; triangles != 0; triangles &= triangles - 1)
-      for (const Places16& place : corner) places |= 1U << place[std::countr_zero(triangles)];
+    for_each_lane(triangles, [&](std::size_t lane) {
+      for (const Places16& place : corner) places |= 1U << place[lane];
+    });
     return static_cast<Mask16>(places);
   }
 };

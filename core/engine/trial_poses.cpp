@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "core/base/random.h"
+
 namespace cscd::fast {
 namespace {
 
@@ -63,7 +65,7 @@ std::vector<Vec3> moved(const TriangleMesh& mesh, std::span<const Vec3> referenc
 
 std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> reference, const Rig& rig,
                                std::span<const BoneId> bone_of, std::size_t count) {
-  std::mt19937 random(20140314);
+  std::mt19937 random(kPreparationSeed);
   const auto dice = [&] { return static_cast<double>(random() >> 8) * 0x1p-23 - 1; };
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -93,6 +94,12 @@ inline Mask16 above(Float16 a, Float16 b) {
 }
 
 // Where the numbers are the same.
+// Of a mask, the first lane first.
+template <class Take>
+void for_each_lane(unsigned mask, const Take& take) {
+  for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
+}
+
 inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
                     const std::array<std::int32_t, kLanes16>& b) {
 #ifdef __AVX512F__

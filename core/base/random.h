@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace cscd {
+
+// Of whatever a preparation draws, so that the same input is always prepared alike.
+inline constexpr unsigned kPreparationSeed = 20140314;
+
+// Fisher-Yates by hand: std::shuffle may differ between standard libraries.
+template <class Item, class Random>
+void shuffle(std::vector<Item>& items, Random& random) {
+  for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random() % i]);
+}
+
+}  // namespace cscd
