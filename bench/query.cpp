@@ -13,7 +13,6 @@
 #include "bench/watchdog.h"
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
-#include "core/detect/first_only.h"
 
 namespace cscd::bench {
 namespace {
@@ -73,7 +72,7 @@ void require_right_times(const ElementaryTest& elementary) {
 
 Prepared make_detector(const Strategy& strategy, const Setup& setup, bool first) {
   Prepared prepared = strategy.make(setup);
-  if (first && !look_for_first_only(*prepared.detector))
+  if (first && !prepared.detector->look_for_first_only())
     throw InputError("--first: strategy " + std::string(strategy.name) +
                      " tests pairs by itself and finds all; leave one of the two out");
   return prepared;

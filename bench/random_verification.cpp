@@ -5,7 +5,6 @@
 
 #include "bench/catalogue.h"
 #include "core/detect/embedding.h"
-#include "core/detect/first_only.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
@@ -61,7 +60,7 @@ struct Subject {
                                            : (even ? kPutOff<false> : kPutOff<true>);
     const std::unique_ptr<Detector> detector =
         row.strategy->make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test}).detector;
-    if (row.first) look_for_first_only(*detector);
+    if (row.first) detector->look_for_first_only();
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     result.report =
@@ -195,7 +194,8 @@ std::string write_failure(const RandomFailure& failure, const std::filesystem::p
   scenes::copy_frames(random.clip, writer);
   writer.finish();
   return failure.strategy + ", family " + failure.family + ", seed " + std::to_string(failure.seed) +
-         (failure.torn ? ", torn: " : ": ") + failure.what + "; replay with cscd query " + path.string();
+         (failure.torn ? ", torn: " : ": ") + failure.what + "; replay with cscd query " + path.string() +
+         " --unproven --json out.json --strategy " + failure.strategy;
 }
 
 }  // namespace cscd::bench

@@ -13,8 +13,8 @@
 #include "bench/statistics.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/detect/embedding.h"
-#include "core/detect/first_only.h"
 
 namespace cscd::bench {
 namespace {
@@ -73,7 +73,7 @@ class Measurement {
     for (const StrategyRow& row : rows) {
       if (!allows(input(), *row.strategy)) continue;
       contestants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
-      if (row.first) look_for_first_only(*contestants_.back().made.prepared.detector);
+      if (row.first) contestants_.back().made.prepared.detector->look_for_first_only();
     }
     for (Contestant& c : contestants_) {
       c.counts.resize(subject.steps.size());
@@ -93,7 +93,7 @@ class Measurement {
       Verified& verified = verified_[step_of(i)];
       const scenes::ClipInterval interval = input().clip->load(i);
       const auto [start, fresh] =
-          embedded.try_emplace({subject_.steps[step_of(i)].scene, i % subject_.starts.size()}, false);
+          embedded.try_emplace({subject_.steps[step_of(i)].scene, start_of(i)}, false);
       if (fresh) start->second = embedding.embedded(interval.motion.start());
       verified.embedded += start->second;
 
@@ -108,7 +108,7 @@ class Measurement {
       for (Contestant& c : contestants_) {
         if (c.reference || left_out(c, step_of(i))) continue;
         keep(c, i, answer(c, interval, found), found);
-        const std::string where = c.row.name() + ", interval " + std::to_string(i) + ": ";
+        const std::string where = label(c, i);
         if (judged) {
           const Verification judgement = bench::verify(truth, found, c.row, start->second);
           if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
@@ -134,14 +134,13 @@ class Measurement {
         std::vector<Contestant*> order;
         for (Contestant& c : contestants_)
           if (is_timed(c) && !c.digests[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
-        for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
+        shuffle(order, random);
         for (Contestant* c : order) {
           stream_positions(interval.motion);
           const Report report = answer(*c, interval, found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
           if (digest(found) != c->digests[i]) {
-            verified_[step_of(i)].failures.push_back(c->row.name() + ", interval " + std::to_string(i) +
-                                                     ": other contacts when timed");
+            verified_[step_of(i)].failures.push_back(label(*c, i) + "other contacts when timed");
             break;
           }
         }
@@ -174,6 +173,13 @@ class Measurement {
   const Input& input() const { return scaled_.input; }
   std::size_t interval_count() const { return subject_.steps.size() * subject_.starts.size(); }
   std::size_t step_of(std::size_t interval) const { return interval / subject_.starts.size(); }
+  std::size_t start_of(std::size_t interval) const {
+    return subject_.starts[interval % subject_.starts.size()];
+  }
+  // Begins the line of a failure, under the step that it belongs to.
+  std::string label(const Contestant& c, std::size_t interval) const {
+    return c.row.name() + ", from frame " + std::to_string(start_of(interval)) + ": ";
+  }
   bool is_timed(const Contestant& c) const {
     return std::ranges::find(subject_.rows, c.row) != subject_.rows.end();
   }
@@ -183,10 +189,10 @@ class Measurement {
     for (const auto& [stage, repetitions] : c.once[s]) sum += mean(repetitions.front());
     return sum;
   }
-  // Steps come in order of their length.
+  // By what it took for an earlier step, which is no longer than this one.
   bool left_out(const Contestant& c, std::size_t s) const {
-    for (std::size_t shorter = 0; shorter < s; ++shorter)
-      if (once_ms(c, shorter) > kTooLong) return true;
+    for (std::size_t earlier = 0; earlier < s; ++earlier)
+      if (once_ms(c, earlier) > kTooLong) return true;
     return false;
   }
   // All intervals of small surfaces and short steps; else the first of a step, and those that fewer than two
@@ -268,7 +274,8 @@ class Measurement {
     if (!verified_[s].failures.empty()) return row;  // no time without a verified answer
     const TimeColumns& columns = c.ms[s].empty() ? c.once[s] : c.ms[s];
     if (columns.empty()) {
-      row["left_out"] = "takes over " + std::to_string(static_cast<int>(kTooLong)) + " ms for a shorter step";
+      row["left_out"] =
+          "takes over " + std::to_string(static_cast<int>(kTooLong)) + " ms for an earlier step";
       return row;
     }
     ordered_json ms = ordered_json::object();

@@ -2,7 +2,6 @@
 
 #include "bench/catalogue.h"
 #include "core/base/error.h"
-#include "core/detect/first_only.h"
 
 namespace cscd::bench {
 
@@ -29,10 +28,14 @@ std::vector<StrategyRow> rows_called(std::span<const std::string> texts) {
 
 Verification verify(const ContactSet& reference, const ContactSet& answer, const StrategyRow& row,
                     bool starts_embedded) {
-  if (!row.first) return cscd::verify(reference, answer, row.strategy->guarantee, starts_embedded);
+  const Guarantee guarantee = row.strategy->guarantee;
+  if (!row.first || guarantee != Guarantee::complete)
+    return cscd::verify(reference, answer, guarantee, starts_embedded);
+  const Verification in_time = cscd::verify(reference, answer, Guarantee::first_contact, true);
+  if (!in_time.ok) return in_time;
   ContactSet earliest = reference;
   keep_first(earliest);
-  return cscd::verify(earliest, answer, row.strategy->guarantee, starts_embedded);
+  return cscd::verify(earliest, answer, guarantee, starts_embedded);
 }
 
 }  // namespace cscd::bench

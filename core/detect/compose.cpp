@@ -6,13 +6,14 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
-#include "core/detect/first_only.h"
+#include "core/detect/no_contact_before.h"
 #include "core/elementary/relative_box.h"
 
 namespace cscd {
 namespace {
 
-// More than times are off (2^-50, core/elementary/exact.h): equal ones are all looked at.
+// More than the error of a time (2^-50, core/elementary/exact.h), so that all that touch at one time are
+// tested.
 constexpr double kTimeSlack = 0x1p-48;
 
 // Of one kind, to be tested together.
@@ -94,7 +95,7 @@ class PairTester : public TrianglePairSink {
     }
   }
 
-  // Few of what each two triangles carry, hence one by one.
+  // Few of what each two triangles carry, hence by feature pair, not by triangle pair.
   void test_assigned(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
@@ -207,7 +208,10 @@ class ComposedDetector : public Detector {
     return report;
   }
   RadialView radial_view() const override { return culler_->radial_view(); }
-  void look_for_first_only() { tester_.look_for_first_only(); }
+  bool look_for_first_only() override {
+    tester_.look_for_first_only();
+    return true;
+  }
 
  private:
   StageClock clock_;
@@ -220,12 +224,6 @@ class ComposedDetector : public Detector {
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
                                   const ElementaryTest& test, PairOptions options) {
   return std::make_unique<ComposedDetector>(std::move(culler), mesh, test, std::move(options));
-}
-
-bool look_for_first_only(Detector& detector) {
-  auto* const composed = dynamic_cast<ComposedDetector*>(&detector);
-  if (composed != nullptr) composed->look_for_first_only();
-  return composed != nullptr;
 }
 
 }  // namespace cscd

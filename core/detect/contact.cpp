@@ -20,6 +20,15 @@ void ContactSet::sort() {
   });
 }
 
+void keep_first(ContactSet& sorted) {
+  const auto first = std::find_if(sorted.contacts.begin(), sorted.contacts.end(),
+                                  [](const Contact& c) { return c.verdict == Verdict::contact; });
+  if (first == sorted.contacts.end()) return;
+  const double time = first->time;
+  std::erase_if(sorted.contacts,
+                [&](const Contact& c) { return c.verdict == Verdict::contact && c.time > time; });
+}
+
 std::string digest(const ContactSet& sorted) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto mix = [&](std::uint64_t word) {

@@ -11,7 +11,7 @@
 
 namespace cscd {
 
-// A vertex and a triangle that does not contain it, or two edges that share no vertex.
+// A vertex of some triangle and a triangle that does not contain it, or two edges that share no vertex.
 struct FeaturePair {
   enum class Kind : std::uint8_t { vertex_face, edge_edge };
   Kind kind;
@@ -46,6 +46,9 @@ struct ContactSet {
   void clear() { contacts.clear(); }
   void sort();  // by time, then feature pair
 };
+
+// Leaves the contacts of the earliest time, and what is undecided.
+void keep_first(ContactSet& sorted);
 
 // 64-bit FNV-1a over the sorted set (pairs, verdicts and the bits of the times), as 16 hex digits.
 std::string digest(const ContactSet& sorted);

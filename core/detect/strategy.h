@@ -14,9 +14,7 @@ namespace cscd {
 
 // complete: on every input, every feature pair in contact is passed on to the elementary test.
 // first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair
-// that
-//   attains the earliest contact time is; later contacts may be missing.
-// heuristic: neither.
+// that attains the earliest contact time is; later contacts may be missing. heuristic: neither.
 enum class Guarantee { complete, first_contact, heuristic };
 std::string_view to_string(Guarantee guarantee);
 
@@ -26,8 +24,8 @@ struct Setup {
   std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
   const ElementaryTest& elementary;
-  // On which one interval is answered, at least 1, the caller's among them. Strategies that cannot share
-  // their work run on one. Answers and counters do not depend on it.
+  // Threads that answer one interval, the caller's included; at least 1. Strategies that cannot share their
+  // work run on one. Answers and counters do not depend on it.
   int threads = 1;
 };
 
@@ -52,7 +50,8 @@ struct Strategy {
   Guarantee guarantee;
   bool needs_rig;
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
-  // Rows with a group run only where they or their group is named, the others wherever the input allows it.
+  // Rows with a group are timed only where they or their group is named, the others wherever the input allows
+  // it.
   std::string_view group = "";
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
 };

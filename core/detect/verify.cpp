@@ -52,7 +52,7 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
   std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(),
                       std::back_inserter(surplus), by_pair);
   result.found_contacts = expected.size() - missing.size();
-  // Both asked the same exact test, so a pair has one time.
+  // Both asked the same test, so a pair has one time.
   const auto wrong = std::find_if(found.begin(), found.end(), [&](const Contact& contact) {
     const auto same = std::lower_bound(expected.begin(), expected.end(), contact, by_pair);
     return same != expected.end() && same->pair == contact.pair && same->time != contact.time;

@@ -11,8 +11,8 @@
 
 namespace cscd {
 
-// One interval's judgement of a strategy that ran with the elementary test `exact`, against a complete
-// reference that did too. Comparing numbers of contacts would be wrong (trap 13): a strategy may report fewer
+// One interval's judgement of a strategy, against a complete reference, both with an elementary test that is
+// always right. Comparing numbers of contacts would be wrong (trap 13): a strategy may report fewer
 // where its guarantee allows it.
 struct Verification {
   bool ok = true;

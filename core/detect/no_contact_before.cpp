@@ -1,6 +1,7 @@
-#include "core/detect/first_only.h"
+#include "core/detect/no_contact_before.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/geometry/triple_product16.h"
 
@@ -112,15 +113,6 @@ std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Mo
   std::array<float, kLanes16> out;
   std::memcpy(out.data(), &before, sizeof before);
   return out;
-}
-
-void keep_first(ContactSet& sorted) {
-  const auto first = std::find_if(sorted.contacts.begin(), sorted.contacts.end(),
-                                  [](const Contact& c) { return c.verdict == Verdict::contact; });
-  if (first == sorted.contacts.end()) return;
-  const double time = first->time;
-  std::erase_if(sorted.contacts,
-                [&](const Contact& c) { return c.verdict == Verdict::contact && c.time > time; });
 }
 
 }  // namespace cscd

@@ -1,4 +1,4 @@
-#include "core/detect/first_only.h"
+#include "core/detect/no_contact_before.h"
 
 #include <gtest/gtest.h>
 #include <random>
@@ -107,7 +107,7 @@ TEST(FirstOnly, ReportsTheContactsOfTheEarliestTimeForFewerTests) {
       return compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), crash.mesh, exact);
     };
     const auto all = make(), first = make();
-    ASSERT_TRUE(look_for_first_only(*first));
+    ASSERT_TRUE(first->look_for_first_only());
     ContactSet expected = sorted_answer(*all, crash, &tests_for_all);
     ASSERT_FALSE(expected.contacts.empty());
     keep_first(expected);
@@ -145,7 +145,7 @@ class Other : public Detector {
 
 TEST(FirstOnly, DetectorsOfOtherKindsFindAll) {
   Other other;
-  EXPECT_FALSE(look_for_first_only(other));
+  EXPECT_FALSE(other.look_for_first_only());
 }
 
 }  // namespace
