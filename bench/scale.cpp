@@ -37,105 +37,140 @@ struct ScaleOptions {
   std::string output;
 };
 
-constexpr const char* kStudies[] = {"size", "step", "bones", "threads", "contacts"};
-
 // Those of the named rows that this build has: packages may be missing. Throws InputError where the user
 // named one that is not known.
-std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_json& planned) {
+std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_json& names) {
   std::vector<StrategyRow> rows = rows_called(options.strategies);
   if (!rows.empty()) return rows;
-  for (const std::string text : planned)
+  for (const std::string text : names)
     for (const Strategy& strategy : strategies())
       for (const StrategyRow row : {StrategyRow{&strategy}, StrategyRow{&strategy, true}})
         if (row.name() == text) rows.push_back(row);
   return rows;
 }
 
-// What a full, or small, run consists of.
-std::vector<ScaleSubject> plan(const ScaleOptions& options) {
-  const ordered_json defaults = data_json("scale_plan.json").at(options.smoke ? "smoke" : "full");
-  const auto or_default = [&](const auto& given, const char* key) {
-    using List = std::remove_cvref_t<decltype(given)>;
-    return given.empty() ? defaults.at(key).get<List>() : given;
-  };
-  for (const std::string& study : options.studies)
-    if (std::ranges::find(kStudies, study) == std::end(kStudies))
-      throw InputError("--study " + study +
-                       ": is not known; choose among size, step, bones, threads, contacts");
-  const auto wanted = [&](const char* study) {
-    return options.studies.empty() || std::ranges::find(options.studies, study) != options.studies.end();
-  };
-  const std::size_t intervals =
-      options.intervals > 0 ? options.intervals : defaults.at("intervals").get<std::size_t>();
-  ScaleSubject common;
-  common.repetitions =
-      options.repetitions > 0 ? options.repetitions : defaults.at("repetitions").get<std::size_t>();
-  common.reference_limit = options.reference_limit;
-  common.threads = options.threads;
+// Makes the subjects of a run out of what was asked for and, where nothing was, of the plan in data. One
+// member a study, called scene by scene with what all subjects of the scene have in common.
+class Plan {
+ public:
+  explicit Plan(const ScaleOptions& options)
+      : options_(options),
+        data_(data_json("scale_plan.json").at(options.smoke ? "smoke" : "full")),
+        sizes_(or_planned(options.sizes, "sizes")),
+        steps_(or_planned(options.steps, "steps")) {
+    if (options.largest)
+      for (const std::size_t size : data_.at("largest")) sizes_.push_back(size);
+    std::sort(sizes_.begin(), sizes_.end());
+    std::sort(steps_.begin(), steps_.end());
+    for (const double step : steps_)
+      if (step > 1 && step != std::floor(step))
+        throw InputError("--steps: " + ordered_json(step).dump() +
+                         " is neither a share of a frame nor a whole number of frames; round it");
+  }
 
-  std::vector<ScaleSubject> all;
-  const auto scenes = or_default(options.scenes, "scenes");
-  auto sizes = or_default(options.sizes, "sizes");
-  if (options.largest) sizes.push_back(defaults.at("largest"));
-  auto steps = or_default(options.steps, "steps");
-  std::sort(sizes.begin(), sizes.end());
-  std::sort(steps.begin(), steps.end());
-  for (const double step : steps)
-    if (step > 1 && step != std::floor(step))
-      throw InputError("--steps: " + ordered_json(step).dump() +
-                       " is neither a share of a frame nor a whole number of frames; round it");
-  const auto add = [&](ScaleSubject subject, std::size_t count) {
-    subject.starts =
-        spread_starts(scenes::load_scene(subject.scene).frames, count, subject.steps.back().frames);
-    all.push_back(std::move(subject));
-  };
-  const auto named = [&](const char* key, const std::string& scene) {
-    return std::ranges::find(defaults.at(key), ordered_json(scene)) != defaults.at(key).end();
-  };
-  for (const std::string& scene : scenes) {
-    ScaleSubject subject = common;
+  std::vector<std::string> scenes() const { return or_planned(options_.scenes, "scenes"); }
+
+  // What `intervals`, `repetitions` and so on are where a study has none of its own.
+  ScaleSubject common(const std::string& scene) const {
+    ScaleSubject subject;
     subject.scene = scene;
     subject.steps = {{scene}};
-    if (wanted("size")) {
-      subject.study = "size";
-      subject.rows = chosen_rows(options, defaults.at("size_strategies"));
-      for (const std::size_t size : sizes) subject.triangles = size, add(subject, intervals);
-    }
-    subject.triangles = defaults.at("other_triangles");
-    if (wanted("step")) {
-      ScaleSubject stepped = subject;
-      stepped.study = "step";
-      stepped.steps.clear();
-      for (const double step : steps) stepped.steps.push_back({scene, step});
-      stepped.rows = chosen_rows(options, defaults.at("step_strategies"));
-      add(std::move(stepped), intervals);
-    }
-    if (wanted("bones") && named("bone_scenes", scene)) {
-      subject.study = "bones";
-      subject.rows = chosen_rows(options, defaults.at("bone_strategies"));
-      for (const std::size_t bones : defaults.at("bones")) subject.bones = bones, add(subject, intervals);
-      subject.bones = 0;
-    }
-    if (wanted("threads") && named("thread_scenes", scene)) {
-      subject.study = "threads";
-      subject.triangles = defaults.at("thread_triangles");
-      subject.rows = chosen_rows(options, defaults.at("thread_strategies"));
-      for (const int threads : defaults.at("threads"))
-        if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
-          subject.threads = threads, add(subject, intervals);
-      subject.threads = common.threads;
-    }
-    if (wanted("contacts") && named("contact_scenes", scene)) {
-      subject.study = "contacts";
-      subject.recorded = true;
-      subject.triangles = 0;
-      subject.steps.push_back({scene + "_contact"});
-      subject.rows = chosen_rows(options, defaults.at("contact_strategies"));
-      add(std::move(subject),
-          options.intervals > 0 ? intervals : defaults.at("contact_intervals").get<std::size_t>());
-    }
+    subject.triangles = data_.at("other_triangles");
+    subject.repetitions = or_planned(options_.repetitions, "repetitions");
+    subject.reference_limit = options_.reference_limit;
+    subject.threads = options_.threads;
+    return subject;
   }
-  return all;
+
+  void size(ScaleSubject subject) {
+    subject.rows = chosen_rows(options_, data_.at("size_strategies"));
+    for (const std::size_t size : sizes_) subject.triangles = size, add(subject);
+  }
+  void step(ScaleSubject subject) {
+    subject.rows = chosen_rows(options_, data_.at("step_strategies"));
+    subject.steps.clear();
+    for (const double step : steps_) subject.steps.push_back({subject.scene, step});
+    add(subject);
+  }
+  void bones(ScaleSubject subject) {
+    if (!planned_for("bone_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("bone_strategies"));
+    for (const std::size_t bones : data_.at("bones")) subject.bones = bones, add(subject);
+  }
+  void threads(ScaleSubject subject) {
+    if (!planned_for("thread_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("thread_strategies"));
+    subject.triangles = data_.at("thread_triangles");
+    for (const int threads : data_.at("threads"))
+      if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
+        subject.threads = threads, add(subject);
+  }
+  void contacts(ScaleSubject subject) {
+    if (!planned_for("contact_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("contact_strategies"));
+    subject.recorded = true;
+    subject.triangles = 0;
+    subject.steps.push_back({subject.scene + "_contact"});
+    add(subject, "contact_intervals");
+  }
+
+  std::vector<ScaleSubject> take() { return std::move(all_); }
+
+ private:
+  template <class T>
+  std::vector<T> or_planned(const std::vector<T>& given, const char* key) const {
+    return given.empty() ? data_.at(key).get<std::vector<T>>() : given;
+  }
+  std::size_t or_planned(std::size_t given, const char* key) const {
+    return given > 0 ? given : data_.at(key).get<std::size_t>();
+  }
+  bool planned_for(const char* key, const std::string& scene) const {
+    return std::ranges::find(data_.at(key), ordered_json(scene)) != data_.at(key).end();
+  }
+  void add(ScaleSubject subject, const char* intervals = "intervals") {
+    subject.starts = spread_starts(scenes::load_scene(subject.scene).frames,
+                                   or_planned(options_.intervals, intervals), subject.steps.back().frames);
+    all_.push_back(std::move(subject));
+  }
+
+  const ScaleOptions& options_;
+  const ordered_json data_;
+  std::vector<std::size_t> sizes_;
+  std::vector<double> steps_;
+  std::vector<ScaleSubject> all_;
+};
+
+constexpr struct {
+  const char* name;
+  void (Plan::*add)(ScaleSubject);
+} kStudies[] = {{"size", &Plan::size},
+                {"step", &Plan::step},
+                {"bones", &Plan::bones},
+                {"threads", &Plan::threads},
+                {"contacts", &Plan::contacts}};
+
+std::string study_names() {
+  std::string names;
+  for (const auto& study : kStudies) names += (names.empty() ? "" : ", ") + std::string(study.name);
+  return names;
+}
+
+// What a full, or small, run consists of.
+std::vector<ScaleSubject> planned(const ScaleOptions& options) {
+  for (const std::string& study : options.studies)
+    if (std::ranges::find(kStudies, study, [](const auto& s) { return std::string(s.name); }) ==
+        std::end(kStudies))
+      throw InputError("--study " + study + ": is not known; choose among " + study_names());
+  Plan plan(options);
+  for (const std::string& scene : plan.scenes())
+    for (const auto& study : kStudies) {
+      if (!options.studies.empty() && std::ranges::find(options.studies, study.name) == options.studies.end())
+        continue;
+      ScaleSubject subject = plan.common(scene);
+      subject.study = study.name;
+      (plan.*study.add)(std::move(subject));
+    }
+  return plan.take();
 }
 
 // Queries that will be asked, weighed by triangles: about what a run costs.
@@ -198,7 +233,7 @@ void print(const ordered_json& subject) {
 }
 
 void run_scale(const ScaleOptions& options) {
-  const std::vector<ScaleSubject> all = plan(options);
+  const std::vector<ScaleSubject> all = planned(options);
   if (all.empty()) throw InputError("--study, --scene: leave nothing to measure; name a scene of the study");
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
@@ -251,15 +286,13 @@ void add_scale(CLI::App& app) {
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
-  command
-      ->add_option("--study", options->studies,
-                   "size, step, bones, threads, contacts, with commas; default all")
+  command->add_option("--study", options->studies, study_names() + ", with commas; default all")
       ->delimiter(',');
   command->add_option("--scene", options->scenes, "scenes with commas; default the six")->delimiter(',');
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")
       ->delimiter(',')
       ->check(CLI::Range(500, 20'000'000));
-  command->add_flag("--largest", options->largest, "one size more: four times the triangles");
+  command->add_flag("--largest", options->largest, "775 thousand and 3.1 million triangles too");
   command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
       ->delimiter(',')
       ->check(CLI::Range(1e-3, 1000.0));

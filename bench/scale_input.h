@@ -22,7 +22,7 @@ struct ScaleSubject {
   bool recorded = false;  // each step as its scene's clip holds it; else posed anew from the subject's scene
   std::size_t triangles = 0;        // asked for, of a posed one; 0 for the scene's own
   std::size_t bones = 0;            // of the chain, of a posed one; 0 for the scene's own
-  std::vector<ScaleStep> steps;     // in order of their length
+  std::vector<ScaleStep> steps;     // none shorter than the one before
   std::vector<std::size_t> starts;  // frames at which intervals start
   std::vector<StrategyRow> rows;
   std::size_t repetitions = 5;

@@ -237,6 +237,17 @@ TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {
   EXPECT_LT(pairs(1), pairs(2));
 }
 
+TEST_F(ScaleProgram, TakesTheLargestSizesWhereAsked) {
+  const auto out = record({"--smoke", "--largest", "--study", "size", "--scene", "urchin", "--strategy",
+                           "drvbc_fast,drvbc", "--reference-up-to", "20000"},
+                          "largest");
+  ASSERT_EQ(out.at("subjects").size(), 4u);
+  const auto& largest = out.at("subjects")[3];
+  EXPECT_GT(largest.at("triangles"), 20000);
+  EXPECT_EQ(largest.at("steps")[0].at("verified").at("by_reference"), 1);
+  EXPECT_EQ(largest.at("steps")[0].at("verified").at("by_each_other"), 1);
+}
+
 TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
   const auto out = record({"--smoke", "--study", "contacts", "--strategy", "drvbc --first,base"}, "contacts");
   ASSERT_EQ(out.at("subjects").size(), 1u);
