@@ -58,9 +58,6 @@ class Plan {
         data_(data_json("scale_plan.json").at(options.smoke ? "smoke" : "full")),
         sizes_(or_planned(options.sizes, "sizes")),
         steps_(or_planned(options.steps, "steps")) {
-    if (options.largest)
-      for (const std::size_t size : data_.at("largest")) sizes_.push_back(size);
-    std::sort(sizes_.begin(), sizes_.end());
     std::sort(steps_.begin(), steps_.end());
     for (const double step : steps_)
       if (step > 1 && step != std::floor(step))
@@ -70,7 +67,7 @@ class Plan {
 
   std::vector<std::string> scenes() const { return or_planned(options_.scenes, "scenes"); }
 
-  // What `intervals`, `repetitions` and so on are where a study has none of its own.
+  // What a study leaves as it is where it has no other wish.
   ScaleSubject common(const std::string& scene) const {
     ScaleSubject subject;
     subject.scene = scene;
@@ -84,7 +81,12 @@ class Plan {
 
   void size(ScaleSubject subject) {
     subject.rows = chosen_rows(options_, data_.at("size_strategies"));
-    for (const std::size_t size : sizes_) subject.triangles = size, add(subject);
+    std::vector<std::size_t> sizes = sizes_;
+    if (const ordered_json& largest = data_.at("largest");
+        options_.largest && largest.contains(subject.scene))
+      for (const std::size_t size : largest.at(subject.scene)) sizes.push_back(size);
+    std::sort(sizes.begin(), sizes.end());
+    for (const std::size_t size : sizes) subject.triangles = size, add(subject);
   }
   void step(ScaleSubject subject) {
     subject.rows = chosen_rows(options_, data_.at("step_strategies"));
@@ -292,7 +294,7 @@ void add_scale(CLI::App& app) {
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")
       ->delimiter(',')
       ->check(CLI::Range(500, 20'000'000));
-  command->add_flag("--largest", options->largest, "775 thousand and 3.1 million triangles too");
+  command->add_flag("--largest", options->largest, "775 thousand triangles too, and of the rope 3.1 million");
   command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
       ->delimiter(',')
       ->check(CLI::Range(1e-3, 1000.0));
