@@ -1,14 +1,9 @@
 #include "core/engine/drvbc.h"
 
-#include <algorithm>
-#include <numbers>
-
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/engine/mega_clusters.h"
-#include "core/radial/distance_field.h"
-#include "core/radial/refinement.h"
-#include "core/radial/segmentation.h"
+#include "core/radial/observer.h"
 #include "core/radial/setup.h"
 
 // Dynamic Radial View Based Culling for Continuous Self-Collision Detection (Wong, Lin, Wang, Hung, Huang,

@@ -93,13 +93,13 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
-// Where the numbers are the same.
 // Of a mask, the first lane first.
 template <class Take>
 void for_each_lane(unsigned mask, const Take& take) {
   for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
+// Where the numbers are the same.
 inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
                     const std::array<std::int32_t, kLanes16>& b) {
 #ifdef __AVX512F__
