@@ -82,9 +82,8 @@ class Plan {
   void size(ScaleSubject subject) {
     subject.rows = chosen_rows(options_, data_.at("size_strategies"));
     std::vector<std::size_t> sizes = sizes_;
-    if (const ordered_json& largest = data_.at("largest");
-        options_.largest && largest.contains(subject.scene))
-      for (const std::size_t size : largest.at(subject.scene)) sizes.push_back(size);
+    if (options_.largest)
+      for (const std::size_t size : data_.at("largest")) sizes.push_back(size);
     std::sort(sizes.begin(), sizes.end());
     for (const std::size_t size : sizes) subject.triangles = size, add(subject);
   }
@@ -294,7 +293,7 @@ void add_scale(CLI::App& app) {
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")
       ->delimiter(',')
       ->check(CLI::Range(500, 20'000'000));
-  command->add_flag("--largest", options->largest, "775 thousand triangles too, and of the rope 3.1 million");
+  command->add_flag("--largest", options->largest, "775 thousand and 3.1 million triangles too");
   command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
       ->delimiter(',')
       ->check(CLI::Range(1e-3, 1000.0));

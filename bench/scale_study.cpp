@@ -33,7 +33,7 @@ double milliseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-struct Contestant {
+struct Entrant {
   StrategyRow row;
   Made made;
   bool reference;
@@ -44,11 +44,11 @@ struct Contestant {
   std::vector<std::string> digests;
 };
 
-Report answer(Contestant& contestant, const scenes::ClipInterval& interval, ContactSet& found) {
-  const Report report = contestant.made.prepared.detector->detect(
+Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet& found) {
+  const Report report = entrant.made.prepared.detector->detect(
       interval.motion, interval.bones ? &*interval.bones : nullptr, found);
   found.sort();
-  if (contestant.row.first) keep_first(found);
+  if (entrant.row.first) keep_first(found);
   return report;
 }
 
@@ -72,10 +72,10 @@ class Measurement {
     if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
     for (const StrategyRow& row : rows) {
       if (!allows(input(), *row.strategy)) continue;
-      contestants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
-      if (row.first) contestants_.back().made.prepared.detector->look_for_first_only();
+      entrants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
+      if (row.first) entrants_.back().made.prepared.detector->look_for_first_only();
     }
-    for (Contestant& c : contestants_) {
+    for (Entrant& c : entrants_) {
       c.counts.resize(subject.steps.size());
       c.ms.resize(subject.steps.size());
       c.once.resize(subject.steps.size());
@@ -99,13 +99,13 @@ class Measurement {
 
       const bool judged = reference_answers(i);
       if (judged) {
-        Contestant& reference = *std::ranges::find_if(contestants_, &Contestant::reference);
+        Entrant& reference = *std::ranges::find_if(entrants_, &Entrant::reference);
         keep(reference, i, answer(reference, interval, truth), truth);
         ++verified.by_reference;
       }
       ordered_json first = judged ? first_time(truth) : ordered_json();
-      const Contestant* told = nullptr;  // who told the first contact where the reference did not
-      for (Contestant& c : contestants_) {
+      const Entrant* told = nullptr;  // who told the first contact where the reference did not
+      for (Entrant& c : entrants_) {
         if (c.reference || left_out(c, step_of(i))) continue;
         keep(c, i, answer(c, interval, found), found);
         const std::string where = label(c, i);
@@ -131,11 +131,11 @@ class Measurement {
       for (std::size_t i = 0; i < interval_count(); ++i) {
         if (!verified_[step_of(i)].failures.empty()) continue;
         const scenes::ClipInterval interval = input().clip->load(i);
-        std::vector<Contestant*> order;
-        for (Contestant& c : contestants_)
+        std::vector<Entrant*> order;
+        for (Entrant& c : entrants_)
           if (is_timed(c) && !c.digests[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
         shuffle(order, random);
-        for (Contestant* c : order) {
+        for (Entrant* c : order) {
           stream_positions(interval.motion);
           const Report report = answer(*c, interval, found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
@@ -153,7 +153,7 @@ class Measurement {
 
   ordered_json json() const {
     ordered_json strategies = ordered_json::array(), steps = ordered_json::array();
-    for (const Contestant& c : contestants_)
+    for (const Entrant& c : entrants_)
       if (is_timed(c)) strategies.push_back(preparation_json(c));
     for (std::size_t s = 0; s < subject_.steps.size(); ++s) steps.push_back(step_json(s));
     return {{"study", subject_.study},
@@ -177,20 +177,20 @@ class Measurement {
     return subject_.starts[interval % subject_.starts.size()];
   }
   // Begins the line of a failure, under the step that it belongs to.
-  std::string label(const Contestant& c, std::size_t interval) const {
+  std::string label(const Entrant& c, std::size_t interval) const {
     return c.row.name() + ", from frame " + std::to_string(start_of(interval)) + ": ";
   }
-  bool is_timed(const Contestant& c) const {
+  bool is_timed(const Entrant& c) const {
     return std::ranges::find(subject_.rows, c.row) != subject_.rows.end();
   }
   // Milliseconds of a query as it was verified, mean over a step's intervals; 0 if it answered none.
-  double once_ms(const Contestant& c, std::size_t s) const {
+  double once_ms(const Entrant& c, std::size_t s) const {
     double sum = 0;
     for (const auto& [stage, repetitions] : c.once[s]) sum += mean(repetitions.front());
     return sum;
   }
   // By what it took for an earlier step, which is no longer than this one.
-  bool left_out(const Contestant& c, std::size_t s) const {
+  bool left_out(const Entrant& c, std::size_t s) const {
     for (std::size_t earlier = 0; earlier < s; ++earlier)
       if (once_ms(c, earlier) > kTooLong) return true;
     return false;
@@ -200,7 +200,7 @@ class Measurement {
   bool reference_answers(std::size_t interval) const {
     const std::size_t s = step_of(interval);
     std::size_t others = 0;
-    for (const Contestant& c : contestants_) {
+    for (const Entrant& c : entrants_) {
       if (!c.reference)
         others += !left_out(c, s);
       else if (input().mesh.triangle_count() <= subject_.reference_limit && !left_out(c, s))
@@ -219,13 +219,13 @@ class Measurement {
     return made;
   }
 
-  void keep(Contestant& c, std::size_t interval, const Report& report, const ContactSet& sorted) {
+  void keep(Entrant& c, std::size_t interval, const Report& report, const ContactSet& sorted) {
     append_counts(report, sorted, c.counts[step_of(interval)]);
     append_times(report.ms, c.once[step_of(interval)], 0);
     c.digests[interval] = digest(sorted);
   }
 
-  ordered_json preparation_json(const Contestant& c) const {
+  ordered_json preparation_json(const Entrant& c) const {
     ordered_json out = {{"name", c.row.name()},
                         {"guarantee", to_string(c.row.strategy->guarantee)},
                         {"threads", c.made.prepared.preparation.threads},
@@ -248,7 +248,7 @@ class Measurement {
   ordered_json step_json(std::size_t s) const {
     const Verified& verified = verified_[s];
     ordered_json rows = ordered_json::array();
-    for (const Contestant& c : contestants_)
+    for (const Entrant& c : entrants_)
       if (is_timed(c)) rows.push_back(row_json(c, s));
     return {{"step", subject_.steps[s].frames},
             {"scene", subject_.steps[s].scene},
@@ -264,7 +264,7 @@ class Measurement {
             {"strategies", std::move(rows)}};
   }
 
-  ordered_json row_json(const Contestant& c, std::size_t s) const {
+  ordered_json row_json(const Entrant& c, std::size_t s) const {
     ordered_json row = {{"name", c.row.name()}};
     ordered_json counts = ordered_json::object();
     for (const auto& [name, values] : c.counts[s])
@@ -307,7 +307,7 @@ class Measurement {
 
   const ScaleSubject& subject_;
   ScaleInput scaled_;
-  std::vector<Contestant> contestants_;
+  std::vector<Entrant> entrants_;
   std::vector<Verified> verified_;  // by step
 };
 

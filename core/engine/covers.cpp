@@ -8,7 +8,8 @@
 #include <random>
 
 #include "core/base/random.h"
-#include "core/engine/viewpoint.h"
+#include "core/engine/best_viewpoint.h"
+#include "core/engine/seams.h"
 
 namespace cscd::fast {
 namespace {
@@ -129,13 +130,10 @@ Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<Triangl
 using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
 Seams seams_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluster_of) {
   Seams seams;
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-    const std::span<const TriangleId> sides = mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)});
-    const std::int32_t a = cluster_of[+sides.front()], b = cluster_of[+sides.back()];
-    if (a == b) continue;
-    std::vector<TriangleId>& seam = seams[std::minmax(a, b)];
-    seam.insert(seam.end(), {sides.front(), sides.back()});
-  }
+  for_each_seam_edge(mesh, cluster_of, [&](TriangleId a, TriangleId b) {
+    std::vector<TriangleId>& seam = seams[std::minmax(cluster_of[+a], cluster_of[+b])];
+    seam.insert(seam.end(), {a, b});
+  });
   return seams;
 }
 

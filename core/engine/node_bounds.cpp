@@ -5,9 +5,7 @@ namespace cscd::fast {
 NodeBounds Grid::bounds_of(const PatchLanes& lanes) const {
   Short32 p[3], row[kDirections];
   for (int i = 0; i < 3; ++i) p[i] = rounded_pairs(lanes.at[0][i], lanes.at[1][i], steps_);
-  row[0] = p[0], row[1] = p[1], row[2] = p[2];
-  row[3] = p[0] + p[1], row[4] = p[0] + p[2], row[5] = p[1] + p[2];
-  row[6] = p[0] - p[1], row[7] = p[0] - p[2];
+  along_directions(p, row);
   return {smallest_pairs_of_rows(row) - std::int16_t{1}};
 }
 

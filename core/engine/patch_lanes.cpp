@@ -6,12 +6,6 @@
 namespace cscd::fast {
 namespace {
 
-void directions(const Float16 (&p)[3], Float16* out) {
-  out[0] = p[0], out[1] = p[1], out[2] = p[2];
-  out[3] = p[0] + p[1], out[4] = p[0] + p[2], out[5] = p[1] + p[2];
-  out[6] = p[0] - p[1], out[7] = p[0] - p[2];
-}
-
 // Written in place, register by register: gcc copies a struct of lanes by halves, and a load of a whole
 // register waits long for the stores of two.
 [[gnu::always_inline]] inline void corner_of(const PatchLanes& lanes, const Places16& place,
@@ -74,7 +68,7 @@ TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, floa
   const Float16 slack = all_lanes(7 * error);
   for (int end = 0; end < 2; ++end) {
     Float16 along[kDirections];
-    directions(lanes.at[end], along);
+    along_directions(lanes.at[end], along);
     for (std::size_t k = 0; k < kDirections; ++k) {
       const Float16 a = permuted(along[k], patch.corner[0]), b = permuted(along[k], patch.corner[1]),
                     c = permuted(along[k], patch.corner[2]);

@@ -16,6 +16,13 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
 
 // Directions of the bounds: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
 inline constexpr std::size_t kDirections = 8;
+// How far points lie along them.
+template <class Lanes>
+inline void along_directions(const Lanes (&p)[3], Lanes (&out)[kDirections]) {
+  out[0] = p[0], out[1] = p[1], out[2] = p[2];
+  out[3] = p[0] + p[1], out[4] = p[0] + p[2], out[5] = p[1] + p[2];
+  out[6] = p[0] - p[1], out[7] = p[0] - p[2];
+}
 
 // Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): for
 // each end, the least projection along every direction, then the greatest.

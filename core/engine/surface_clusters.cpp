@@ -8,7 +8,8 @@
 #include <queue>
 #include <set>
 
-#include "core/engine/viewpoint.h"
+#include "core/engine/best_viewpoint.h"
+#include "core/engine/seams.h"
 
 namespace cscd::fast {
 namespace {
@@ -64,7 +65,7 @@ class Pieces {
     std::vector<Triangles> members = this->members();
     std::map<Pair, std::size_t> seams;  // in edges
     std::vector<std::size_t> border(members.size());
-    for_each_seam_edge([&](TriangleId a, TriangleId b) {
+    for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) {
       ++seams[std::minmax(piece_[+a], piece_[+b])];
       ++border[index(piece_[+a])], ++border[index(piece_[+b])];
     });
@@ -109,7 +110,7 @@ class Pieces {
   // up and down.
   void straighten() {
     Triangles seam, middle;
-    for_each_seam_edge([&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
+    for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
     if (seam.empty()) return;
     flood(all_, seam, false);
     std::map<std::int32_t, double> deepest;
@@ -135,14 +136,6 @@ class Pieces {
     std::vector<Triangles> members(index(*std::max_element(piece_.begin(), piece_.end())) + 1);
     for (const TriangleId t : all_) members[index(piece_[+t])].push_back(t);
     return members;
-  }
-
-  template <class Take>
-  void for_each_seam_edge(const Take& take) const {
-    for (std::size_t e = 0; e < mesh_.edge_count(); ++e) {
-      const std::span<const TriangleId> sides = mesh_.triangles_at(EdgeId{static_cast<std::int32_t>(e)});
-      if (piece_[+sides.front()] != piece_[+sides.back()]) take(sides.front(), sides.back());
-    }
   }
 
   bool seen_well(const Triangles& piece, double cosine) const {

@@ -1,4 +1,4 @@
-#include "core/engine/viewpoint.h"
+#include "core/engine/best_viewpoint.h"
 
 #include <cmath>
 #include <limits>
