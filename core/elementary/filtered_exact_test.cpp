@@ -233,6 +233,29 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
   ee_.expect_both_answers();
 }
 
+// Vectors that are subnormal beside others that are not: what is lost between the ends of an interval counts.
+TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
+  const FourMovingPoints lost = {
+      MovingPoint{{0x1p-1074, 0x1p-1073, 0x1p-1073}, {0x1p-1072, 3 * 0x1p-1074, -3 * 0x1p-1074}},
+      MovingPoint{Vec3::Zero(), Vec3::Zero()}, MovingPoint{{1e50, 1e50, 0}, {1e50, 1e50, 0}},
+      MovingPoint{{-1e50, 1e50, 0}, {-1e50, 1e50, 0}}};
+  vf_.add<MovingVertexFace>(lost);
+  EXPECT_EQ(vf_.contacts, 1);
+  for (const double large : {1e-20, 1e25, 1e50, 1e140})
+    for (const double small : {0x1p-1074, 0x1p-1070, 1e-310, 1e-295})
+      compare(100, [&](int i) {
+        FourMovingPoints p = make_.lattice(4);
+        for (MovingPoint& x : p) x = {large * x.start, large * x.end};
+        const auto one = static_cast<std::size_t>(i % 4),
+                   other = (one + 1 + static_cast<std::size_t>(i / 4 % 3)) % 4;
+        p[one] = {small / large * p[one].start, small / large * p[one].end};
+        p[other] = {Vec3::Zero(), Vec3::Zero()};
+        return p;
+      });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
 // A second opinion that shares no algorithm with the referee either.
 TEST_F(FilteredExact, AgreesWithBruteForceOnSmallIntegers) {
   const auto check = [](const FourMovingPoints& p, const Answer& answer, const brute::Predicate& predicate) {

@@ -36,11 +36,13 @@ struct Component {
 // the interval; L is the largest component at t = 0 and 1. A coefficient has two products of two of those,
 // (2 * 2 * 4 + 2) u L L', and a difference of them, 2 u L L'; the middle one is half of twice as much, and
 // one more sum: 22 u L L' altogether. Sides add up to three of these, at most 4 u more for each. 28 also pays
-// for terms in u^2 and the bound's own roundings. What underflows is less than the last term.
+// for terms in u^2 and the bound's own roundings. What underflows in a product is less than the last term;
+// what does in a vector counts as little only if the vector is no smaller than kLeastSize.
 struct ProvenBounds {
   static constexpr double component = 28 * kUnitRoundoff, cubic = 1;  // the latter in units of the proven one
 };
 inline constexpr double kUnderflow = 1e-300;
+inline constexpr double kLeastSize = 1e-290, kLargestSize = 1e145;  // of vectors, for that and for overflow
 
 template <class Bounds, class Real>
 Component<Real> component(const SeenAlong<Real>& x, const SeenAlong<Real>& y, Real size) {
@@ -92,6 +94,11 @@ struct SideSigns {
 template <class Real>
 struct Sizes {
   Real p, q, r;
+
+  MaskOf<Real> in_range() const {
+    const Real least = smaller(smaller(p, q), r), largest = larger(larger(p, q), r);
+    return MaskOf<Real>((least >= kLeastSize) & (largest <= kLargestSize));
+  }
 };
 
 template <class Query, class Bounds, class Real>
@@ -111,7 +118,9 @@ Place<Real> place_along(const SeenAlong<Real>& p, const SeenAlong<Real>& q, cons
     signs.add(h);
     signs.add(n - h);
   }
-  return signs.place();
+  const Place<Real> place = signs.place();
+  const MaskOf<Real> known = size.in_range();
+  return {MaskOf<Real>(place.outside & known), MaskOf<Real>(place.inside & known)};
 }
 
 }  // namespace cscd
