@@ -56,6 +56,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
       got += weight * positions[+vertices[i]];
       largest = std::max(largest, n * std::abs(weight));
     }
+    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // it is far from these vertices
     const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
     if (!(cost < least)) continue;
     least = cost;

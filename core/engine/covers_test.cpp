@@ -1,5 +1,6 @@
 #include "core/engine/covers.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -57,6 +58,20 @@ TEST(Covers, Trap03NoClusterSpansTwoComponents) {
       EXPECT_LT(cluster, static_cast<std::int32_t>(cover.observers.size()));
     }
   }
+}
+
+// A sphere so small beside its one spike that the point from which it is seen best is far away from it, in
+// its own measure. Mutation: draws of any weights.
+TEST(Covers, ObserversStayWithinReachOfTheirVertices) {
+  test::Shape shape = test::icosphere(4, 1e-19);
+  shape.positions[17] = {1, 0, 0};
+  const TriangleMesh mesh = shape.mesh();
+  const Covers covers =
+      make_covers(mesh, shape.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  ASSERT_EQ(covers[0].observers.size(), 1u);
+  float sum = 0;
+  for (const float weight : covers[0].observers[0].weights()) sum += std::abs(weight);
+  EXPECT_LE(sum, 1.001F * FollowingPoint::kMostWeight);
 }
 
 TEST(Covers, ObserversSeeAllOfATubeFromInside) {

@@ -13,6 +13,9 @@ namespace cscd::fast {
 class FollowingPoint {
  public:
   static constexpr std::size_t kMost = 16;
+  // To which the sizes of weights may sum. Triple products with a point that is this much farther away than
+  // any local position (local_positions.h) are far from overflow.
+  static constexpr float kMostWeight = 1000;
 
   // At most `kMost` times.
   void add(VertexId vertex, float weight);

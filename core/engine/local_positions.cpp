@@ -16,7 +16,7 @@ using Double8 = double __attribute__((vector_size(64)));
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 
-constexpr float kLargest = 1e9F;      // triple products of three such lengths are far from overflow
+constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
 constexpr std::size_t kRange = 1024;  // vertices worth another thread
 
 }  // namespace

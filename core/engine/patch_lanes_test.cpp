@@ -1,6 +1,9 @@
 #include "core/engine/patch_lanes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "core/engine/node_bounds.h"
 #include "core/engine/test_body.h"
@@ -176,6 +179,50 @@ TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
     }
   EXPECT_GT(negative, 50u);
   EXPECT_GT(certified, all / 2);
+}
+
+// Nothing overflows as far away as positions and observers are allowed to be, be triangles large or small.
+// Mutation: kMostWeight 1e14.
+TEST(PatchLanes, CertifiedSignsAreExactTowardsTheFarthestObservers) {
+  constexpr float kFarthest = 1e9F;  // of local positions
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> digits(-1, 1), magnitude(0, 7);
+  std::size_t certified = 0;
+  for (int round = 0; round < 400; ++round) {
+    PatchLanes lanes;
+    Viewpoint from;
+    Patch patch{};
+    const float scattered = kFarthest * std::pow(10.0F, -magnitude(random));
+    for (std::size_t end = 0; end < 2; ++end)
+      for (std::size_t i = 0; i < 3; ++i) {
+        from.at[end][i] = FollowingPoint::kMostWeight * kFarthest * digits(random);
+        const float middle = kFarthest * digits(random) * (round % 2 == 0 ? 1.0F : 0.0F);
+        for (std::size_t l = 0; l < kLanes16; ++l)
+          lanes.at[end][i][l] = std::clamp(middle + scattered * digits(random), -kFarthest, kFarthest);
+      }
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      patch.corner[0][l] = static_cast<std::uint8_t>(l);
+      patch.corner[1][l] = static_cast<std::uint8_t>((l + 5) % kLanes16);
+      patch.corner[2][l] = static_cast<std::uint8_t>((l + 11) % kLanes16);
+    }
+    if (round % 4 < 2)  // at rest, or certain signs are rare
+      for (std::size_t i = 0; i < 3; ++i) lanes.at[1][i] = lanes.at[0][i], from.at[1][i] = from.at[0][i];
+    const Signs signs = orientation(lanes, patch, from, 0x1.1p-24F * kFarthest);
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      const auto point = [](auto&& at) {  // (end, axis) -> float
+        return MovingPoint{Vec3(at(0, 0), at(0, 1), at(0, 2)), Vec3(at(1, 0), at(1, 1), at(1, 2))};
+      };
+      MovingPoint corner[3];
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[k] = point([&](int end, int i) { return lanes.at[end][i][patch.corner[k][l]]; });
+      const radial::Orientation truth =
+          test::exact_class(corner, point([&](int end, int i) { return from.at[end][i]; }));
+      EXPECT_TRUE(!(signs.positive >> l & 1) || truth == radial::Orientation::positive);
+      EXPECT_TRUE(!(signs.negative >> l & 1) || truth == radial::Orientation::negative);
+      certified += (signs.positive | signs.negative) >> l & 1;
+    }
+  }
+  EXPECT_GT(certified, 500u);
 }
 
 // One lane as plain scalar code.
