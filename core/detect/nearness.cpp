@@ -14,14 +14,14 @@ constexpr float kUnreached = std::numeric_limits<float>::infinity();
 // Above so many triangles a node is too wide for its extent to be of use.
 constexpr std::size_t kLargestExtent = 512;
 
-// A lower bound of the distance of what two volumes hold.
+// A lower bound of the distance of what two volumes hold, however that is rounded.
 double gap(const Kdop16& a, const Kdop16& b) {
-  constexpr double shorten = 0.7071;  // diagonal directions are longer than 1
+  constexpr double axis = 1 - 1e-6, diagonal = 0.7071;  // a little less than 1 over the directions' lengths
   double widest = 0;
   for (std::size_t k = 0; k < Kdop16::kDirections; ++k) {
     const double above = static_cast<double>(a.at_least[k]) + b.at_least[8 + k];
     const double below = static_cast<double>(b.at_least[k]) + a.at_least[8 + k];
-    widest = std::max(widest, (k < 3 ? 1 : shorten) * std::max(above, below));
+    widest = std::max(widest, (k < 3 ? axis : diagonal) * std::max(above, below));
   }
   return widest;
 }
@@ -199,10 +199,11 @@ struct Nearness::Search {
 
   void leaves(TriangleId a, TriangleId b) {
     if (in.adjacent(a, b)) return;
+    if (b < a) std::swap(a, b);  // a distance may round otherwise the other way round
     const double found = distance(a, b);
     if (found >= bound) return;
     bound = found;
-    best = Pair{std::min(a, b), std::max(a, b), found / in.mean_edge_};
+    best = Pair{a, b, found / in.mean_edge_};
   }
 };
 

@@ -108,6 +108,28 @@ TEST(Nearness, DependsOnTheFrameAloneNotOnTheFramesBefore) {
   }
 }
 
+// A distance may round otherwise the other way round: a bound from the last frame must not shut its own pair
+// out.
+TEST(Nearness, FindsThePairOfTheFrameBeforeAgain) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> near_middle(-1, 1);
+  int found = 0;
+  for (int i = 0; i < 500; ++i) {
+    Shape two{{}, {test::corners(0, 1, 2), test::corners(3, 4, 5)}};
+    for (int v = 0; v < 6; ++v)
+      two.positions.emplace_back(near_middle(random) + (v < 3 ? 2 : 0), near_middle(random),
+                                 near_middle(random));
+    const TriangleMesh mesh = two.mesh();
+    Nearness nearness(mesh, two.positions);
+    const auto first = nearness.closest(two.positions), again = nearness.closest(two.positions);
+    ASSERT_EQ(first.has_value(), again.has_value());
+    if (!first) continue;
+    ++found;
+    EXPECT_EQ(first->distance, again->distance);
+  }
+  EXPECT_GT(found, 400);
+}
+
 // Spikes of four sides and seven rings on a plate: what the urchin has.
 TEST(Nearness, NeighbouringSpikesCountASpikesOwnSidesDoNot) {
   Shape both;

@@ -34,7 +34,12 @@ struct FloatEdgeEdge {
 };
 struct FloatVector {
   Eigen::Vector3f start, end;
-  float largest() const { return std::max(start.cwiseAbs().maxCoeff(), end.cwiseAbs().maxCoeff()); }
+  // No number where coordinates were beyond the range of floats.
+  float largest() const {
+    Eigen::Matrix<float, 3, 2> ends;
+    ends << start, end;
+    return ends.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  }
 };
 struct FloatCubic {
   float c[4];

@@ -351,6 +351,15 @@ TEST_F(Newton, FloatsAgreeWithTheRefereeWhereFeaturesCross) {
   EXPECT_LT(wrong, 20);
 }
 
+// Coordinates that floats cannot hold: what is said of the others alone is no answer.
+TEST_F(Newton, FloatsKnowNothingOfCoordinatesBeyondTheirRange) {
+  for (int axis = 0; axis < 3; ++axis) {
+    FourMovingPoints p = test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
+    for (MovingPoint& x : p) x.start[axis] += 1e39, x.end[axis] += 1e39;
+    EXPECT_NE(newton_float_vertex_face(query_of<MovingVertexFace>(p)).verdict, Verdict::apart) << axis;
+  }
+}
+
 // Cubics that are almost zero leave nothing to cut. Generous: a thousandth of a second each on a slow machine
 // under a sanitizer would pass.
 TEST_F(Newton, TheSearchEndsSoonOnFlatCubics) {
