@@ -1,6 +1,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <random>
+#include <vector>
 
 #include "baselines/aabb.h"
 #include "scenes/random/random_interval.h"
@@ -33,6 +35,48 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
     }
   }
   EXPECT_GT(pairs, 100000u);
+}
+
+// Triangles without common vertices.
+inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std::vector<Vec3>& corners) {
+  std::vector<Triangle> triangles;
+  for (int v = 0; v < static_cast<int>(corners.size()); v += 3)
+    triangles.push_back({VertexId{v}, VertexId{v + 1}, VertexId{v + 2}});
+  const TriangleMesh mesh(triangles, corners.size());
+  const Setup setup{mesh, corners, nullptr, *find_elementary_test("newton")};
+  ContactSet found, expected;
+  const Report a = make(setup).detector->detect(Motion(corners, corners), nullptr, found),
+               b = make_aabb(setup).detector->detect(Motion(corners, corners), nullptr, expected);
+  found.sort(), expected.sort();
+  EXPECT_GT(b.cull.pctp, 100u);
+  EXPECT_EQ(a.cull.pctp, b.cull.pctp);
+  EXPECT_EQ(digest(found), digest(expected));
+}
+
+// What reaches beyond the floats, beside one triangle that does not.
+inline void expect_pairs_beyond_floats(Prepared (*make)(const Setup&)) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> anywhere(0, 4), near(-0.5, 0.5);
+  for (const double far : {1e30, 1e39, -1e39, 1e300}) {
+    std::vector<Vec3> corners;
+    for (int t = 0; t < 400; ++t) {
+      const Vec3 centre(anywhere(random), anywhere(random), t == 200 ? 0 : far * (1.5 + near(random)));
+      for (int k = 0; k < 3; ++k)
+        corners.push_back(centre + Vec3(near(random), near(random), t == 200 ? 0 : far * 0.1 * near(random)));
+    }
+    SCOPED_TRACE(far);
+    expect_the_pairs_of_boxes(make, corners);
+  }
+}
+
+// So many pairs of subnormal triangles, all of them apart, that some are tested while others are still
+// sought.
+inline void expect_pairs_of_subnormal_triangles(Prepared (*make)(const Setup&)) {
+  std::vector<Vec3> corners;
+  for (int t = 0; t < 260; ++t)
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(1, 1.001, 1)})
+      corners.push_back(1e-310 * (p + Vec3(0, 0, 1e-3 * t)));
+  expect_the_pairs_of_boxes(make, corners);
 }
 
 }  // namespace cscd::test

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/detect/compose.h"
-#include "core/hierarchy/bounds.h"
+#include "core/hierarchy/package_box.h"
 
 // Idea: no hierarchy that is kept, but a streamed segment tree with a scan as cut-off, made anew for every
 // set of boxes; proven to take O(n log^3 n + pairs).
@@ -22,6 +22,8 @@ namespace cscd {
 namespace {
 
 constexpr std::ptrdiff_t kScanBelow = 200;  // boxes
+// Its segment tree spans the floats; boxes at their very end fall out of it.
+constexpr float kFarthest = 1e38F;
 
 using Box = CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::ID_FROM_BOX_ADDRESS>;
 
@@ -34,10 +36,8 @@ class CgalBoxesCuller : public Culler {
     swept_vertex_bounds(motion, std::span(of_vertex_));
     pointers_.clear();
     for (std::size_t t = 0; t < boxes_.size(); ++t) {
-      const Aabb box = swept_triangle<Aabb>(mesh_.triangles()[t], of_vertex_);
-      const float* b = box.at_least;
-      float low[3] = {b[0], b[1], b[2]}, high[3] = {-b[4], -b[5], -b[6]};
-      boxes_[t] = Box(low, high);
+      PackageBox box(swept_triangle<Aabb>(mesh_.triangles()[t], of_vertex_), kFarthest);
+      boxes_[t] = Box(box.low, box.high);
       pointers_.push_back(&boxes_[t]);
     }
   }

@@ -1,14 +1,15 @@
 #include "baselines/embree/embree.h"
 
-#include <algorithm>
 #include <embree3/rtcore.h>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/team.h"
 #include "core/detect/compose.h"
-#include "core/hierarchy/bounds.h"
+#include "core/hierarchy/package_box.h"
 
 // Idea: a ray tracer's hierarchy, four children a node and vectorised, as a user would take it for the broad
 // phase: every triangle is a user primitive with the swept box of its path.
@@ -16,7 +17,9 @@
 // What is known of rtcCollide beyond its manual, found by trying it: a scene with itself reports every pair
 // in both orders and none of a primitive with itself; leaves hold several primitives, whose boxes are not
 // compared with each other. So one order is taken and the boxes are compared here. Neither that it finds all
-// pairs is documented: the test compares it with all pairs of boxes.
+// pairs is documented: the test compares it with all pairs of boxes. It calls back with subnormal numbers
+// taken for zero, so nothing is computed there. A device that is told of one thread leaves all of oneTBB no
+// more, ours among it, so it is called where there is but one.
 //
 // Fidelity: the package as it is. Boxes are those of the strategy `aabb`, rounded outward; filter and
 // elementary test follow as for all. Its counters are not open, so there is no number of overlap tests.
@@ -30,13 +33,13 @@ namespace {
 
 // Embree takes a box that reaches farther for a mistake and leaves it out. What overlaps still does when cut
 // off there.
-constexpr float kLargest = 1.8e18f;
+constexpr float kFarthest = 1.8e18F;
 
 class EmbreeCuller : public Culler {
  public:
   explicit EmbreeCuller(const Setup& setup)
       : mesh_(setup.mesh), of_vertex_(mesh_.vertex_count()), box_(mesh_.triangle_count()) {
-    device_ = rtcNewDevice("threads=1,start_threads=0,set_affinity=0");
+    device_ = rtcNewDevice("start_threads=0,set_affinity=0");
     if (device_ == nullptr)
       throw InputError("strategy embree: Embree has no device here (error " +
                        std::to_string(rtcGetDeviceError(nullptr)) +
@@ -64,13 +67,19 @@ class EmbreeCuller : public Culler {
     swept_vertex_bounds(motion, std::span(of_vertex_));
     for (std::size_t t = 0; t < box_.size(); ++t)
       box_[t] = swept_triangle<Aabb>(mesh_.triangles()[t], of_vertex_);
-    rtcCommitGeometry(geometry_);
-    rtcCommitScene(scene_);
+    on_this_thread([this] {
+      rtcCommitGeometry(geometry_);
+      rtcCommitScene(scene_);
+    });
+    require_success();
   }
 
   CullCounts cull(TrianglePairSink& sink) override {
-    sink_ = &sink;
-    rtcCollide(scene_, scene_, take_pairs, this);
+    reported_.clear();
+    on_this_thread([this] { rtcCollide(scene_, scene_, take_pairs, this); });
+    require_success();
+    for (const auto& [a, b] : reported_)
+      if (overlap(box_[+a], box_[+b])) sink.add(a, b);
     CullCounts counts;
     counts.bvot.reset();
     return counts;
@@ -79,17 +88,20 @@ class EmbreeCuller : public Culler {
  private:
   static void write_bounds(const RTCBoundsFunctionArguments* arguments) {
     const auto& culler = *static_cast<const EmbreeCuller*>(arguments->geometryUserPtr);
-    const float* b = culler.box_[arguments->primID].at_least;
-    const auto within = [](float x) { return std::clamp(x, -kLargest, kLargest); };
-    *arguments->bounds_o = {within(b[0]),  within(b[1]),  within(b[2]),  0,
-                            within(-b[4]), within(-b[5]), within(-b[6]), 0};
+    const PackageBox box(culler.box_[arguments->primID], kFarthest);
+    *arguments->bounds_o = {box.low[0], box.low[1], box.low[2], 0, box.high[0], box.high[1], box.high[2], 0};
   }
   static void take_pairs(void* self, RTCCollision* pairs, unsigned count) {
     auto& culler = *static_cast<EmbreeCuller*>(self);
     for (const RTCCollision& pair : std::span(pairs, count))
-      if (pair.primID0 < pair.primID1 && overlap(culler.box_[pair.primID0], culler.box_[pair.primID1]))
-        culler.sink_->add(TriangleId{static_cast<std::int32_t>(pair.primID0)},
-                          TriangleId{static_cast<std::int32_t>(pair.primID1)});
+      if (pair.primID0 < pair.primID1)
+        culler.reported_.push_back({TriangleId{static_cast<std::int32_t>(pair.primID0)},
+                                    TriangleId{static_cast<std::int32_t>(pair.primID1)}});
+  }
+  // Embree keeps to itself what is thrown in its calls, but remembers that something was.
+  void require_success() {
+    if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+      throw std::runtime_error("strategy embree: Embree failed (error " + std::to_string(error) + ")");
   }
 
   const TriangleMesh& mesh_;
@@ -97,7 +109,7 @@ class EmbreeCuller : public Culler {
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   RTCGeometry geometry_ = nullptr;
-  TrianglePairSink* sink_ = nullptr;  // while pairs come in
+  std::vector<TrianglePair> reported_;  // in one order, boxes not compared
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "baselines/fcl/fcl_elementary.h"
+#include "core/base/error.h"
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
 #include "core/detect/feature_pair_set.h"
@@ -72,6 +73,10 @@ class FclDetector : public Detector {
 
   Report detect(const Motion& motion, const Rig::Interval*, ContactSet& out) override {
     out.clear();
+    for (const std::span<const Vec3> end : {motion.start(), motion.end()})
+      for (const Vec3& p : end)
+        if (p.cwiseAbs().maxCoeff() > kFclFarthest)
+          throw InputError("strategy fcl: a coordinate beyond 1e100; choose a larger unit of length");
     clock_.reset();
     clock_.enter(Stage::refit);
     std::copy(motion.start().begin(), motion.start().end(), model_.vertices);

@@ -4,6 +4,8 @@
 
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 
+#include "core/elementary/unit_scale.h"
+
 // FCL 0.7 of Debian, called as its continuous traversal calls it. Idea: roots of the coplanarity cubic by
 // interval Newton, then a test of the features at the root with absolute tolerances. A "no" proves nothing:
 // the cubic has no error bound, and one whose coefficients are all zero is given up.
@@ -15,7 +17,12 @@ using Kernel = fcl::detail::Intersect<double>;
 Answer answer(bool touch, double time) {
   return touch ? Answer{Verdict::contact, time} : Answer{Verdict::apart, 0};
 }
+template <class Query>
+bool too_far(const Query& q) {
+  return unit_scale::largest_coordinates(q).maxCoeff() > kFclFarthest;
+}
 Answer fcl_vertex_face(const MovingVertexFace& q) {
+  if (too_far(q)) return {Verdict::undecided, 0};
   double time = 0;
   Vec3 where;
   const bool touch =
@@ -24,6 +31,7 @@ Answer fcl_vertex_face(const MovingVertexFace& q) {
   return answer(touch, time);
 }
 Answer fcl_edge_edge(const MovingEdgeEdge& q) {
+  if (too_far(q)) return {Verdict::undecided, 0};
   double time = 0;
   Vec3 where;
   const bool touch =

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "baselines/base.h"
+#include "core/base/error.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/random/random_interval.h"
 
@@ -33,6 +34,16 @@ TEST(Fcl, FindsWhatIsPlainToSee) {
     fcl->detect(Motion(shape.positions, shape.positions), nullptr, found);
     EXPECT_TRUE(found.contacts.empty());
   }
+}
+
+// Where its cubics overflow it would search for seconds a pair.
+TEST(Fcl, RefusesWhatOverflows) {
+  test::Shape shape = test::together(test::box(), test::moved(test::box(), {0.5, 0.5, 0.5}));
+  for (Vec3& p : shape.positions) p *= 1e120;
+  const TriangleMesh mesh = shape.mesh();
+  const auto fcl = make_fcl({mesh, shape.positions, nullptr, *find_elementary_test("exact")}).detector;
+  ContactSet found;
+  EXPECT_THROW(fcl->detect(Motion(shape.positions, shape.positions), nullptr, found), InputError);
 }
 
 // What it promises is nothing; what it does on random intervals is recorded here and must not pass unnoticed

@@ -34,4 +34,8 @@ void Team::share_out(std::size_t parts, const void* context,
   });
 }
 
+void on_this_thread(const std::function<void()>& work) {
+  tbb::task_arena(1).execute(work);
+}
+
 }  // namespace cscd

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
 
 namespace cscd {
@@ -53,5 +54,8 @@ class Team {
   std::size_t threads_;
   std::unique_ptr<Arena> arena_;
 };
+
+// Runs `work` where a package that shares out its own work by oneTBB finds no other thread.
+void on_this_thread(const std::function<void()>& work);
 
 }  // namespace cscd

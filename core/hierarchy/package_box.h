@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/hierarchy/bounds.h"
+
+namespace cscd {
+
+// A box as packages take it: cut off at `farthest`, as they take what reaches farther for a mistake. What
+// overlaps still does.
+struct PackageBox {
+  float low[3], high[3];
+
+  PackageBox(const Aabb& box, float farthest) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::clamp(box.at_least[k], -farthest, farthest);
+      high[k] = std::clamp(-box.at_least[Aabb::kDirections + k], -farthest, farthest);
+    }
+  }
+};
+
+}  // namespace cscd
