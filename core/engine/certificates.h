@@ -17,13 +17,15 @@ namespace cscd::fast {
 //
 // Two triangles that one cover certifies with one sign need not be looked at. The theorem (soundness
 // contract) asks that one field certifies everything incident to a feature pair that is dropped. A feature
-// pair that touches is dropped only if all pairs of triangles that carry it are, and those by covers alone,
-// as bounds, stars and planes drop none that carries a contact. If another cover than the first drops one of
-// them, it certifies all around the corners of both, and so all that is asked for. If none does, the first
-// drops all of them: any triangle at one feature lies in one cluster with any at the other, and has its sign.
-// (They are never one triangle, as features of a pair have no common vertex.) Between two covers neither of
-// which looks at what surrounds a triangle that would not hold: each might drop some of the pairs (trap 14).
-// With capped clusters none of this is needed (capped_clusters.h).
+// is here the least vertex, edge or triangle that holds the point where the two touch, so that a vertex may
+// meet a vertex. A pair of features that touches is dropped only if all pairs of triangles at one and at the
+// other are, and those by covers alone, as bounds, stars and planes drop none that carries a contact. If
+// another cover than the first drops one of them, it certifies all around the corners of both, and so all
+// that is at either feature. If none does, the first drops all of them: any triangle at one feature lies in
+// one cluster with any at the other, and has its sign. (One triangle at both has no area when they touch:
+// it has no sign, so its pairs with the others are not dropped.) Between two covers neither of which looks at
+// what surrounds a triangle that would not hold: each might drop some of the pairs (trap 14). With capped
+// clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:
   // With `capped`, one of each cover, no contact is lost whatever the start; without, the first of an

@@ -15,7 +15,8 @@ struct TreeBuilder {
       : mesh(mesh_in), centroid(mesh.triangle_count()) {
     for (std::size_t t = 0; t < centroid.size(); ++t) {
       const Triangle& corner = mesh.triangles()[t];
-      // Divided before it is summed, so that coordinates near the end of the range do not overflow.
+      // Divided before it is summed, so that hardly any coordinates overflow; those that do spoil no pair,
+      // only the shape of the tree.
       centroid[t] = positions[+corner[0]] / 3 + positions[+corner[1]] / 3 + positions[+corner[2]] / 3;
     }
     tree.link_.reserve(2 * centroid.size());
