@@ -31,8 +31,7 @@
 namespace cscd {
 namespace {
 
-// Embree takes a box that reaches farther for a mistake and leaves it out. What overlaps still does when cut
-// off there.
+// Embree takes a box that reaches farther for a mistake and leaves it out.
 constexpr float kFarthest = 1.8e18F;
 
 class EmbreeCuller : public Culler {

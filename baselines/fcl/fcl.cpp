@@ -10,6 +10,7 @@
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "baselines/fcl/fcl_elementary.h"

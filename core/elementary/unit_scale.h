@@ -7,8 +7,8 @@
 
 // Queries brought to the size of 1 by powers of two, for coordinates whose products underflow or overflow.
 // That is exact but for coordinates that become subnormal: those may be off by 2^-1074, so far below the
-// roundings of anything that kTinyProduct admits that the bounds of bernstein.h and doubles_stage.h pay for
-// it.
+// roundings of anything that kTinyProduct and kLeastSize admit that the bounds of bernstein.h and sides.h pay
+// for it.
 namespace cscd {
 
 template <class Take>

@@ -6,8 +6,8 @@
 
 namespace cscd {
 
-// A box as packages take it: cut off at `farthest`, as they take what reaches farther for a mistake. What
-// overlaps still does.
+// A box as packages take it: cut off at `farthest`, beyond which they lose it. What overlaps still does when
+// cut off there.
 struct PackageBox {
   float low[3], high[3];
 
