@@ -24,8 +24,7 @@ template <int... kFrom>
 VectorLanes shuffled(const VectorLanes& v, const VectorLanes& w) {
   VectorLanes out;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i)
-      out.at[end][i] = __builtin_shufflevector(v.at[end][i], w.at[end][i], kFrom...);
+    for (int i = 0; i < 3; ++i) out.at[end][i] = cscd::shuffled<kFrom...>(v.at[end][i], w.at[end][i]);
   return out;
 }
 template <int... kFrom>
@@ -34,13 +33,13 @@ VectorLanes shuffled(const VectorLanes& v) {
 }
 template <int... kFrom, class Lanes>
 Lanes shuffled(Lanes v) {
-  return __builtin_shufflevector(v, v, kFrom...);
+  return cscd::shuffled<kFrom...>(v, v);
 }
 
 VectorLanes chosen(Sign8 which, const VectorLanes& v, const VectorLanes& w) {
   VectorLanes out;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = which ? v.at[end][i] : w.at[end][i];
+    for (int i = 0; i < 3; ++i) out.at[end][i] = select(which, v.at[end][i], w.at[end][i]);
   return out;
 }
 
@@ -58,7 +57,7 @@ Features features_of(const Motion& motion, const Triangle& a, const Triangle& b)
   const Sign8 next_number = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
   f.first_end = chosen(forward, f.corner, next);
   f.other_end = chosen(forward, next, f.corner);
-  f.first = forward ? number : next_number;
+  f.first = select(forward, number, next_number);
   f.edge = next - f.corner;
   f.longest = f.edge.largest_component();
   return f;

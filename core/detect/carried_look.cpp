@@ -28,18 +28,12 @@ struct Corners {
   float error() const { return 1.01F * 0x1p-24F * largest; }
 };
 
-Float8 joined(Float4 a, Float4 b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-Float16 joined(Float8 a, Float8 b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-}
-
 Corners::End load(std::span<const Vec3> x, const Triangle& a, const Triangle& b) {
   const Double4 from = row_of(x[+a[0]]);
   const auto seen = [&](VertexId v) { return __builtin_convertvector(row_of(x[+v]) - from, Float4); };
-  const Float8 last = joined(seen(b[1]), seen(b[2]));
-  return {joined(joined(Float4{}, seen(a[1])), joined(seen(a[2]), seen(b[0]))), joined(last, last)};
+  const Float8 last = joined<Float8>(seen(b[1]), seen(b[2]));
+  return {joined<Float16>(joined<Float8>(Float4{}, seen(a[1])), joined<Float8>(seen(a[2]), seen(b[0]))),
+          joined<Float16>(last, last)};
 }
 
 Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b) {
@@ -56,9 +50,9 @@ VectorLanes16 points(const Corners& c) {
   VectorLanes16 out;
   for (int end = 0; end < 2; ++end) {
     const auto [first, last] = c.end[end];
-    out.at[end][0] = __builtin_shufflevector(first, last, 4 * kCorner...);
-    out.at[end][1] = __builtin_shufflevector(first, last, 4 * kCorner + 1 ...);
-    out.at[end][2] = __builtin_shufflevector(first, last, 4 * kCorner + 2 ...);
+    out.at[end][0] = shuffled<4 * kCorner...>(first, last);
+    out.at[end][1] = shuffled<4 * kCorner + 1 ...>(first, last);
+    out.at[end][2] = shuffled<4 * kCorner + 2 ...>(first, last);
   }
   return out;
 }
@@ -67,7 +61,8 @@ constexpr Int16 kVertexFace = {-1, -1, -1, -1, -1, -1};
 VectorLanes16 chosen(const VectorLanes16& vertex_face, const VectorLanes16& edge_edge) {
   VectorLanes16 out;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = kVertexFace ? vertex_face.at[end][i] : edge_edge.at[end][i];
+    for (int i = 0; i < 3; ++i)
+      out.at[end][i] = select(kVertexFace, vertex_face.at[end][i], edge_edge.at[end][i]);
   return out;
 }
 
@@ -113,7 +108,7 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
   for (int i = 0; i < 3; ++i) {
     const auto twice = [&](int k) { return p[k].at[0][i] + p[k].at[1][i]; };
     along[0][i] = twice(0);
-    along[1][i] = kVertexFace ? twice(1) : twice(2) - twice(1);
+    along[1][i] = select(kVertexFace, twice(1), twice(2) - twice(1));
     along[2][i] = along[1][i] - alike * along[0][i];
   }
   const auto cross = [](const Float16(&a)[3], const Float16(&b)[3], Float16(&out)[3]) {
@@ -140,7 +135,7 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
         return product_plus(m[2], x[2], product_plus(m[1], x[1], m[0] * x[0]));
       };
       const Float16 zero = {}, x = at(0), y = at(1), z = at(2);
-      const Float16 in_first = kVertexFace ? y : zero, in_second = kVertexFace ? z : y;
+      const Float16 in_first = select(kVertexFace, y, zero), in_second = select(kVertexFace, z, y);
       const Float16 over = smaller(in_second, z) - larger(larger(zero, x), in_first);
       const Float16 under = smaller(smaller(zero, x), in_first) - larger(in_second, z);
       above_all &= above(over, bound), below_all &= above(under, bound);

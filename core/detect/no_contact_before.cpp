@@ -20,16 +20,16 @@ void transpose(const Rows& rows, Float16 (&out)[3]) {
   Float16 four[4];  // pairs each
   std::memcpy(four, rows.data(), sizeof four);
   const auto both = [](Float16 a, Float16 b) {  // x of eight pairs, then y
-    return __builtin_shufflevector(a, b, 0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+    return shuffled<0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29>(a, b);
   };
   const auto last = [](Float16 a, Float16 b) {
-    return __builtin_shufflevector(a, b, 2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
+    return shuffled<2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30>(a, b);
   };
   const Float16 low = both(four[0], four[1]), high = both(four[2], four[3]);
-  out[0] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23);
-  out[1] = __builtin_shufflevector(low, high, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
-  out[2] = __builtin_shufflevector(last(four[0], four[1]), last(four[2], four[3]), 0, 1, 2, 3, 4, 5, 6, 7, 16,
-                                   17, 18, 19, 20, 21, 22, 23);
+  out[0] = shuffled<0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23>(low, high);
+  out[1] = shuffled<8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31>(low, high);
+  out[2] = shuffled<0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23>(last(four[0], four[1]),
+                                                                            last(four[2], four[3]));
 }
 
 PairCorners corners_of(const TriangleMesh& mesh, const Motion& motion, std::span<const TrianglePair> pairs) {
@@ -55,7 +55,7 @@ PairCorners corners_of(const TriangleMesh& mesh, const Motion& motion, std::span
 // When straight lines from `start` to `end` meet 0, from above.
 Float16 meets_zero(Float16 start, Float16 end) {
   const Float16 share = (1 - 0x1p-20F) * (start / (start - end)), zero = {}, never = all_lanes(2);
-  return start > 0 ? (end > 0 ? never : share) : zero;
+  return select(start > 0, select(end > 0, never, share), zero);
 }
 
 // Rounding. u = 2^-24; coordinates are at most M and off by at most d = 1.01 u M: u of themselves, and what
@@ -78,7 +78,7 @@ Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3
     under[end] = smaller(smaller(zero, a), b) - larger(larger(c, d), e) - error;
   }
   const Float16 before = larger(meets_zero(over[0], over[1]), meets_zero(under[0], under[1])), zero = {};
-  return ((error > kTiny) & (error < kHuge)) ? before : zero;
+  return select((error > kTiny) & (error < kHuge), before, zero);
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ inline double next_below_positive(double x) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(x) - 1);
 }
 inline Lane8 next_below_positive(Lane8 x) {
-  return reinterpret_cast<Lane8>(reinterpret_cast<Sign8>(x) - 1);
+  return bits_as<Lane8>(bits_as<Sign8>(x) - 1);
 }
 
 template <class Real>
@@ -146,7 +146,7 @@ CertainTime<Real> time_in_pairs(const TriplePoints<Point>& points, const Sizes<R
   const Real below = next_below_positive(root.high);
   const Mask sharp = (least_slope > 0) & (root.high > 0) & (error < 0x1p-4 * (root.high - below));
   const Mask not_above = root.low > error, above = root.low < -error;
-  return {above ? below : root.high, Mask(in_range & sharp & (not_above | above))};
+  return {select(above, below, root.high), Mask(in_range & sharp & (not_above | above))};
 }
 
 }  // namespace cscd

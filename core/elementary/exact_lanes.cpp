@@ -52,11 +52,11 @@ Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
     value = cubic.at(t), slope = cubic.slope(t);
     const Sign8 found = absolute(value) <= 4 * cubic.error;
     if (step == kSteps || bits_of(which & ~found) == 0) break;
-    low = value > 0 ? t : low, high = value > 0 ? high : t;
+    low = select(value > 0, t, low), high = select(value > 0, high, t);
     const Lane8 next = t - value / slope;
     const Sign8 inside = (next > low) & (next < high);
-    const Lane8 better = inside ? next : 0.5 * (low + high);
-    t = found ? t : better;
+    const Lane8 better = select(inside, next, 0.5 * (low + high));
+    t = select(found, t, better);
   }
   const Lane8 reach = 2 * (absolute(value) + cubic.error) / absolute(slope) + 0x1p-52;
   low = larger(t - reach, Lane8{}), high = smaller(t + reach, Lane8{} + 1);
@@ -81,8 +81,8 @@ struct Axis {
     SeenAlong<Lane8> out;
     for (int end = 0; end < 2; ++end) {
       const Lane8(&c)[3] = v.at[end];
-      out.at[end][0] = x ? c[1] : y ? c[2] : c[0];
-      out.at[end][1] = x ? c[2] : y ? c[0] : c[1];
+      out.at[end][0] = select(x, c[1], select(y, c[2], c[0]));
+      out.at[end][1] = select(x, c[2], select(y, c[0], c[1]));
     }
     return out;
   }
@@ -97,7 +97,7 @@ LaneAnswers decide(std::span<const Query> queries) {
   const Sign8 never_coplanar = certain_sign(f);
   const CubicOf<Lane8> cubic(f, ProvenBounds::cubic);
   CubicOf<Lane8> falling = cubic;
-  for (Lane8& c : falling.f.c) c = f.c[0] < 0 ? -c : c;
+  for (Lane8& c : falling.f.c) c = select(f.c[0] < 0, -c, c);
   const Sign8 once = falls_once(falling);
   const Enclosure root = enclosed(falling, once);
 

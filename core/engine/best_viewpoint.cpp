@@ -20,8 +20,8 @@ struct Lacks {
   void add(const Vec3& point, Lane8& lack, Lane8 (&away)[3]) const {
     const Lane8 here = at_middle + normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
     const Sign8 lacking = here > 0;
-    lack += lacking ? here : Lane8{};
-    for (int k = 0; k < 3; ++k) away[k] += lacking ? normal[k] : Lane8{};
+    lack += select(lacking, here, Lane8{});
+    for (int k = 0; k < 3; ++k) away[k] += select(lacking, normal[k], Lane8{});
   }
 };
 

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "core/geometry/lanes16.h"
+
 namespace cscd::fast {
 
 void FollowingPoint::add(VertexId vertex, float weight) {
@@ -18,7 +20,6 @@ Vec3 FollowingPoint::at(std::span<const Vec3> positions) const {
 }
 
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {
-  using Float8 = float __attribute__((vector_size(sizeof(LocalPositions::Record))));
   Float8 sum = {};
   for (std::size_t i = 0; i < point.vertices().size(); ++i) {
     Float8 record;

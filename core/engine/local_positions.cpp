@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/geometry/lanes.h"
+#include "core/geometry/lanes16.h"
+
 // A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
 // is exact (or far below 1e-37), the conversion rounds by 2^-24 of itself: with M the largest result the
 // error is below 2^-24 (1 + 2^-20) M + 1e-37.
 namespace cscd::fast {
 namespace {
 
-using Double4 = double __attribute__((vector_size(32)));
-using Double8 = double __attribute__((vector_size(64)));
-using Float8 = float __attribute__((vector_size(32)));
-using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Double4 = HalfOf<double>;
 
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
 constexpr std::size_t kRange = 1024;  // vertices worth another thread
@@ -42,15 +42,15 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
 // Those of a range of vertices; returns the largest coordinate.
 float LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
   const Vec3 o = motion.start()[0];
-  const Double8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
-  const Double8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
+  const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
+  const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
   Float8 most = {};
   const auto convert = [&](const double* start, const double* end, float* out) {
     Double4 p, q;
     std::memcpy(&p, start, sizeof p);
     std::memcpy(&q, end, sizeof q);
-    const Double8 both = __builtin_shufflevector(p, q, 0, 1, 2, 3, 4, 5, 6, 7);
-    const Float8 f = __builtin_convertvector((both - origin) * scale, Float8);
+    const Lane8 both = joined<Lane8>(p, q);
+    const Float8 f = converted<Float8>((both - origin) * scale);
     std::memcpy(out, &f, sizeof f);
     const Float8 size = reinterpret_cast<Float8>(reinterpret_cast<Int8>(f) & 0x7fffffff);
     most = size > most ? size : most;

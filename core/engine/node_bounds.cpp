@@ -12,11 +12,9 @@ NodeBounds Grid::bounds_of(const PatchLanes& lanes) const {
 // A step in units is off by 2^-22 of itself, so that the product is by less than 0.012 steps; 1/64 pays for
 // that and for the 0.004 above.
 MovingBounds Grid::in_units(const NodeBounds& bounds) const {
-  const auto pairs = reinterpret_cast<Int16>(bounds.at);
+  const auto pairs = bits_as<Int16>(bounds.at);
   constexpr Float16 kSides = {1, 1, 1, 1, 1, 1, 1, 1, -1, -1, -1, -1, -1, -1, -1, -1};
-  const auto units = [&](Int16 steps) {
-    return (__builtin_convertvector(steps, Float16) - 0x1p-6F) * (step_ * kSides);
-  };
+  const auto units = [&](Int16 steps) { return (converted<Float16>(steps) - 0x1p-6F) * (step_ * kSides); };
   return {{units((pairs << 16) >> 16), units(pairs >> 16)}};
 }
 

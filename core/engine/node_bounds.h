@@ -24,8 +24,8 @@ inline NodeBounds united(const NodeBounds& a, const NodeBounds& b) {
 
 // Bounds of the whole paths.
 inline NodeBounds swept(const NodeBounds& b) {
-  const auto pairs = reinterpret_cast<Int16>(b.at);
-  return {smaller(b.at, reinterpret_cast<Short32>((pairs << 16) | ((pairs >> 16) & 0xffff)))};
+  const auto pairs = bits_as<Int16>(b.at);
+  return {smaller(b.at, bits_as<Short32>((pairs << 16) | ((pairs >> 16) & 0xffff)))};
 }
 
 // True is a proof: along one direction one lies on the same side of the other at both ends, therefore always.

@@ -33,20 +33,19 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
       for (std::size_t k = 0; k < 2; ++k)
         std::memcpy(&record[k], records[static_cast<std::size_t>(vertex[8 * h + 4 * k + i])].at,
                     sizeof record[k]);
-      row[i] =
-          __builtin_shufflevector(record[0], record[1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+      row[i] = joined<Float16>(record[0], record[1]);
     }
     const auto first_two = [](Float16 a, Float16 b) {
-      return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+      return shuffled<0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29>(a, b);
     };
     const auto third = [](Float16 a, Float16 b) {
-      return __builtin_shufflevector(a, b, 2, 18, 2, 18, 6, 22, 6, 22, 10, 26, 10, 26, 14, 30, 14, 30);
+      return shuffled<2, 18, 2, 18, 6, 22, 6, 22, 10, 26, 10, 26, 14, 30, 14, 30>(a, b);
     };
     const auto even_pairs = [](Float16 a, Float16 b) {
-      return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+      return shuffled<0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29>(a, b);
     };
     const auto odd_pairs = [](Float16 a, Float16 b) {
-      return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+      return shuffled<2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31>(a, b);
     };
     const Float16 low01 = first_two(row[0], row[1]), low23 = first_two(row[2], row[3]);
     half[h][0] = even_pairs(low01, low23);
@@ -55,10 +54,9 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
   }
   PatchLanes out;
   for (int i = 0; i < 3; ++i) {
-    out.at[0][i] = __builtin_shufflevector(half[0][i], half[1][i], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19,
-                                           24, 25, 26, 27);
-    out.at[1][i] = __builtin_shufflevector(half[0][i], half[1][i], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23,
-                                           28, 29, 30, 31);
+    out.at[0][i] = shuffled<0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27>(half[0][i], half[1][i]);
+    out.at[1][i] =
+        shuffled<4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31>(half[0][i], half[1][i]);
   }
   return out;
 }

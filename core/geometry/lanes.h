@@ -3,18 +3,18 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#ifdef __AVX512F__
+#ifdef __AVX2__
 #include <immintrin.h>
 #endif
 
+#include "core/geometry/wide.h"
+
 namespace cscd {
 
-// Eight numbers side by side, in the vector types that gcc and clang share: one AVX-512 register, or several
-// smaller ones. Comparisons give -1 for true and 0 for false in each lane, and `mask ? a : b` selects lane by
-// lane.
+// Eight numbers side by side.
 inline constexpr std::size_t kLanes = 8;
-using Lane8 = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Sign8 = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+using Lane8 = Wide<double>;
+using Sign8 = Wide<std::int64_t>;
 
 // For code that is written once for one number and for eight: what a comparison gives.
 template <class Real>
@@ -28,19 +28,11 @@ struct ComparisonOf<Lane8> {
 template <class Real>
 using MaskOf = typename ComparisonOf<Real>::Mask;
 
-template <class Real>
-Real smaller(Real a, Real b) {
-  return a < b ? a : b;
-}
-template <class Real>
-Real larger(Real a, Real b) {
-  return a < b ? b : a;
-}
 inline double absolute(double a) {
   return a < 0 ? -a : a;
 }
 inline Lane8 absolute(Lane8 a) {
-  return reinterpret_cast<Lane8>(reinterpret_cast<Sign8>(a) & 0x7fff'ffff'ffff'ffff);
+  return bits_as<Lane8>(bits_as<Sign8>(a) & 0x7fff'ffff'ffff'ffff);
 }
 
 #ifdef __FMA__
@@ -51,6 +43,8 @@ inline double rounded_once(double a, double b, double c) {
 inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmadd_pd(0xff, a, b, c);
+#elif defined(__AVX2__)
+  return {_mm256_fmadd_pd(a.low, b.low, c.low), _mm256_fmadd_pd(a.high, b.high, c.high)};
 #else
   for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::fma(a[l], b[l], c[l]);
   return a;
@@ -62,6 +56,11 @@ inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
 inline unsigned bits_of(Sign8 lanes) {
 #ifdef __AVX512F__
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(lanes), reinterpret_cast<__m512i>(lanes));
+#elif defined(__AVX2__)
+  const auto half = [](HalfOf<std::int64_t> v) {
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(v != 0)));
+  };
+  return half(lanes.low) | half(lanes.high) << 4;
 #else
   unsigned bits = 0;
   for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<unsigned>(lanes[l] != 0) << l;

@@ -6,19 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#ifdef __AVX512F__
+#ifdef __AVX2__
 #include <immintrin.h>
 #endif
 
+#include "core/geometry/wide.h"
+
 namespace cscd {
 
-// Sixteen floats side by side: one AVX-512 register, or several smaller ones. What the vector types of gcc
-// and clang lack stands here twice: one instruction where there is one, else a loop.
+// Sixteen floats side by side. What the vector types of gcc and clang lack stands here for AVX-512, then by
+// halves: one instruction each where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
-using Float16 = float __attribute__((vector_size(kLanes16 * sizeof(float))));
-using Float8 = float __attribute__((vector_size(32)));  // a half of it, and a quarter
+using Float16 = Wide<float>;
+using Float8 = HalfOf<float>;
 using Float4 = float __attribute__((vector_size(16)));
-using Int16 = std::int32_t __attribute__((vector_size(kLanes16 * sizeof(std::int32_t))));
+using Int16 = Wide<std::int32_t>;
+using Int8 = HalfOf<std::int32_t>;
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
@@ -27,23 +30,33 @@ inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
 
+#ifndef __AVX512F__
+// Where a comparison of a half is true.
+inline unsigned bits_of(Int8 lanes) {
+#ifdef __AVX2__
+  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
+#else
+  unsigned bits = 0;
+  for (unsigned l = 0; l < 8; ++l) bits |= static_cast<unsigned>(lanes[l] & 1) << l;
+  return bits;
+#endif
+}
+inline Mask16 bits_of(Int16 lanes) {
+  return static_cast<Mask16>(bits_of(lanes.low) | bits_of(lanes.high) << 8);
+}
+#endif
+
+#ifdef __AVX512F__
 // One instruction each, as compilers do not always see that a comparison and a choice are one.
 inline Float16 smaller(Float16 a, Float16 b) {
-#ifdef __AVX512F__
   return _mm512_maskz_min_ps(0xffff, a, b);
-#else
-  return a < b ? a : b;
-#endif
 }
 inline Float16 larger(Float16 a, Float16 b) {
-#ifdef __AVX512F__
   return _mm512_maskz_max_ps(0xffff, b, a);
-#else
-  return a < b ? b : a;
-#endif
 }
+#endif
 inline Float16 absolute(Float16 a) {
-  return reinterpret_cast<Float16>(reinterpret_cast<Int16>(a) & 0x7fffffff);
+  return bits_as<Float16>(bits_as<Int16>(a) & 0x7fffffff);
 }
 
 // a b + c and a b - c, rounded once where that is one instruction, else twice: who bounds rounding has to
@@ -51,6 +64,8 @@ inline Float16 absolute(Float16 a) {
 inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmadd_ps(0xffff, a, b, c);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return {_mm256_fmadd_ps(a.low, b.low, c.low), _mm256_fmadd_ps(a.high, b.high, c.high)};
 #else
   return a * b + c;
 #endif
@@ -58,6 +73,8 @@ inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
 inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmsub_ps(0xffff, a, b, c);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return {_mm256_fmsub_ps(a.low, b.low, c.low), _mm256_fmsub_ps(a.high, b.high, c.high)};
 #else
   return a * b - c;
 #endif
@@ -75,6 +92,8 @@ inline Float16 larger_size(Float16 a, Float16 b) {
 inline Float16 square_root(Float16 v) {
 #ifdef __AVX512F__
   return _mm512_maskz_sqrt_ps(0xffff, v);
+#elif defined(__AVX2__)
+  return {_mm256_sqrt_ps(v.low), _mm256_sqrt_ps(v.high)};
 #else
   for (std::size_t l = 0; l < kLanes16; ++l) v[l] = std::sqrt(v[l]);
   return v;
@@ -86,10 +105,7 @@ inline Mask16 above(Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
 #else
-  const auto lanes = a > b;
-  Mask16 bits = 0;
-  for (std::size_t l = 0; l < kLanes16; ++l) bits |= static_cast<Mask16>((lanes[l] & 1) << l);
-  return bits;
+  return bits_of(a > b);
 #endif
 }
 
@@ -105,9 +121,10 @@ inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
 #ifdef __AVX512F__
   return _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(a.data()), _mm512_loadu_si512(b.data()));
 #else
-  Mask16 bits = 0;
-  for (std::size_t l = 0; l < kLanes16; ++l) bits |= static_cast<Mask16>((a[l] == b[l]) << l);
-  return bits;
+  Int16 lanes[2];
+  std::memcpy(&lanes[0], a.data(), sizeof lanes[0]);
+  std::memcpy(&lanes[1], b.data(), sizeof lanes[1]);
+  return bits_of(lanes[0] == lanes[1]);
 #endif
 }
 
@@ -130,6 +147,14 @@ inline Float16 permuted(Float16 v, const Places16& place) {
   __m128i bytes;
   std::memcpy(&bytes, place.data(), sizeof bytes);
   return _mm512_maskz_permutexvar_ps(0xffff, _mm512_maskz_cvtepu8_epi32(0xffff, bytes), v);
+#elif defined(__AVX2__)
+  // Out of each half by the last three bits; which half by the fourth, moved to where a blend looks.
+  const auto half = [&](const std::uint8_t* places) {
+    const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places)));
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(v.low, lanes), _mm256_permutevar8x32_ps(v.high, lanes),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(lanes, 28)));
+  };
+  return {half(place.data()), half(place.data() + 8)};
 #else
   Float16 out;
   for (std::size_t l = 0; l < kLanes16; ++l) out[l] = v[place[l]];

@@ -30,7 +30,7 @@ Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
   for (int i = 0; i < 3; ++i) {
     const auto twice = [&](int k) { return p[k][0][i] + p[k][1][i]; };  // of the middle of the interval
     along[0][i] = twice(0);
-    along[1][i] = vertex_face ? twice(1) : twice(2) - twice(1);
+    along[1][i] = select(vertex_face, twice(1), Real(twice(2) - twice(1)));
     along[2][i] = along[1][i] - along[0][i];
     for (int k = 0; k < 3; ++k)
       for (int end = 0; end < 2; ++end) most = larger(most, absolute(p[k][end][i]));
@@ -51,7 +51,7 @@ Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
     for (int end = 0; end < 2; ++end) {
       const auto at = [&](int k) { return m[0] * p[k][end][0] + m[1] * p[k][end][1] + m[2] * p[k][end][2]; };
       const Real zero = {}, x = at(0), y = at(1), z = at(2);
-      const Real in_first = vertex_face ? y : zero, in_second = vertex_face ? z : y;
+      const Real in_first = select(vertex_face, y, zero), in_second = select(vertex_face, z, y);
       above &= smaller(in_second, z) > larger(larger(zero, x), in_first) + slack;
       below &= larger(in_second, z) < smaller(smaller(zero, x), in_first) - slack;
     }

@@ -19,7 +19,7 @@
 namespace cscd {
 
 // A point in one register; the fourth number is 0.
-using Double4 = double __attribute__((vector_size(32)));
+using Double4 = HalfOf<double>;
 inline Double4 row_of(const Vec3& p) {
   return Double4{p[0], p[1], p[2], 0};
 }

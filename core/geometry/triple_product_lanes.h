@@ -9,9 +9,8 @@
 #include "core/geometry/lanes.h"
 #include "core/mesh/motion.h"
 
-// Eight triple products side by side, in the vector type that gcc and clang share: one AVX-512 register, or
-// several smaller ones. Operation for operation what triple_product and certain_sign do, which is their
-// scalar twin: equal bits, equal signs.
+// Eight triple products side by side. Operation for operation what triple_product and certain_sign do, which
+// is their scalar twin: equal bits, equal signs.
 namespace cscd {
 
 // Eight moving vectors: [end][component].
@@ -88,7 +87,7 @@ inline BernsteinLanes triple_products(const NormalLanes& normal, const VectorLan
                       (volume >= kTinyProduct) & (volume <= kHugeProduct);
   const Lane8 unknown = Lane8{} + std::numeric_limits<double>::infinity();
   return {{dot(0, 0), (dot(1, 0) + dot(0, 1)) / 3, (dot(1, 1) + dot(2, 0)) / 3, dot(2, 1)},
-          known ? kTripleProductError * volume + 7 * normal.area * c_slack : unknown};
+          select(known, kTripleProductError * volume + 7 * normal.area * c_slack, unknown)};
 }
 
 // +1 or -1 where the cubic certainly has that sign for every t in [0, 1], else 0.

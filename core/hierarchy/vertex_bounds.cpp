@@ -9,10 +9,10 @@
 namespace cscd {
 namespace {
 
-using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
-using Mask8 = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
+using Float8 = HalfOf<float>;
+using Mask8 = HalfOf<std::int32_t>;
 // Unsigned: lanes that are not selected step as well, and may wrap.
-using Bits8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
+using Bits8 = HalfOf<std::uint32_t>;
 
 // value + error, exactly.
 struct Exact8 {
@@ -27,13 +27,13 @@ Exact8 sum(Lane8 x, Lane8 y) {
 
 Exact8 lesser(const Exact8& a, const Exact8& b) {
   const Sign8 second = (b.value < a.value) | ((b.value == a.value) & (b.error < a.error));
-  return {second ? b.value : a.value, second ? b.error : a.error};
+  return {select(second, b.value, a.value), select(second, b.error, a.error)};
 }
 
 // The largest float not above each number: float_below_sum for eight.
 Float8 rounded_down(const Exact8& x) {
-  const Float8 nearest = __builtin_convertvector(x.value, Float8);
-  const Lane8 widened = __builtin_convertvector(nearest, Lane8);
+  const Float8 nearest = converted<Float8>(x.value);
+  const Lane8 widened = converted<Lane8>(nearest);
   const Lane8 infinity = Lane8{} + std::numeric_limits<double>::infinity();
   const Sign8 above = (widened > x.value) | ((widened == x.value) & (x.error < 0)) | (x.value == infinity);
 
@@ -43,7 +43,7 @@ Float8 rounded_down(const Exact8& x) {
   const Bits8 smallest_negative = Bits8{} + 0x80000001u;
   const Bits8 stepped = nearest == 0 ? smallest_negative : nearest > 0 ? bits - 1 : bits + 1;
   const Float8 lowest = Float8{} - std::numeric_limits<float>::infinity();
-  const Mask8 steps = __builtin_convertvector(above, Mask8) & (nearest != lowest);
+  const Mask8 steps = converted<Mask8>(above) & (nearest != lowest);
   const Bits8 chosen = steps ? stepped : bits;
   Float8 out;
   __builtin_memcpy(&out, &chosen, sizeof out);

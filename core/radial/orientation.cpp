@@ -33,15 +33,15 @@ auto signs_of(Cubic f, SignTest test) {
   if (test == SignTest::plain) f.error -= f.error;  // NaN, above and below nothing, where nothing is known
   const auto whole = certain_sign(f);
   if (test != SignTest::halved) return whole;
-  const auto size = [](auto x) { return x < 0 ? -x : x; };
   const auto error =
-      f.error + 4 * kUnitRoundoff * (size(f.c[0]) + size(f.c[1]) + size(f.c[2]) + size(f.c[3]));
+      f.error +
+      4 * kUnitRoundoff * (absolute(f.c[0]) + absolute(f.c[1]) + absolute(f.c[2]) + absolute(f.c[3]));
   const auto a = 0.5 * (f.c[0] + f.c[1]), b = 0.5 * (f.c[1] + f.c[2]), c = 0.5 * (f.c[2] + f.c[3]);
   const auto d = 0.5 * (a + b), e = 0.5 * (b + c), middle = 0.5 * (d + e);
   const auto first = certain_sign(Cubic{{f.c[0], a, d, middle}, error}),
              last = certain_sign(Cubic{{middle, e, c, f.c[3]}, error});
   const decltype(whole + 0) none{};
-  return whole != 0 ? whole : first == last ? first : none;
+  return select(whole != 0, whole, select(first == last, first, none));
 }
 
 // Towards the moving point q, itself known up to `slack` in each coordinate.
@@ -137,7 +137,7 @@ RangeLanes viewing_range(std::span<const VectorLanes> corners, const MovingSegme
   const auto& [head, tail, d, shortest, longest, unused] = segment;
   const VectorLanes from = in_all_lanes(head.start, head.end);
   const auto dot = [](const Lane8(&a)[3], const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-  const auto lesser = [](Lane8 a, Lane8 b) { return b < a ? b : a; };
+  const auto lesser = [](Lane8 a, Lane8 b) { return select(b < a, b, a); };
   Lane8 low = zero + std::numeric_limits<double>::infinity(), high = -low, reach = zero;
   for (const VectorLanes& p : corners) {
     const VectorLanes w = p - from;
@@ -148,11 +148,11 @@ RangeLanes viewing_range(std::span<const VectorLanes> corners, const MovingSegme
     reach = larger(reach, w.largest_component());
   }
   const Lane8 slack = kProjectionError * (1 + 3 * reach * d.largest() / shortest);
-  low = low / (low < 0 ? zero + shortest : zero + longest) - slack;
-  high = high / (high < 0 ? zero + longest : zero + shortest) + slack;
+  low = low / select(low < 0, zero + shortest, zero + longest) - slack;
+  high = high / select(high < 0, zero + longest, zero + shortest) + slack;
   const Sign8 known = low <= high;
-  const auto clamped = [&](Lane8 u) { return u < 0 ? zero : u > 1 ? one : u; };
-  return {known ? clamped(low) : zero, known ? clamped(high) : one};
+  const auto clamped = [&](Lane8 u) { return select(u < 0, zero, select(u > 1, one, u)); };
+  return {select(known, clamped(low), zero), select(known, clamped(high), one)};
 }
 
 // Where eight triangles are seen from.
@@ -172,7 +172,7 @@ Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corne
     return signs_of(triple_products(normal, corner[0] - viewing_positions(segment, u), segment.slack), sign);
   };
   const Sign8 first = signs(range.low), last = signs(range.high);
-  return first == last ? first : Sign8{};
+  return select(first == last, first, Sign8{});
 }
 
 }  // namespace

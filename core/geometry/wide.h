@@ -1,0 +1,95 @@
+#pragma once
+
+#include <concepts>
+#include <utility>
+
+#include "core/geometry/halves.h"
+
+// Numbers side by side in 64 bytes: one AVX-512 register, else two halves. Operators work lane by lane, also
+// with one number for all lanes; comparisons give -1 for true and 0 for false in each lane; v[l] is a lane.
+// What vector types have no operator for, or none that both forms share, stands here and in halves.h.
+namespace cscd {
+
+#ifdef __AVX512F__
+template <class Number>
+using Wide = VectorOf<Number, 64>;
+#else
+template <class Number>
+using Wide = Halves<Number>;
+#endif
+template <class Number>
+using HalfOf = VectorOf<Number, 32>;
+
+template <class T>
+concept InHalves = requires {
+  typename T::Half;
+};
+
+// a where the comparison is true, else b. Also of one number.
+template <class Mask, class Number>
+Number select(Mask where, Number a, Number b) {
+  return where ? a : b;
+}
+
+// Also of one number. (Not by select: compilers see a minimum only where comparison and choice stand
+// together.)
+template <class Number>
+Number smaller(Number a, Number b) {
+  return a < b ? a : b;
+}
+template <class Number>
+Number larger(Number a, Number b) {
+  return a < b ? b : a;
+}
+
+// Lane l of the result is lane kFrom[l] of both, those of b after those of a.
+template <int... kFrom, class Vector>
+Vector shuffled(Vector a, Vector b) {
+  return __builtin_shufflevector(a, b, kFrom...);
+}
+
+// Two vectors as one of twice the size.
+template <class To, class Half>
+To joined(Half low, Half high) {
+  if constexpr (InHalves<To>) {
+    return {low, high};
+  } else {
+    const auto all = [&]<int... kLane>(std::integer_sequence<int, kLane...>) {
+      return To(__builtin_shufflevector(low, high, kLane...));
+    };
+    return all(std::make_integer_sequence<int, sizeof(To) / sizeof(low[0])>{});
+  }
+}
+
+// The same bits.
+template <class To, class From>
+To bits_as(From v) {
+  if constexpr (InHalves<From>) {
+    using Half = typename To::Half;
+    return {reinterpret_cast<Half>(v.low), reinterpret_cast<Half>(v.high)};
+  } else {
+    return reinterpret_cast<To>(v);
+  }
+}
+
+// The same numbers, rounded if need be. One of both may be a half.
+template <class To, class From>
+To converted(From v) {
+  if constexpr (InHalves<From> && InHalves<To>) {
+    using Half = typename To::Half;
+    return {__builtin_convertvector(v.low, Half), __builtin_convertvector(v.high, Half)};
+  } else if constexpr (InHalves<From>) {
+    using Quarter = VectorOf<std::remove_cvref_t<decltype(To{}[0])>, sizeof(To) / 2>;
+    return joined<To>(__builtin_convertvector(v.low, Quarter), __builtin_convertvector(v.high, Quarter));
+  } else if constexpr (InHalves<To>) {
+    using Quarter = VectorOf<std::remove_cvref_t<decltype(v[0])>, sizeof(From) / 2>;
+    Quarter quarter[2];
+    __builtin_memcpy(quarter, &v, sizeof v);
+    using Half = typename To::Half;
+    return {__builtin_convertvector(quarter[0], Half), __builtin_convertvector(quarter[1], Half)};
+  } else {
+    return __builtin_convertvector(v, To);
+  }
+}
+
+}  // namespace cscd
