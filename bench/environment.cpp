@@ -76,6 +76,20 @@ std::string kernel() {
   return std::string(name.sysname) + " " + name.release + " " + name.machine;
 }
 
+// What the kernels were compiled for: all of the program is compiled with the same flags.
+constexpr const char* kInstructionSet =
+#if defined(__AVX512F__)
+    "AVX-512";
+#elif defined(__AVX2__) && defined(__FMA__)
+    "AVX2 and FMA";
+#elif defined(__AVX2__)
+    "AVX2";
+#elif defined(__SSE2__)
+    "SSE2";
+#else
+    "other";
+#endif
+
 }  // namespace
 
 ordered_json environment() {
@@ -93,6 +107,7 @@ ordered_json environment() {
           {"kernel", kernel()},
           {"compiler", build_info::kCompiler},
           {"flags", build_info::kFlags},
+          {"instruction_set", kInstructionSet},
           {"build_type", build_info::kBuildType},
           {"libraries",
            {{"eigen", build_info::kEigen},

@@ -106,7 +106,8 @@ std::string provenance(const Record& record) {
   const VerificationRecord& v = record.verification;
   const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
   std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") + " cores, " +
-                    threads(record) + "; " + get("compiler") + ", " + get("build_type") + "; commit " +
+                    threads(record) + "; " + get("compiler") + ", " + get("build_type") +
+                    (e.contains("instruction_set") ? ", " + get("instruction_set") : "") + "; commit " +
                     get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
                     get("date") + ".\n";
   out += "Made by `" + joined(record.command) + "`.\n";

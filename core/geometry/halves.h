@@ -19,7 +19,7 @@ using VectorOf = typename internal::Vector<Number, kBytes>::Type;
 
 // Numbers in 64 bytes as two vectors, for processors without registers of that size: a vector type that fits
 // no register gcc keeps in memory, and compares, selects and shuffles it number by number. Written like a
-// vector type; what those have no operator for stands in wide.h.
+// vector type; what those have no operator for stands in lanes_of.h.
 template <class Number>
 struct alignas(64) Halves {
   using Half = VectorOf<Number, 32>;

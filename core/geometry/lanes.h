@@ -7,14 +7,14 @@
 #include <immintrin.h>
 #endif
 
-#include "core/geometry/wide.h"
+#include "core/geometry/lanes_of.h"
 
 namespace cscd {
 
 // Eight numbers side by side.
 inline constexpr std::size_t kLanes = 8;
-using Lane8 = Wide<double>;
-using Sign8 = Wide<std::int64_t>;
+using Lane8 = LanesOf<double>;
+using Sign8 = LanesOf<std::int64_t>;
 
 // For code that is written once for one number and for eight: what a comparison gives.
 template <class Real>

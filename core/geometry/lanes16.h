@@ -10,17 +10,17 @@
 #include <immintrin.h>
 #endif
 
-#include "core/geometry/wide.h"
+#include "core/geometry/lanes_of.h"
 
 namespace cscd {
 
 // Sixteen floats side by side. What the vector types of gcc and clang lack stands here for AVX-512, then by
 // halves: one instruction each where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
-using Float16 = Wide<float>;
+using Float16 = LanesOf<float>;
 using Float8 = HalfOf<float>;
 using Float4 = float __attribute__((vector_size(16)));
-using Int16 = Wide<std::int32_t>;
+using Int16 = LanesOf<std::int32_t>;
 using Int8 = HalfOf<std::int32_t>;
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;

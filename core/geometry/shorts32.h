@@ -11,7 +11,7 @@ namespace cscd {
 
 // Thirty-two 16-bit integers side by side: sixteen pairs. What the vector types lack stands here twice, as in
 // lanes16.h.
-using Short32 = Wide<std::int16_t>;
+using Short32 = LanesOf<std::int16_t>;
 using Mask32 = std::uint32_t;
 
 // Where a > b.

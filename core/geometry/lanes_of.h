@@ -1,6 +1,6 @@
 #pragma once
 
-#include <concepts>
+#include <type_traits>
 #include <utility>
 
 #include "core/geometry/halves.h"
@@ -12,10 +12,10 @@ namespace cscd {
 
 #ifdef __AVX512F__
 template <class Number>
-using Wide = VectorOf<Number, 64>;
+using LanesOf = VectorOf<Number, 64>;
 #else
 template <class Number>
-using Wide = Halves<Number>;
+using LanesOf = Halves<Number>;
 #endif
 template <class Number>
 using HalfOf = VectorOf<Number, 32>;
