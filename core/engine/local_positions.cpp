@@ -14,8 +14,6 @@
 namespace cscd::fast {
 namespace {
 
-using Double4 = HalfOf<double>;
-
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
 constexpr std::size_t kRange = 1024;  // vertices worth another thread
 
@@ -46,7 +44,7 @@ float LocalPositions::convert(const Motion& motion, std::size_t first, std::size
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
   Float8 most = {};
   const auto convert = [&](const double* start, const double* end, float* out) {
-    Double4 p, q;
+    HalfOf<double> p, q;
     std::memcpy(&p, start, sizeof p);
     std::memcpy(&q, end, sizeof q);
     const Lane8 both = joined<Lane8>(p, q);

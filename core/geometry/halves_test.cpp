@@ -192,6 +192,19 @@ TEST(Lanes16, ComparisonsGiveOneBitALane) {
   }
 }
 
+#ifdef __FMA__
+TEST(Lanes8, RoundedOnceIsThatOfOneNumber) {
+  std::mt19937 random(2014);
+  std::uniform_real_distribution<double> any(-2, 2);
+  for (int round = 0; round < 200; ++round) {
+    Lane8 a, b, c;
+    for (std::size_t l = 0; l < kLanes; ++l) a[l] = any(random), b[l] = any(random), c[l] = -a[l] * b[l];
+    const Lane8 lost = rounded_once(a, b, c);
+    for (std::size_t l = 0; l < kLanes; ++l) ASSERT_EQ(lost[l], std::fma(a[l], b[l], c[l])) << l;
+  }
+}
+#endif
+
 TEST(Lanes16, ArithmeticIsThatOfOneNumber) {
   std::mt19937 random(2014);
   std::uniform_real_distribution<float> any(-2, 2);

@@ -30,7 +30,15 @@ inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
 
-#ifndef __AVX512F__
+#ifdef __AVX512F__
+// One instruction each, as compilers do not always see that a comparison and a choice are one.
+inline Float16 smaller(Float16 a, Float16 b) {
+  return _mm512_maskz_min_ps(0xffff, a, b);
+}
+inline Float16 larger(Float16 a, Float16 b) {
+  return _mm512_maskz_max_ps(0xffff, b, a);
+}
+#else
 // Where a comparison of a half is true.
 inline unsigned bits_of(Int8 lanes) {
 #ifdef __AVX2__
@@ -43,16 +51,6 @@ inline unsigned bits_of(Int8 lanes) {
 }
 inline Mask16 bits_of(Int16 lanes) {
   return static_cast<Mask16>(bits_of(lanes.low) | bits_of(lanes.high) << 8);
-}
-#endif
-
-#ifdef __AVX512F__
-// One instruction each, as compilers do not always see that a comparison and a choice are one.
-inline Float16 smaller(Float16 a, Float16 b) {
-  return _mm512_maskz_min_ps(0xffff, a, b);
-}
-inline Float16 larger(Float16 a, Float16 b) {
-  return _mm512_maskz_max_ps(0xffff, b, a);
 }
 #endif
 inline Float16 absolute(Float16 a) {
