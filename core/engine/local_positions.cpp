@@ -1,6 +1,7 @@
 #include "core/engine/local_positions.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -42,7 +43,7 @@ float LocalPositions::convert(const Motion& motion, std::size_t first, std::size
   const Vec3 o = motion.start()[0];
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
-  Float8 most = {};
+  Int8 most = {};  // the bits of sizes order as the sizes do, and have a maximum of one cycle
   const auto convert = [&](const double* start, const double* end, float* out) {
     HalfOf<double> p, q;
     std::memcpy(&p, start, sizeof p);
@@ -50,7 +51,7 @@ float LocalPositions::convert(const Motion& motion, std::size_t first, std::size
     const Lane8 both = joined<Lane8>(p, q);
     const Float8 f = converted<Float8>((both - origin) * scale);
     std::memcpy(out, &f, sizeof f);
-    const Float8 size = reinterpret_cast<Float8>(reinterpret_cast<Int8>(f) & 0x7fffffff);
+    const Int8 size = reinterpret_cast<Int8>(f) & 0x7fffffff;
     most = size > most ? size : most;
   };
   const double *start = motion.start()[0].data(), *end = motion.end()[0].data();
@@ -65,7 +66,7 @@ float LocalPositions::convert(const Motion& motion, std::size_t first, std::size
     convert(points[0], points[1], records[v].at);
   }
   float largest = 0;
-  for (const int i : {0, 1, 2, 4, 5, 6}) largest = std::fmax(largest, most[i]);
+  for (const int i : {0, 1, 2, 4, 5, 6}) largest = std::fmax(largest, std::bit_cast<float>(most[i]));
   return largest;
 }
 
