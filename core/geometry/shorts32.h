@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
@@ -49,40 +50,38 @@ inline Short32 swapped(Short32 v) {
   return bits_as<Short32>(shuffled<8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7>(pairs, pairs));
 }
 
+// Where bit kBit of l is not set, pair l of `own` is pair l of a, else of b; pair l of `other` is of the same
+// one, its number with the bit turned. So the smaller of both holds what two shuffles would bring together,
+// for one shuffle and a blend.
+struct Folded {
+  Short32 own, other;
+};
+template <int kBit>
+inline Folded folded(Short32 a, Short32 b) {
+  const auto fold = [&]<int... kPair>(std::integer_sequence<int, kPair...>)->Folded {
+    const auto first = bits_as<Int16>(a), second = bits_as<Int16>(b);
+    return {bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + kPair)...>(first, second)),
+            bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + (kPair ^ kBit))...>(first, second))};
+  };
+  return fold(std::make_integer_sequence<int, 16>{});
+}
+
 // Of eight rows at most 32767 in size: pair r of the result is the smallest pair of row r, pair 8 + r the
 // smallest of its negative, each half by itself.
 inline Short32 smallest_pairs_of_rows(const Short32 (&row)[8]) {
-  // Neighbouring pairs of two rows within quarters, twice; then the quarters themselves, twice.
-  const auto take = [](Short32 a, Short32 b, const auto& shuffle) {
-    return bits_as<Short32>(shuffle(bits_as<Int16>(a), bits_as<Int16>(b)));
-  };
-  const auto even = [](Int16 a, Int16 b) {
-    return shuffled<0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30>(a, b);
-  };
-  const auto odd = [](Int16 a, Int16 b) {
-    return shuffled<1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31>(a, b);
-  };
-  const auto even_quarters = [](Int16 a, Int16 b) {
-    return shuffled<0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27>(a, b);
-  };
-  const auto odd_quarters = [](Int16 a, Int16 b) {
-    return shuffled<4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31>(a, b);
-  };
-  Short32 of[8];  // rows, then their negatives
+  Short32 of[8];  // one bit of rows after the other becomes a bit of pairs; the last is set for negatives
 #pragma GCC unroll 4
   for (int r = 0; r < 4; ++r) {
-    const Short32 a = take(row[2 * r], row[2 * r + 1], even), b = take(row[2 * r], row[2 * r + 1], odd);
-    of[r] = smaller(a, b);
-    of[4 + r] = -larger(a, b);
+    const auto [own, other] = folded<1>(row[2 * r], row[2 * r + 1]);
+    of[r] = smaller(own, other);
+    of[4 + r] = -larger(own, other);
   }
+  const auto smallest = [](const Folded& both) { return smaller(both.own, both.other); };
 #pragma GCC unroll 4
-  for (int r = 0; r < 4; ++r)
-    of[r] = smaller(take(of[2 * r], of[2 * r + 1], even), take(of[2 * r], of[2 * r + 1], odd));
+  for (int r = 0; r < 4; ++r) of[r] = smallest(folded<2>(of[2 * r], of[2 * r + 1]));
 #pragma GCC unroll 2
-  for (int r = 0; r < 2; ++r)
-    of[r] =
-        smaller(take(of[2 * r], of[2 * r + 1], even_quarters), take(of[2 * r], of[2 * r + 1], odd_quarters));
-  return smaller(take(of[0], of[1], even_quarters), take(of[0], of[1], odd_quarters));
+  for (int r = 0; r < 2; ++r) of[r] = smallest(folded<4>(of[2 * r], of[2 * r + 1]));
+  return smallest(folded<8>(of[0], of[1]));
 }
 
 }  // namespace cscd
