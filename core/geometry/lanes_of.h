@@ -2,6 +2,9 @@
 
 #include <type_traits>
 #include <utility>
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
 
 #include "core/geometry/halves.h"
 
@@ -51,6 +54,12 @@ Vector shuffled(Vector a, Vector b) {
 // Two vectors as one of twice the size.
 template <class To, class Half>
 To joined(Half low, Half high) {
+#ifdef __AVX512F__
+  // (Of a shuffle gcc makes one of two registers; this may take the second half from memory.)
+  if constexpr (sizeof(To) == sizeof(__m512d))
+    return reinterpret_cast<To>(_mm512_maskz_insertf64x4(
+        0xff, _mm512_castpd256_pd512(reinterpret_cast<__m256d>(low)), reinterpret_cast<__m256d>(high), 1));
+#endif
   if constexpr (InHalves<To>) {
     return {low, high};
   } else {
