@@ -50,20 +50,21 @@ inline Short32 swapped(Short32 v) {
   return bits_as<Short32>(shuffled<8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7>(pairs, pairs));
 }
 
-// Where bit kBit of l is not set, pair l of `own` is pair l of a, else of b; pair l of `other` is of the same
-// one, its number with the bit turned. So the smaller of both holds what two shuffles would bring together,
-// for one shuffle and a blend.
-struct Folded {
+// Where bit kBit of l is not set, pair l of `own` is pair l of a, else of b; beside it, `other` has the pair
+// of the same one whose number differs in that bit. So the smaller of both is what two shuffles would bring
+// together, for one shuffle and a blend.
+struct Neighbours {
   Short32 own, other;
 };
 template <int kBit>
-inline Folded folded(Short32 a, Short32 b) {
-  const auto fold = [&]<int... kPair>(std::integer_sequence<int, kPair...>)->Folded {
+inline Neighbours neighbours(Short32 a, Short32 b) {
+  const auto all = [&]<int... kPair>(std::integer_sequence<int, kPair...>) {
     const auto first = bits_as<Int16>(a), second = bits_as<Int16>(b);
-    return {bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + kPair)...>(first, second)),
-            bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + (kPair ^ kBit))...>(first, second))};
+    return Neighbours{
+        bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + kPair)...>(first, second)),
+        bits_as<Short32>(shuffled<((kPair & kBit ? 16 : 0) + (kPair ^ kBit))...>(first, second))};
   };
-  return fold(std::make_integer_sequence<int, 16>{});
+  return all(std::make_integer_sequence<int, 16>{});
 }
 
 // Of eight rows at most 32767 in size: pair r of the result is the smallest pair of row r, pair 8 + r the
@@ -72,16 +73,16 @@ inline Short32 smallest_pairs_of_rows(const Short32 (&row)[8]) {
   Short32 of[8];  // one bit of rows after the other becomes a bit of pairs; the last is set for negatives
 #pragma GCC unroll 4
   for (int r = 0; r < 4; ++r) {
-    const auto [own, other] = folded<1>(row[2 * r], row[2 * r + 1]);
+    const auto [own, other] = neighbours<1>(row[2 * r], row[2 * r + 1]);
     of[r] = smaller(own, other);
     of[4 + r] = -larger(own, other);
   }
-  const auto smallest = [](const Folded& both) { return smaller(both.own, both.other); };
+  const auto smallest = [](const Neighbours& both) { return smaller(both.own, both.other); };
 #pragma GCC unroll 4
-  for (int r = 0; r < 4; ++r) of[r] = smallest(folded<2>(of[2 * r], of[2 * r + 1]));
+  for (int r = 0; r < 4; ++r) of[r] = smallest(neighbours<2>(of[2 * r], of[2 * r + 1]));
 #pragma GCC unroll 2
-  for (int r = 0; r < 2; ++r) of[r] = smallest(folded<4>(of[2 * r], of[2 * r + 1]));
-  return smallest(folded<8>(of[0], of[1]));
+  for (int r = 0; r < 2; ++r) of[r] = smallest(neighbours<4>(of[2 * r], of[2 * r + 1]));
+  return smallest(neighbours<8>(of[0], of[1]));
 }
 
 }  // namespace cscd
