@@ -16,7 +16,7 @@
 
 // Radial view based culling after the paper (drvbc.cpp), taken further: one tree over patches of sixteen
 // triangles; covers whose seams lie inside one another's clusters instead of mega clusters (certificates.h);
-// bounds of both ends of the interval instead of whole paths (node_bounds.h); stars of vertices for the
+// bounds of both ends of the interval instead of whole paths (grid_bounds.h); stars of vertices for the
 // neighbours that are left (stars.h), planes of triangles for the pairs (parting.h); and, where all contacts
 // are promised, a contour test (capped_clusters.h). What a "no" proves stands there.
 //

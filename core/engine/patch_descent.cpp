@@ -94,9 +94,9 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
     if (shared.p[s] == patches_[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
   }
   if (rows == 0 || columns == 0) return;
-  rows = near_counted(bounds_of_triangles(p), rows, grid_.in_units(bounds_[b]));
+  rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
   if (rows == 0) return;
-  columns = near_counted(bounds_of_triangles(q), columns, grid_.in_units(bounds_[a]));
+  columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);
   if (columns == 0) return;
   if (std::popcount(columns) < std::popcount(rows)) {  // the fewer, the less work
     std::swap(p, q), std::swap(rows, columns);
@@ -162,7 +162,7 @@ void PatchDescent::pass_on_waiting() {
 }
 
 inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,
-                                         const MovingBounds& other) {
+                                         const NodeBounds& other) {
   if (!input_.positions.known()) return mask;
   tests_ += static_cast<unsigned>(std::popcount(mask));
   return near(triangles, mask, other);
@@ -170,14 +170,9 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
 
 const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
   return triangle_bounds_.of(p, [&] {
-    TriangleBounds bounds = triangle_bounds(load(input_.positions.records(), patches_[p].vertex), patches_[p],
-                                            input_.positions.error());
-    if (!input_.time_linear)
-      for (std::size_t k = 0; k < kDirections; ++k) {
-        bounds.low[k][0] = bounds.low[k][1] = smaller(bounds.low[k][0], bounds.low[k][1]);
-        bounds.high[k][0] = bounds.high[k][1] = larger(bounds.high[k][0], bounds.high[k][1]);
-      }
-    return bounds;
+    const TriangleBounds bounds =
+        grid_.bounds_of_triangles(load(input_.positions.records(), patches_[p].vertex), patches_[p]);
+    return input_.time_linear ? bounds : swept(bounds);
   });
 }
 

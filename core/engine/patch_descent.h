@@ -11,7 +11,7 @@
 
 #include "core/detect/culler.h"
 #include "core/engine/certificates.h"
-#include "core/engine/node_bounds.h"
+#include "core/engine/grid_bounds.h"
 #include "core/engine/parting.h"
 #include "core/engine/stars.h"
 
@@ -98,7 +98,7 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   bool flat(VertexId vertex);
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
   void pass_on_waiting();
-  Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other);
+  Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
 
   const DescentInput input_;

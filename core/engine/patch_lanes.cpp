@@ -1,8 +1,5 @@
 #include "core/engine/patch_lanes.h"
 
-// Rounding of bounds. u = 2^-24; every coordinate is off by at most d = `error`, which is at least u times
-// the largest. A sum of two coordinates is off by 2 d, and rounds by at most u (2 M) <= 2 d; taking the slack
-// from it rounds by at most as much again and a little. So 7 d is enough for all directions.
 namespace cscd::fast {
 namespace {
 
@@ -59,53 +56,6 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
         shuffled<4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31>(half[0][i], half[1][i]);
   }
   return out;
-}
-
-TriangleBounds triangle_bounds(const PatchLanes& lanes, const Patch& patch, float error) {
-  TriangleBounds bounds;
-  const Float16 slack = all_lanes(7 * error);
-  for (int end = 0; end < 2; ++end) {
-    Float16 along[kDirections];
-    along_directions(lanes.at[end], along);
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      const Float16 a = permuted(along[k], patch.corner[0]), b = permuted(along[k], patch.corner[1]),
-                    c = permuted(along[k], patch.corner[2]);
-      bounds.low[k][end] = smaller(smaller(a, b), c) - slack;
-      bounds.high[k][end] = larger(larger(a, b), c) + slack;
-    }
-  }
-  return bounds;
-}
-
-namespace {
-
-// Without those that lie on one side of [low, high], of [direction, end], at both ends. In two steps, axes
-// first: to ask after every direction whether any are left takes longer than the directions that it saves.
-template <class Low, class High>
-[[gnu::always_inline]] inline Mask16 near_range(const TriangleBounds& triangles, Mask16 mask, const Low& low,
-                                                const High& high) {
-  static_assert(kDirections == 8);
-  const auto apart = [&](std::size_t k) {
-    const unsigned over = above(triangles.low[k][0], high(k, 0)) & above(triangles.low[k][1], high(k, 1));
-    return over | (above(low(k, 0), triangles.high[k][0]) & above(low(k, 1), triangles.high[k][1]));
-  };
-  mask &= static_cast<Mask16>(~(apart(0) | apart(1) | apart(2)));
-  if (mask == 0) return mask;
-  return static_cast<Mask16>(mask & ~(apart(3) | apart(4) | apart(5) | apart(6) | apart(7)));
-}
-
-}  // namespace
-
-Mask16 near(const TriangleBounds& triangles, Mask16 mask, const MovingBounds& other) {
-  return near_range(
-      triangles, mask, [&](std::size_t k, int end) { return all_lanes(other.at[end][k]); },
-      [&](std::size_t k, int end) { return all_lanes(other.at[end][kDirections + k]); });
-}
-
-Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane) {
-  return near_range(
-      triangles, mask, [&](std::size_t k, int end) { return all_lanes(others.low[k][end][lane]); },
-      [&](std::size_t k, int end) { return all_lanes(others.high[k][end][lane]); });
 }
 
 namespace {

@@ -5,55 +5,13 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/engine/node_bounds.h"
-#include "core/engine/test_body.h"
-#include "core/radial/exact_orientation.h"
+#include "core/engine/test_patches.h"
 
 namespace cscd::fast {
 namespace {
 
-// An interval in patches. The origin and the unit keep viewpoints of few bits exact in world coordinates.
-struct Scene : test::Body {
-  Vec3 shift;
-  double unit;  // of local lengths in the world
-  Covers covers;
-  PatchTree tree;
-  LocalPositions local;
-
-  Scene(double noise, double bend, const Vec3& origin, double scale, int seed)
-      : test::Body(noise, bend, origin, scale, seed),
-        covers(make_covers(mesh, shape.positions, atomic.of_triangle)),
-        tree(make_patches(mesh, shape.positions, covers)),
-        local(start) {
-    local.update(motion());
-    shift = start[0];
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : start) box.extend(p);
-    unit = std::ldexp(1.0, std::ilogb(box.sizes().maxCoeff()));
-  }
-  // In local units, exactly, times 1.
-  test::Exact3 exact_local(const Vec3& p) const {
-    const test::Exact3 at = test::exact(p), from = test::exact(shift);
-    test::Exact3 out;
-    for (std::size_t i = 0; i < 3; ++i) out[i] = (at[i] - from[i]) / mpq_class(unit);
-    return out;
-  }
-};
-
-constexpr struct {
-  double noise, bend, origin, scale;
-} kScenes[] = {{0.02, 1, 0, 1}, {0.1, 2, 1e6, 1}, {0.05, 3, 1e9, 1e-3}, {0.1, 1, 0.5, 1e-15}};
-
-std::vector<Scene> scenes() {
-  std::vector<Scene> all;
-  int seed = 0;
-  for (const auto& s : kScenes)
-    all.emplace_back(s.noise, s.bend, Vec3(s.origin, -s.origin / 2, s.origin / 4), s.scale, ++seed);
-  return all;
-}
-
 TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
-  const Scene scene(0.1, 1, {0, 0, 0}, 1, 1);
+  const test::Patches scene(0.1, 1, {0, 0, 0}, 1, 1);
   for (const Patch& patch : scene.tree.patches) {
     const PatchLanes lanes = load(scene.local.records(), patch.vertex);
     for (std::size_t l = 0; l < kLanes16; ++l)
@@ -65,85 +23,13 @@ TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
   }
 }
 
-constexpr int kDirection[8][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
-                                  {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
-
-// Mutations: bounds without their slack; the slack of one end alone; a grid that does not give way.
-TEST(PatchLanes, Trap05BoundsContainTheExactPositionsAtBothEnds) {
-  for (const Scene& scene : scenes())
-    for (std::size_t p = 0; p < scene.tree.patches.size(); p += 5) {
-      const Patch& patch = scene.tree.patches[p];
-      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
-      const Grid grid(scene.local.error());
-      const MovingBounds bounds = grid.in_units(grid.bounds_of(lanes));
-      const TriangleBounds triangles = triangle_bounds(lanes, patch, scene.local.error());
-      for (std::size_t l = 0; l < kLanes16; ++l)
-        for (const VertexId v : scene.mesh.corners(scene.tree.triangles[p][l]))
-          for (std::size_t end = 0; end < 2; ++end) {
-            const test::Exact3 x = scene.exact_local((end == 0 ? scene.start : scene.end)[+v]);
-            for (std::size_t k = 0; k < kDirections; ++k) {
-              mpq_class along = 0;
-              for (std::size_t i = 0; i < 3; ++i) along += kDirection[k][i] * x[i];
-              EXPECT_LE(mpq_class(bounds.at[end][k]), along);
-              EXPECT_GE(mpq_class(bounds.at[end][kDirections + k]), along);
-              EXPECT_LE(mpq_class(triangles.low[k][end][l]), along);
-              EXPECT_GE(mpq_class(triangles.high[k][end][l]), along);
-            }
-          }
-    }
-}
-
-bool apart_in_units(const MovingBounds& a, const MovingBounds& b) {
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    bool over = true, under = true;
-    for (std::size_t end = 0; end < 2; ++end) {
-      over &= a.at[end][k] > b.at[end][kDirections + k];
-      under &= b.at[end][k] > a.at[end][kDirections + k];
-    }
-    if (over || under) return true;
-  }
-  return false;
-}
-
-// `near` says of every triangle what `apart` says of its bounds. Mutation: one of the two sides left out.
-TEST(PatchLanes, NearIsApartLaneByLane) {
-  const Scene scene(0.3, 2, {0, 0, 0}, 1, 3);
-  const auto bounds_of_lane = [](const TriangleBounds& b, std::size_t l) {
-    MovingBounds one;
-    for (int end = 0; end < 2; ++end)
-      for (std::size_t k = 0; k < kDirections; ++k) {
-        one.at[end][k] = b.low[k][end][l];
-        one.at[end][kDirections + k] = b.high[k][end][l];
-      }
-    return one;
-  };
-  std::size_t outcomes[2] = {};
-  for (std::size_t p = 0; p + 1 < scene.tree.patches.size(); ++p) {
-    const Patch &patch = scene.tree.patches[p], &other = scene.tree.patches[p + 1];
-    const auto of = [&](const Patch& x) {
-      return triangle_bounds(load(scene.local.records(), x.vertex), x, scene.local.error());
-    };
-    const TriangleBounds first = of(patch), second = of(other);
-    const Grid grid(scene.local.error());
-    const MovingBounds whole = grid.in_units(grid.bounds_of(load(scene.local.records(), other.vertex)));
-    const Mask16 to_whole = near(first, 0xffff, whole), to_lane = near(first, 0xffff, second, 5);
-    for (std::size_t l = 0; l < kLanes16; ++l) {
-      EXPECT_EQ(to_whole >> l & 1, !apart_in_units(bounds_of_lane(first, l), whole));
-      EXPECT_EQ(to_lane >> l & 1, !apart_in_units(bounds_of_lane(first, l), bounds_of_lane(second, 5)));
-      ++outcomes[to_lane >> l & 1];
-    }
-  }
-  EXPECT_GT(outcomes[0], 100u);
-  EXPECT_GT(outcomes[1], 100u);
-}
-
 // Every certified sign is the exact one, far from the origin and in any unit; and nearly all are certified.
 // Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle
 // coefficients not looked at.
 TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
   std::size_t certified = 0, all = 0, negative = 0;
   int turn = 0;
-  for (const Scene& scene : scenes())
+  for (const test::Patches& scene : test::patches())
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 11) {
       const Patch& patch = scene.tree.patches[p];
       const PatchLanes lanes = load(scene.local.records(), patch.vertex);
@@ -267,7 +153,7 @@ TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
     float size, error;  // of lengths; in local units
   };
   const Viewpoint centre = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
-  for (const Scene& scene : scenes())
+  for (const test::Patches& scene : test::patches())
     for (const Case& with :
          {Case{1, scene.local.error()}, Case{1, 1e-3F}, Case{0x1p-37F, scene.local.error()}}) {
       const float error = with.size * with.error;

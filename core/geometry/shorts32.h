@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <utility>
 #ifdef __AVX2__
 #include <immintrin.h>
@@ -42,6 +43,37 @@ inline Short32 rounded_pairs(Float16 a, Float16 b, float scale) {
   };
   const Int16 low = shifted(a), high = shifted(b);
   return bits_as<Short32>((low & 0xffff) | (high << 16));
+}
+
+// One pair of v in all.
+inline Short32 all_pairs(const Short32& v, std::size_t pair) {
+  std::int32_t number;
+  std::memcpy(&number, reinterpret_cast<const char*>(&v) + pair * sizeof number, sizeof number);
+  return bits_as<Short32>(Int16{} + number);
+}
+
+// Pair l of the result is pair place[l] of v.
+inline Short32 permuted_pairs(Short32 v, const Places16& place) {
+  return bits_as<Short32>(permuted(bits_as<Float16>(v), place));  // which moves bits, whatever they are
+}
+
+// Both of each pair exchanged.
+inline Short32 turned_pairs(Short32 v) {
+  const auto pairs = bits_as<Int16>(v);
+  return bits_as<Short32>((pairs << 16) | ((pairs >> 16) & 0xffff));
+}
+
+// The bits of the first of each pair.
+inline Mask16 first_of_pairs(Mask32 bits) {
+#ifdef __BMI2__
+  return static_cast<Mask16>(_pext_u32(bits, 0x55555555U));
+#else
+  bits &= 0x55555555U;
+  bits = (bits | bits >> 1) & 0x33333333U;
+  bits = (bits | bits >> 2) & 0x0f0f0f0fU;
+  bits = (bits | bits >> 4) & 0x00ff00ffU;
+  return static_cast<Mask16>(bits | bits >> 8);
+#endif
 }
 
 // The larger and the smaller halves of the pairs exchanged: pairs 8 to 15 before 0 to 7.
