@@ -30,15 +30,7 @@ inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
 
-#ifdef __AVX512F__
-// One instruction each, as compilers do not always see that a comparison and a choice are one.
-inline Float16 smaller(Float16 a, Float16 b) {
-  return _mm512_maskz_min_ps(0xffff, a, b);
-}
-inline Float16 larger(Float16 a, Float16 b) {
-  return _mm512_maskz_max_ps(0xffff, b, a);
-}
-#else
+#ifndef __AVX512F__
 // Where a comparison of a half is true.
 inline unsigned bits_of(Int8 lanes) {
 #ifdef __AVX2__

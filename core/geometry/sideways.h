@@ -26,15 +26,16 @@ using SeenFromFirst = Real[3][2][3];
 // overflows, the bound is infinite or no number, and nothing exceeds it.
 template <class Real, class Mask>
 Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
-  Real along[3][3], most = {};
+  Real along[3][3], most_along[3];
   for (int i = 0; i < 3; ++i) {
     const auto twice = [&](int k) { return p[k][0][i] + p[k][1][i]; };  // of the middle of the interval
     along[0][i] = twice(0);
     along[1][i] = select(vertex_face, twice(1), Real(twice(2) - twice(1)));
     along[2][i] = along[1][i] - along[0][i];
-    for (int k = 0; k < 3; ++k)
-      for (int end = 0; end < 2; ++end) most = larger(most, absolute(p[k][end][i]));
+    const auto most_of = [&](int k) { return larger(absolute(p[k][0][i]), absolute(p[k][1][i])); };
+    most_along[i] = larger(larger(most_of(0), most_of(1)), most_of(2));
   }
+  const Real most = larger(larger(most_along[0], most_along[1]), most_along[2]);
   const auto cross = [](const Real(&a)[3], const Real(&b)[3], Real(&out)[3]) {
     for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
   };
