@@ -7,11 +7,11 @@
 // the nodes of the tree, which is what a descent reads most, and of triangles. Hence in whole steps of a
 // grid, of which a node's fit one cache line, and a comparison takes both ends of sixteen triangles.
 //
-// Rounding, in steps. A coordinate of at most 16000 is off by 0.001, a sum of two by 0.004 with its rounding
-// in float. A node's are rounded to the nearest before they are summed, which makes 1.004, and give way by
-// one. A triangle's are rounded after, which makes 0.504, and on one side give way by one. As all are
-// integers, two of which one lies beyond the other differ by one more: two nodes are at least 1 - 2 * 0.004
-// apart, a triangle and a node 1 - 0.004 - 0.504, two triangles 2 - 2 * 0.504.
+// Rounding, in steps. A coordinate, of at most 16000, is off by 0.002 with its product, a sum of two in float
+// by 0.006. A node's coordinates are rounded to the nearest before they are summed, which makes 1.004, and
+// give way by one. A triangle's sums are rounded, which makes 0.506, and the greatest give way by one. Of
+// integers, what lies beyond another does so by one: two nodes that are apart are so by 1 - 2 * 0.004, a
+// triangle and a node by 1 - 0.004 - 0.506 or more, two triangles by 2 - 2 * 0.506.
 namespace cscd::fast {
 
 // Directions: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
@@ -24,7 +24,7 @@ struct NodeBounds {
 };
 
 // Of the triangles of a patch: pair l of direction k holds for each end the least projection of triangle l,
-// or the greatest.
+// or the greatest, and one step more.
 struct TriangleBounds {
   Short32 low[kDirections], high[kDirections];
 };

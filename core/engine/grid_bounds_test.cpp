@@ -56,8 +56,8 @@ TEST(GridBounds, Trap05ContainTheExactPositionsAtBothEnds) {
               for (std::size_t i = 0; i < 3; ++i) along += kDirection[k][i] * x[i] * steps;
               EXPECT_LE(bounds.at[2 * k + end], along + 0.004);
               EXPECT_LE(bounds.at[2 * (kDirections + k) + end], -along + 0.004);
-              EXPECT_LE(triangles.low[k][2 * l + end], along + 0.504);
-              EXPECT_GE(triangles.high[k][2 * l + end], along + 0.496);
+              EXPECT_LE(triangles.low[k][2 * l + end], along + 0.506);
+              EXPECT_GE(triangles.high[k][2 * l + end], along + 0.494);
             }
           }
     }
