@@ -21,19 +21,19 @@ struct Features {
 
 // Of `v`, and from 8 on of `w`.
 template <int... kFrom>
-VectorLanes shuffled(const VectorLanes& v, const VectorLanes& w) {
+VectorLanes picked(const VectorLanes& v, const VectorLanes& w) {
   VectorLanes out;
   for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = cscd::shuffled<kFrom...>(v.at[end][i], w.at[end][i]);
+    for (int i = 0; i < 3; ++i) out.at[end][i] = shuffled<kFrom...>(v.at[end][i], w.at[end][i]);
   return out;
 }
 template <int... kFrom>
-VectorLanes shuffled(const VectorLanes& v) {
-  return shuffled<kFrom...>(v, v);
+VectorLanes picked(const VectorLanes& v) {
+  return picked<kFrom...>(v, v);
 }
 template <int... kFrom, class Lanes>
-Lanes shuffled(Lanes v) {
-  return cscd::shuffled<kFrom...>(v, v);
+Lanes picked(Lanes v) {
+  return shuffled<kFrom...>(v, v);
 }
 
 VectorLanes chosen(Sign8 which, const VectorLanes& v, const VectorLanes& w) {
@@ -53,8 +53,8 @@ Features features_of(const Motion& motion, const Triangle& a, const Triangle& b)
   }
   Features f;
   f.corner = gather(motion, vertices);
-  const VectorLanes next = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(f.corner);
-  const Sign8 next_number = shuffled<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
+  const VectorLanes next = picked<1, 2, 0, 4, 5, 3, 6, 7>(f.corner);
+  const Sign8 next_number = picked<1, 2, 0, 4, 5, 3, 6, 7>(number), forward = number < next_number;
   f.first_end = chosen(forward, f.corner, next);
   f.other_end = chosen(forward, next, f.corner);
   f.first = select(forward, number, next_number);
@@ -71,17 +71,17 @@ struct Points {
 // Which edges are the first and the second of the pairs at eight places, of whatever is known of edges.
 // Places 0 to 7: what vertices carry, with the edges at the first corner of their face; edge 0 of the first
 // triangle with edges 0 and 1 of the second. Places 8 to 14, and the last again: the other edges.
-constexpr auto kLowFirst = [](const auto& edges) { return shuffled<3, 3, 3, 0, 0, 0, 0, 0>(edges); };
-constexpr auto kLowSecond = [](const auto& edges) { return shuffled<5, 5, 5, 2, 2, 2, 3, 4>(edges); };
-constexpr auto kHighFirst = [](const auto& edges) { return shuffled<0, 1, 1, 1, 2, 2, 2, 2>(edges); };
-constexpr auto kHighSecond = [](const auto& edges) { return shuffled<5, 3, 4, 5, 3, 4, 5, 5>(edges); };
+constexpr auto kLowFirst = [](const auto& edges) { return picked<3, 3, 3, 0, 0, 0, 0, 0>(edges); };
+constexpr auto kLowSecond = [](const auto& edges) { return picked<5, 5, 5, 2, 2, 2, 3, 4>(edges); };
+constexpr auto kHighFirst = [](const auto& edges) { return picked<0, 1, 1, 1, 2, 2, 2, 2>(edges); };
+constexpr auto kHighSecond = [](const auto& edges) { return picked<5, 3, 4, 5, 3, 4, 5, 5>(edges); };
 constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};  // at places 0 to 7
 
 Points low_points(const Features& f) {
-  return {{shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
-           shuffled<4, 4, 4, 1, 1, 1, 8 + 0, 8 + 0>(f.corner, f.other_end)},
-          {shuffled<5, 5, 5, 2, 2, 2, 8 + 3, 8 + 4>(f.corner, f.first_end),
-           shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.other_end)}};
+  return {{picked<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
+           picked<4, 4, 4, 1, 1, 1, 8 + 0, 8 + 0>(f.corner, f.other_end)},
+          {picked<5, 5, 5, 2, 2, 2, 8 + 3, 8 + 4>(f.corner, f.first_end),
+           picked<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.other_end)}};
 }
 Points high_points(const Features& f) {
   return {{kHighFirst(f.first_end), kHighFirst(f.other_end)},
@@ -114,8 +114,8 @@ unsigned apart_in_plane(const Points& points, Sign8 exchanged, Sign8 vertex_face
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places) {
   const Features f = features_of(motion, a, b);
   const unsigned low = never_coplanar(f, kLowFirst, kLowSecond,
-                                      shuffled<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
-                                          shuffled<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end));
+                                      picked<0, 1, 2, 3, 4, 5, 8 + 3, 8 + 4>(f.corner, f.first_end) -
+                                          picked<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end));
   const unsigned high =
       never_coplanar(f, kHighFirst, kHighSecond, kHighSecond(f.first_end) - kHighFirst(f.first_end));
   unsigned left = places & ~(low | high << 8);
