@@ -11,7 +11,6 @@
 namespace cscd::bench {
 namespace {
 
-// (No lambda: in templates clang 14 takes those of several files for one.)
 template <class Query>
 Answer put_off(const Query&) {
   return {Verdict::undecided, 0};

@@ -58,7 +58,8 @@ struct ElementaryTest {
   Answer edge_edge(const MovingEdgeEdge& query) const { return answer(query); }
 };
 
-// For rows that take queries one by one, without parameters or with them: one_by_one<newton_edge_edge>.
+// For rows that take queries one by one, without parameters or with them: one_by_one<newton_edge_edge>. (No
+// lambda inside a template: clang 14 takes those of several files for one.)
 template <auto test, class Query>
 void one_by_one(std::span<const Query> queries, const TestParameters& parameters, std::span<Answer> answers) {
   for (std::size_t i = 0; i < queries.size(); ++i)

@@ -33,17 +33,18 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
   team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
     largest_[part] = convert(motion, first, last);
   });
-  const float largest = *std::max_element(largest_.begin(), largest_.end());
+  const auto largest = std::bit_cast<float>(*std::max_element(largest_.begin(), largest_.end()));
   known_ = largest <= kLargest;
   error_ = 0x1.00002p-24F * largest + 1e-37F;
 }
 
-// Those of a range of vertices; returns the largest coordinate.
-float LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
+// Those of a range of vertices; returns the bits of the largest coordinate's size. Bits order as sizes do,
+// what is no number above all, and have a maximum of one cycle.
+std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
   const Vec3 o = motion.start()[0];
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
-  Int8 most = {};  // the bits of sizes order as the sizes do, and have a maximum of one cycle
+  Int8 most = {};
   const auto convert = [&](const double* start, const double* end, float* out) {
     HalfOf<double> p, q;
     std::memcpy(&p, start, sizeof p);
@@ -65,8 +66,8 @@ float LocalPositions::convert(const Motion& motion, std::size_t first, std::size
     std::memcpy(points[1], end + 3 * v, 3 * sizeof(double));
     convert(points[0], points[1], records[v].at);
   }
-  float largest = 0;
-  for (const int i : {0, 1, 2, 4, 5, 6}) largest = std::fmax(largest, std::bit_cast<float>(most[i]));
+  std::int32_t largest = 0;
+  for (const int i : {0, 1, 2, 4, 5, 6}) largest = std::max(largest, most[i]);
   return largest;
 }
 

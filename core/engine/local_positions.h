@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,11 +32,11 @@ class LocalPositions {
   bool known() const { return known_; }
 
  private:
-  float convert(const Motion& motion, std::size_t first, std::size_t last);
+  std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last);
 
   double scale_;
   std::vector<Record> records_;
-  std::vector<float> largest_;  // of each range
+  std::vector<std::int32_t> largest_;  // of each range
   float error_ = 0;
   bool known_ = false;
 };

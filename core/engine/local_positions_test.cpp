@@ -1,6 +1,7 @@
 #include "core/engine/local_positions.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "core/engine/test_body.h"
 #include "core/radial/exact_orientation.h"
@@ -45,6 +46,17 @@ TEST(LocalPositions, AMotionOutOfRangeIsNotKnown) {
   body.start[0].y() = 1e308;
   local.update(body.motion());
   EXPECT_FALSE(local.known());
+}
+
+// In any coordinate. Mutation: a maximum that passes over what is no number.
+TEST(LocalPositions, WhatIsNoNumberIsNotKnown) {
+  for (const Eigen::Index i : {0, 1, 2}) {
+    test::Body body(0, 1);
+    LocalPositions local(body.start);
+    body.end[7][i] = std::numeric_limits<double>::quiet_NaN();
+    local.update(body.motion());
+    EXPECT_FALSE(local.known());
+  }
 }
 
 }  // namespace
