@@ -192,6 +192,32 @@ TEST(Lanes16, ComparisonsGiveOneBitALane) {
   }
 }
 
+// Also of zeros and of what is no number, bit for bit: scalar twins rely on it. Mutation: arguments
+// exchanged.
+template <class Lanes>
+void expect_order_of_one_number() {
+  using Number = std::remove_cvref_t<decltype(Lanes{}[0])>;
+  const Number all[] = {0, -Number{0}, 1, -2, std::numeric_limits<Number>::quiet_NaN()};
+  for (const Number x : all)
+    for (const Number y : all) {
+      const Lanes a = x - Lanes{}, b = y - Lanes{};
+      const Number least = smaller(a, b)[0], most = larger(a, b)[0];
+      EXPECT_EQ(std::isnan(least), std::isnan(smaller(x, y)));
+      EXPECT_EQ(std::signbit(least), std::signbit(smaller(x, y)));
+      EXPECT_EQ(std::isnan(most), std::isnan(larger(x, y)));
+      EXPECT_EQ(std::signbit(most), std::signbit(larger(x, y)));
+    }
+}
+TEST(Lanes, SmallerAndLargerAreThoseOfOneNumber) {
+  expect_order_of_one_number<Float16>();
+  expect_order_of_one_number<Lane8>();
+}
+
+TEST(Lanes, JoinedHasBothHalvesInOrder) {
+  const Float16 v = joined<Float16>(Float8{0, 1, 2, 3, 4, 5, 6, 7}, Float8{8, 9, 10, 11, 12, 13, 14, 15});
+  for (std::size_t l = 0; l < kLanes16; ++l) EXPECT_EQ(v[l], static_cast<float>(l));
+}
+
 #ifdef __FMA__
 TEST(Lanes8, RoundedOnceIsThatOfOneNumber) {
   std::mt19937 random(2014);
