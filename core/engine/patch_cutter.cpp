@@ -2,19 +2,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <random>
+#include <utility>
 
-#include "core/base/random.h"
-
-// Patches grow one beside the other; what is left over between them is joined; then small ones are cut anew
-// together with what is about them, in random order, where that makes fewer.
+// Patches grow one beside the other; what is left over between them is joined; then small ones are emptied
+// into those beside them.
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kSmall = 12;  // triangles up to which a patch is repaired,
-constexpr std::size_t kGroup = 8;   // together with so many at most, itself among them,
-constexpr int kAttempts = 8;        // so often at most,
-constexpr int kRounds = 2;          // in so many rounds
+constexpr std::size_t kMostSeeking = 300;  // triangles that are asked to move for one; more find little
 
 std::size_t index(std::int32_t patch) {
   return static_cast<std::size_t>(patch);
@@ -27,14 +22,16 @@ PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroi
       centroid_(centroid),
       most_(most),
       free_(mesh.triangle_count(), false),
-      patch_of_(mesh.triangle_count(), -1),
       corners_taken_(mesh.triangle_count(), 0),
-      taken_(mesh.vertex_count(), false) {}
+      taken_(mesh.vertex_count(), false),
+      patch_of_(mesh.triangle_count(), -1),
+      seeks_(mesh.triangle_count(), false),
+      uses_(mesh.vertex_count(), 0) {}
 
 PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
   Patches patches = pieces(cell);
   join(patches);
-  repair(patches);
+  empty_small(patches);
   return patches;
 }
 
@@ -150,52 +147,101 @@ void PatchCutter::join(Patches& patches) const {
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
-// A patch, those of the cell that touch it, and those that touch them, as far as they are wanted.
-std::vector<std::int32_t> PatchCutter::around(std::int32_t patch, const Patches& patches) const {
-  std::vector<std::int32_t> group = {patch};
-  for (std::size_t next = 0; next < group.size(); ++next)
-    for (const VertexId v : vertices_of(patches[index(group[next])]))
-      for (const TriangleId t : mesh_.triangles_at(v)) {
-        const std::int32_t other = patch_of_[+t];
-        if (other < 0 || std::find(group.begin(), group.end(), other) != group.end()) continue;
-        group.push_back(other);
-        if (group.size() == kGroup) return group;
-      }
-  return group;
-}
-
-void PatchCutter::repair(Patches& patches) {
-  const auto enter = [&](std::int32_t p) {
-    for (const TriangleId t : patches[index(p)]) patch_of_[+t] = p;
-  };
-  const auto count = static_cast<std::int32_t>(patches.size());
-  for (std::int32_t p = 0; p < count; ++p) enter(p);
-  std::mt19937 random(kPreparationSeed);
-  std::vector<TriangleId> all;
-  for (int round = 0; round < kRounds; ++round)
-    for (std::int32_t p = 0; p < count; ++p) {
-      if (patches[index(p)].empty() || patches[index(p)].size() > kSmall) continue;
-      const std::vector<std::int32_t> group = around(p, patches);
-      all.clear();
-      for (const std::int32_t q : group)
-        all.insert(all.end(), patches[index(q)].begin(), patches[index(q)].end());
-      if (all.size() > (group.size() - 1) * most_) continue;
-      for (int attempt = 0; attempt < kAttempts; ++attempt) {
-        shuffle(all, random);
-        Patches anew = pieces(all);
-        if (anew.size() >= group.size()) join(anew);
-        if (anew.size() >= group.size()) continue;
-        anew.resize(group.size());
-        for (std::size_t i = 0; i < group.size(); ++i) {
-          patches[index(group[i])] = std::move(anew[i]);
-          enter(group[i]);
-        }
-        break;
-      }
+// Triangles of small patches, of the smallest first, move into patches beside them, as long as they find
+// room.
+void PatchCutter::empty_small(Patches& patches) {
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (const TriangleId t : patches[p]) patch_of_[+t] = static_cast<std::int32_t>(p);
+  for (std::size_t size = 1; size < most_; ++size)
+    for (const std::vector<TriangleId>& patch : patches) {
+      if (patch.size() != size) continue;
+      const std::vector<TriangleId> triangles = patch;
+      for (const TriangleId t : triangles)
+        if (!move(t, patches)) break;
     }
   for (const auto& patch : patches)
     for (const TriangleId t : patch) patch_of_[+t] = -1;
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+}
+
+// Into a patch that has room, or in place of a triangle that moves on in the same way: the fewest that have
+// to move. False if none of those asked finds room.
+bool PatchCutter::move(TriangleId triangle, Patches& patches) {
+  const auto seek = [&](TriangleId t, std::size_t for_whom) {
+    seeking_.push_back({t, for_whom});
+    seeks_[+t] = true;
+  };
+  seek(triangle, 0);
+  bool found = false;
+  for (std::size_t at = 0; at < std::min(seeking_.size(), kMostSeeking) && !found; ++at)
+    for (const std::int32_t p : patches_beside(seeking_[at].triangle)) {
+      if (is_left(p, at)) continue;
+      const Room room = room_for(seeking_[at].triangle, patches[index(p)]);
+      if (room.is_free) {
+        move_all(at, p, patches);
+        found = true;
+        break;
+      }
+      for (const TriangleId other : room.in_place_of)
+        if (!seeks_[+other]) seek(other, at);
+    }
+  for (const Seeking& s : seeking_) seeks_[+s.triangle] = false;
+  seeking_.clear();
+  return found;
+}
+
+// Those of the cell on the other side of its edges.
+std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
+  std::vector<std::int32_t> found;
+  for (const EdgeId e : mesh_.edges_of(triangle))
+    for (const TriangleId t : mesh_.triangles_at(e)) {
+      const std::int32_t patch = patch_of_[+t];
+      if (patch >= 0 && std::find(found.begin(), found.end(), patch) == found.end()) found.push_back(patch);
+    }
+  return found;
+}
+
+PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const TriangleId> patch) {
+  std::size_t vertices = 0;
+  const auto enter = [&](TriangleId t) {
+    for (const VertexId v : mesh_.corners(t)) vertices += uses_[+v]++ == 0;
+  };
+  const auto forget = [&](TriangleId t) {
+    for (const VertexId v : mesh_.corners(t)) uses_[+v] = 0;
+  };
+  const auto only_its_own = [&](TriangleId t) {
+    const Triangle& c = mesh_.corners(t);
+    return static_cast<std::size_t>(std::ranges::count_if(c, [&](VertexId v) { return uses_[+v] == 1; }));
+  };
+  enter(triangle);
+  std::ranges::for_each(patch, enter);
+  Room room{patch.size() < most_ && vertices <= most_, {}};
+  for (const TriangleId t : patch)
+    if (vertices - only_its_own(t) <= most_) room.in_place_of.push_back(t);
+  forget(triangle);
+  std::ranges::for_each(patch, forget);
+  return room;
+}
+
+// Whether the triangle of a patch is among those that move if this one does.
+bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
+  while (patch_of_[+seeking_[at].triangle] != patch) {
+    if (at == 0) return false;
+    at = seeking_[at].for_whom;
+  }
+  return true;
+}
+
+// That one into a patch, whom it makes room for into the patch it leaves, and so on.
+void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
+  while (true) {
+    const auto [triangle, for_whom] = seeking_[at];
+    const std::int32_t from = std::exchange(patch_of_[+triangle], to);
+    std::erase(patches[index(from)], triangle);
+    patches[index(to)].push_back(triangle);
+    if (at == 0) return;
+    at = for_whom, to = from;
+  }
 }
 
 }  // namespace cscd::fast

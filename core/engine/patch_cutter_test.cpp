@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include "core/mesh/test_shapes.h"
@@ -45,13 +46,13 @@ void expect_valid(const Surface& surface, const std::vector<TriangleId>& cell,
   EXPECT_EQ(met, std::multiset<TriangleId>(cell.begin(), cell.end()));
 }
 
-// Mutations: without repair; without the limit on vertices.
+// Mutations: small ones are not emptied, or only where there is room at once; without the limit on vertices.
 TEST(PatchCutter, FillsPatches) {
   const Surface surface;
   const std::vector<TriangleId> all = surface.all();
   const PatchCutter::Patches patches = surface.cut(all);
   expect_valid(surface, all, patches);
-  EXPECT_LE(static_cast<double>(patches.size()), static_cast<double>(all.size()) / (0.92 * 16));
+  EXPECT_LE(static_cast<double>(patches.size()), static_cast<double>(all.size()) / (0.97 * 16));
 }
 
 // Mutation: patches grow over edges alone.
@@ -71,6 +72,18 @@ TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
   const PatchCutter::Patches patches = surface.cut(fan);
   expect_valid(surface, fan, patches);
   EXPECT_EQ(patches.size(), 1u);
+}
+
+// Much is left over in cells that are full of holes. Mutations: triangles move into a patch that another
+// leaves for their sake; room is counted without one of both.
+TEST(PatchCutter, KeepsAllTrianglesWhereManyMove) {
+  const Surface surface;
+  std::mt19937 random(5);
+  for (const double share : {0.3, 0.5, 0.7, 0.9}) {
+    std::vector<TriangleId> cell = surface.all();
+    std::erase_if(cell, [&](TriangleId) { return std::bernoulli_distribution(1 - share)(random); });
+    expect_valid(surface, cell, surface.cut(cell));
+  }
 }
 
 // Many triangles at one edge, each beside more than three. Mutation: so many are taken for the most.
