@@ -232,7 +232,7 @@ bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
   return true;
 }
 
-// That one into a patch, whom it makes room for into the patch it leaves, and so on.
+// That one into a patch, the one for whom it makes room into the patch that it leaves, and so on.
 void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
   while (true) {
     const auto [triangle, for_whom] = seeking_[at];

@@ -46,7 +46,8 @@ void expect_valid(const Surface& surface, const std::vector<TriangleId>& cell,
   EXPECT_EQ(met, std::multiset<TriangleId>(cell.begin(), cell.end()));
 }
 
-// Mutations: small ones are not emptied, or only where there is room at once; without the limit on vertices.
+// Mutations: small ones are not emptied, or only where there is room at once; triangles move into a patch
+// that another leaves for their sake; without the limit on vertices.
 TEST(PatchCutter, FillsPatches) {
   const Surface surface;
   const std::vector<TriangleId> all = surface.all();
@@ -74,8 +75,7 @@ TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
   EXPECT_EQ(patches.size(), 1u);
 }
 
-// Much is left over in cells that are full of holes. Mutations: triangles move into a patch that another
-// leaves for their sake; room is counted without one of both.
+// Much is left over in cells that are full of holes. Mutation: room is counted without the one that comes.
 TEST(PatchCutter, KeepsAllTrianglesWhereManyMove) {
   const Surface surface;
   std::mt19937 random(5);
