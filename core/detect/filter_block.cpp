@@ -1,6 +1,8 @@
 #include "core/detect/filter_block.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "core/detect/carried_filter.h"
 #include "core/detect/carried_look.h"
@@ -97,13 +99,21 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left) {
-  for (const auto& [pair, places] : pairs) {
-    const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
-    std::optional<CarriedPlaces> rest;
-    if (single_precision_first) rest = not_filtered_at_a_look(motion, a, b, places);
-    if (!rest) rest = not_filtered(motion, a, b, places);
-    for_each_carried(mesh, CarriedPairs{pair, *rest},
-                     [&](const FeaturePair& features) { left.push_back(features); });
+  // First what is left of many, then its features: a branch on what comes out of one pair keeps the next
+  // waiting.
+  constexpr std::size_t kTogether = 64;
+  for (; !pairs.empty(); pairs = pairs.subspan(std::min(kTogether, pairs.size()))) {
+    std::array<CarriedPairs, kTogether> rest;
+    std::size_t count = 0;
+    for (const auto& [pair, places] : pairs.first(std::min(kTogether, pairs.size()))) {
+      const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
+      std::optional<CarriedPlaces> kept;
+      if (single_precision_first) kept = not_filtered_at_a_look(motion, a, b, places);
+      if (!kept) kept = not_filtered(motion, a, b, places);
+      rest[count++] = {pair, *kept};
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      for_each_carried(mesh, rest[i], [&](const FeaturePair& features) { left.push_back(features); });
   }
 }
 
