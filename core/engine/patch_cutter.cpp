@@ -10,6 +10,7 @@ namespace cscd::fast {
 namespace {
 
 constexpr std::size_t kMostSeeking = 300;  // triangles that are asked to move for one; more find little
+constexpr std::size_t kMostBeside = 8;     // patches that are asked for room; at edges of two there are three
 
 std::size_t index(std::int32_t patch) {
   return static_cast<std::size_t>(patch);
@@ -22,6 +23,8 @@ PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroi
       centroid_(centroid),
       most_(most),
       free_(mesh.triangle_count(), false),
+      free_at_(mesh.edge_count(), 0),
+      is_beside_(mesh.triangle_count(), false),
       corners_taken_(mesh.triangle_count(), 0),
       taken_(mesh.vertex_count(), false),
       patch_of_(mesh.triangle_count(), -1),
@@ -44,16 +47,20 @@ std::vector<VertexId> PatchCutter::vertices_of(std::span<const TriangleId> patch
   return vertices;
 }
 
+void PatchCutter::set_free(TriangleId triangle, bool free) {
+  free_[+triangle] = free;
+  is_beside_[+triangle] = false;
+  for (const EdgeId e : mesh_.edges_of(triangle)) free_at_[+e] += free ? 1 : -1;
+}
 int PatchCutter::free_beside(TriangleId triangle) const {
   int count = 0;
-  for (const EdgeId e : mesh_.edges_of(triangle))
-    for (const TriangleId other : mesh_.triangles_at(e)) count += free_[+other] && other != triangle;
+  for (const EdgeId e : mesh_.edges_of(triangle)) count += free_at_[+e] - 1;
   return count;
 }
 
 // Each begins beside those before it, at the triangle with the fewest free neighbours.
 PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
-  for (const TriangleId t : cell) free_[+t] = true;
+  for (const TriangleId t : cell) set_free(t, true);
   Patches patches;
   std::vector<TriangleId> beside;
   std::size_t next = 0;
@@ -78,7 +85,10 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
     std::sort(vertices_.begin(), vertices_.end());
     for (const VertexId v : vertices_)
       for (const TriangleId other : mesh_.triangles_at(v))
-        if (free_[+other]) beside.push_back(other);
+        if (free_[+other] && !is_beside_[+other]) {
+          beside.push_back(other);
+          is_beside_[+other] = true;
+        }
   }
 }
 
@@ -90,7 +100,7 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   const auto take = [&](TriangleId triangle) {
     patch.push_back(triangle);
     sum += centroid_[+triangle];
-    free_[+triangle] = false;
+    set_free(triangle, false);
     for (const VertexId v : mesh_.corners(triangle)) {
       if (taken_[+v]) continue;
       taken_[+v] = true;
@@ -190,12 +200,13 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   return found;
 }
 
-// Those of the cell on the other side of its edges.
+// Those of the cell on the other side of its edges, some of them where there are many.
 std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
   std::vector<std::int32_t> found;
   for (const EdgeId e : mesh_.edges_of(triangle))
     for (const TriangleId t : mesh_.triangles_at(e)) {
       const std::int32_t patch = patch_of_[+t];
+      if (found.size() == kMostBeside) return found;
       if (patch >= 0 && std::find(found.begin(), found.end(), patch) == found.end()) found.push_back(patch);
     }
   return found;

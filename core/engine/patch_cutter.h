@@ -20,7 +20,8 @@ class PatchCutter {
 
  private:
   std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const;
-  int free_beside(TriangleId triangle) const;
+  void set_free(TriangleId triangle, bool free);
+  int free_beside(TriangleId triangle) const;  // of a free one
   Patches pieces(std::span<const TriangleId> cell);
   std::vector<TriangleId> grow(TriangleId seed);
   void join(Patches& patches) const;
@@ -38,7 +39,9 @@ class PatchCutter {
   const TriangleMesh& mesh_;
   std::span<const Vec3> centroid_;
   std::size_t most_;
-  std::vector<bool> free_;  // triangles that are in no patch yet
+  std::vector<bool> free_;             // triangles that are in no patch yet
+  std::vector<std::int32_t> free_at_;  // of each edge: how many of them have it
+  std::vector<bool> is_beside_;        // triangles that are free beside some patch
   // Of the patch that grows; else empty.
   std::vector<std::uint8_t> corners_taken_;  // of each triangle: how many of its corners are in it
   std::vector<bool> taken_;                  // whether a vertex is in it
