@@ -103,6 +103,7 @@ ordered_json environment() {
           {"caches", caches()},
           {"memory", value_in("/proc/meminfo", "MemTotal")},
           {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
+          {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
           {"load_average", load_average()},
           {"kernel", kernel()},
           {"compiler", build_info::kCompiler},
