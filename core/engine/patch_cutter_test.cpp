@@ -103,13 +103,13 @@ TEST(PatchCutter, CutsWhatIsNoManifold) {
   expect_valid(surface, surface.all(), surface.cut(surface.all()));
 }
 
-// Mutations, each of which takes minutes: what is free beside an edge is counted whenever it is asked for;
-// triangles wait once for every patch that they are beside; all patches beside an edge are asked for room.
+// Mutations: what is free beside an edge is counted whenever it is asked for; all patches beside an edge are
+// asked for room.
 TEST(PatchCutter, TakesLittleTimeWhereThousandsMeet) {
-  const Surface surface(book(3000));
+  const Surface surface(book(6000));
   const auto begin = std::chrono::steady_clock::now();
   expect_valid(surface, surface.all(), surface.cut(surface.all()));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 }  // namespace
