@@ -120,8 +120,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
   }
   if (wanted != 0) {
     tests_ += static_cast<unsigned>(std::popcount(wanted));
-    left |= input_.positions.known() ? near(bounds_of_triangles(q), wanted, bounds_of_triangles(p), lane)
-                                     : wanted;
+    left |= near_triangle(q, wanted, p, lane);
   }
   if (left != 0) pass_on(p, lane, q, left);
 }
@@ -166,6 +165,14 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
   if (!input_.positions.known()) return mask;
   tests_ += static_cast<unsigned>(std::popcount(mask));
   return near(triangles, mask, other);
+}
+
+// Which of some triangles of patch q are not proven apart from triangle `lane` of patch p.
+inline Mask16 PatchDescent::near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane) {
+  if (!input_.positions.known()) return wanted;
+  bounds_of_triangles(p);  // so that the last call makes nothing, unless the second has made the newest
+  const TriangleBounds& triangles = bounds_of_triangles(q);
+  return near(triangles, wanted, bounds_of_triangles(p), lane);
 }
 
 const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <new>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/detect/culler.h"
@@ -32,32 +32,44 @@ struct DescentInput {
   bool planes;  // whether pairs are parted by them
 };
 
-// What an interval makes of few patches, when it is first asked for. References last as long as the interval.
+// What an interval makes of few patches, when it is asked for: of the last of them, as a descent stays near
+// where it is. What it meets again later is made anew, which takes less time than to write and read memory
+// that others have driven from the caches.
 template <class T>
 class OnDemand {
   static_assert(std::is_trivially_destructible_v<T>);
 
  public:
-  explicit OnDemand(std::size_t patches) : at_(patches, kNone) {}
+  explicit OnDemand(std::size_t patches) : at_(patches, kNone), made_(kMost), patch_(kMost, kNone) {}
   void start_interval() {
-    std::fill(at_.begin(), at_.end(), kNone);
-    used_ = 0;
+    for (std::int32_t& patch : patch_) forget(patch);
   }
+  // The next that is made may take the place of the reference.
   template <class Make>
   const T& of(std::size_t patch, const Make& make) {
     std::int32_t& at = at_[patch];
     if (at == kNone) {
-      at = static_cast<std::int32_t>(used_++);
-      if (used_ > made_.size()) made_.emplace_back();
-      ::new (&made_[static_cast<std::size_t>(at)]) T(make());  // in place: there are many, and they are large
+      forget(patch_[next_]);
+      patch_[next_] = static_cast<std::int32_t>(patch);
+      at = static_cast<std::int32_t>(next_);
+      ::new (&made_[next_]) T(make());  // in place: they are large
+      next_ = (next_ + 1) % kMost;
     }
     return made_[static_cast<std::size_t>(at)];
   }
 
  private:
+  static constexpr std::size_t kMost = 64;  // fit the second cache, and so many are seldom made anew
+
+  void forget(std::int32_t& patch) {
+    if (patch != kNone) at_[static_cast<std::size_t>(patch)] = kNone;
+    patch = kNone;
+  }
+
   std::vector<std::int32_t> at_;  // of each patch: where among those made
-  std::deque<T> made_;
-  std::size_t used_ = 0;
+  std::vector<T> made_;
+  std::vector<std::int32_t> patch_;  // of which each is
+  std::size_t next_ = 0;
 };
 
 // The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
@@ -99,6 +111,7 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
   void pass_on_waiting();
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);
+  Mask16 near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
 
   const DescentInput input_;
