@@ -80,8 +80,11 @@ void Certificates::finish() {
 
 void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
   for (std::size_t c = 0; c < covers_used_; ++c)
-    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i)
-      viewpoint_[c][i] = placed(covers_[c].observers[i], records);
+    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i) {
+      Viewpoint& viewpoint = viewpoint_[c][i];
+      viewpoint = placed(covers_[c].observers[i], records);
+      viewpoint.reach = reach_of(viewpoint, positions_->error());
+    }
 }
 
 void Certificates::look(std::size_t p, const PatchLanes& lanes) {

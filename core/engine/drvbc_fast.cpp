@@ -99,6 +99,7 @@ class FastCuller : public Culler {
 
   void fetch(std::size_t patch) const {
     if (patch >= tree_.patches.size()) return;
+    __builtin_prefetch(&bounds_[static_cast<std::size_t>(tree_.leaf[patch])], 1);
     for (const std::int32_t v : tree_.patches[patch].vertex)
       __builtin_prefetch(&positions_.records()[static_cast<std::size_t>(v)]);
   }

@@ -1,6 +1,8 @@
 #include "core/engine/following_point.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include "core/geometry/lanes16.h"
@@ -17,6 +19,13 @@ Vec3 FollowingPoint::at(std::span<const Vec3> positions) const {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < count_; ++i) sum += static_cast<double>(weights_[i]) * positions[+vertices_[i]];
   return sum;
+}
+
+float reach_of(const Viewpoint& viewpoint, float error) {
+  float largest = 0;
+  for (const auto& end : viewpoint.at)
+    for (const float coordinate : end) largest = std::max(largest, std::abs(coordinate));
+  return 1.0001F * (0x1p24F * error + largest);  // the rest pays for roundings and for twice the error
 }
 
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 
 #include "core/base/ids.h"
@@ -35,7 +36,12 @@ class FollowingPoint {
 // vertex is off by the error of its coordinates, which orientations allow for.
 struct Viewpoint {
   float at[2][3];
+  // More than the distance of any local position along an axis, with what it may be off; or as here, where
+  // nobody has asked.
+  float reach = std::numeric_limits<float>::infinity();
 };
+// `reach` of positions whose coordinates are off by `error`, at least 2^-24 of the largest.
+float reach_of(const Viewpoint& viewpoint, float error);
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records);
 
 }  // namespace cscd::fast

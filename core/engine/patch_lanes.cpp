@@ -85,10 +85,11 @@ struct PatchNormals {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
-  const TripleProducts16 products = triple_products(normals.control, c, rounding, error);
-  const Mask16 positive = products.positive();
-  if (positive == 0xffff) return {0xffff, 0};  // as nearly always
-  return {positive, products.negative()};
+  Float16 coefficient[4];
+  coefficients(normals.control, c, coefficient);
+  if (all_positive(coefficient, rounding, viewpoint.reach)) return {0xffff, 0};  // as nearly always
+  const TripleProducts16 products = bounded(coefficient, c, rounding, error);
+  return {products.positive(), products.negative()};
 }
 
 }  // namespace

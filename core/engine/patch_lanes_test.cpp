@@ -93,7 +93,9 @@ TEST(PatchLanes, CertifiedSignsAreExactTowardsTheFarthestObservers) {
     }
     if (round % 4 < 2)  // at rest, or certain signs are rare
       for (std::size_t i = 0; i < 3; ++i) lanes.at[1][i] = lanes.at[0][i], from.at[1][i] = from.at[0][i];
-    const Signs signs = orientation(lanes, patch, from, 0x1.1p-24F * kFarthest);
+    const float error = 0x1.1p-24F * kFarthest;
+    if (round % 8 < 4) from.reach = reach_of(from, error);
+    const Signs signs = orientation(lanes, patch, from, error);
     for (std::size_t l = 0; l < kLanes16; ++l) {
       const auto point = [](auto&& at) {  // (end, axis) -> float
         return MovingPoint{Vec3(at(0, 0), at(0, 1), at(0, 2)), Vec3(at(1, 0), at(1, 1), at(1, 2))};
@@ -146,8 +148,9 @@ int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
   return above ? 1 : below ? -1 : 0;
 }
 
-// With errors so large that bounds decide, and with lengths so small that nothing is known. Mutations: the
-// smallest component taken for the largest; what is not known passed as positive where all of a patch is.
+// With errors so large that bounds decide, and with lengths so small that nothing is known; and the same
+// whether it is known how far positions reach. Mutations: the smallest component taken for the largest; what
+// is not known passed as positive where all of a patch is; all positive where three coefficients are.
 TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
   struct Case {
     float size, error;  // of lengths; in local units
@@ -157,15 +160,21 @@ TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
     for (const Case& with :
          {Case{1, scene.local.error()}, Case{1, 1e-3F}, Case{0x1p-37F, scene.local.error()}}) {
       const float error = with.size * with.error;
-      std::size_t certain = 0, uncertain = 0;
+      std::size_t certain = 0, uncertain = 0, whole = 0;
       Viewpoint from = centre;
       for (auto& end : from.at)
         for (float& component : end) component *= with.size;
+      Viewpoint reached = from;
+      reached.reach = reach_of(from, error);
       for (const Patch& patch : scene.tree.patches) {
         PatchLanes lanes = load(scene.local.records(), patch.vertex);
         for (auto& end : lanes.at)
           for (Float16& component : end) component *= with.size;
         const Signs signs = orientation(lanes, patch, from, error);
+        const Signs same = orientation(lanes, patch, reached, error);
+        EXPECT_EQ(same.positive, signs.positive);
+        EXPECT_EQ(same.negative, signs.negative);
+        whole += same.positive == 0xffff;
         for (std::size_t l = 0; l < kLanes16; ++l) {
           float x[3][2][3];
           for (std::size_t k = 0; k < 3; ++k)
@@ -179,6 +188,7 @@ TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
       }
       EXPECT_GT(uncertain, 0u);
       EXPECT_EQ(certain > 0, with.size == 1);
+      EXPECT_EQ(whole > 0, with.size == 1 && with.error < 1e-3F);
     }
 }
 

@@ -99,6 +99,15 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
+// Of the lanes in `where`, those where a > b.
+inline Mask16 above(Mask16 where, Float16 a, Float16 b) {
+#ifdef __AVX512F__
+  return _mm512_mask_cmp_ps_mask(where, a, b, _CMP_GT_OQ);
+#else
+  return where & above(a, b);
+#endif
+}
+
 // Of a mask, the first lane first.
 template <class Take>
 void for_each_lane(unsigned mask, const Take& take) {

@@ -14,8 +14,8 @@
 // Then come the roundings behind each product. Where a product and a sum are rounded apart, the 6 have 28 in
 // all (2 in `cross`, then 3, 3, 2), the 18 of the middle two 137 (12 have 2 to 4 in `cross`, then 6, 6, 5;
 // the other 6 have 2, then 4, 3, 2); else 21 and 111. That is less than 8.1 each, hence at most
-// 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products might
-// underflow; nothing is certain then.
+// 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products
+// might underflow; nothing is certain then.
 namespace cscd {
 
 // A point in one register; the fourth number is 0.
@@ -58,6 +58,7 @@ inline void cross(const VectorLanes16& a, const VectorLanes16& b, Float16 (&cont
 // What bounds the rounding, by the reach of the third vector: `apart` + reach `sloped`. `area`: the product
 // of the largest components of the first two.
 struct Rounding16 {
+  static constexpr float kTiny = 1e-30F;
   Float16 area, apart, sloped;
 };
 // `a`, `b`: those largest components.
@@ -89,9 +90,9 @@ struct TripleProducts16 {
     return static_cast<Mask16>(known & some_positive & some_negative);
   }
 };
-[[gnu::always_inline]] inline TripleProducts16 triple_products(const Float16 (&normal)[3][3],
-                                                               const VectorLanes16& third,
-                                                               const Rounding16& rounding, float error) {
+// The coefficients of (a x b) . c, of the control vectors of a x b.
+[[gnu::always_inline]] inline void coefficients(const Float16 (&normal)[3][3], const VectorLanes16& third,
+                                                Float16 (&c)[4]) {
   const auto dot = [&](int n, int end) {
     return product_plus(normal[n][2], third.at[end][2],
                         product_plus(normal[n][1], third.at[end][1], normal[n][0] * third.at[end][0]));
@@ -100,14 +101,41 @@ struct TripleProducts16 {
     for (int i = 0; i < 3; ++i) sum = product_plus(normal[n][i], third.at[end][i], sum);
     return sum;
   };
-  constexpr float kTiny = 1e-30F;
+  c[0] = dot(0, 0), c[1] = plus_dot(dot(1, 0), 0, 1), c[2] = plus_dot(dot(1, 1), 2, 0), c[3] = dot(2, 1);
+}
+
+// Coefficients with what they may be off by.
+[[gnu::always_inline]] inline TripleProducts16 bounded(const Float16 (&c)[4], const VectorLanes16& third,
+                                                       const Rounding16& rounding, float error) {
   const Float16 reach = largest_component(third) + all_lanes(2 * error);
   const Float16 bound = product_plus(reach, rounding.sloped, rounding.apart);
-  return {{dot(0, 0), plus_dot(dot(1, 0), 0, 1), plus_dot(dot(1, 1), 2, 0), dot(2, 1)},
+  return {{c[0], c[1], c[2], c[3]},
           bound,
           3 * bound,
-          static_cast<Mask16>(above(rounding.area, all_lanes(kTiny)) &
-                              above(rounding.area * reach, all_lanes(kTiny)))};
+          static_cast<Mask16>(above(rounding.area, all_lanes(Rounding16::kTiny)) &
+                              above(rounding.area * reach, all_lanes(Rounding16::kTiny)))};
+}
+[[gnu::always_inline]] inline TripleProducts16 triple_products(const Float16 (&normal)[3][3],
+                                                               const VectorLanes16& third,
+                                                               const Rounding16& rounding, float error) {
+  Float16 c[4];
+  coefficients(normal, third, c);
+  return bounded(c, third, rounding, error);
+}
+
+// Whether all certainly are positive, of third vectors none of which has a component of `reach` - 2 `error`:
+// in fewer steps, and never where `positive` would not say so of all. (Of a coefficient above ten times
+// Rounding16::kTiny the largest components have a product above it.)
+[[gnu::always_inline]] inline bool all_positive(const Float16 (&c)[4], const Rounding16& rounding,
+                                                float reach) {
+  const Float16 bound =
+      product_plus(all_lanes(reach), rounding.sloped, rounding.apart) + all_lanes(10 * Rounding16::kTiny);
+  const Float16 bound3 = 3 * bound;
+  Mask16 positive = above(rounding.area, all_lanes(Rounding16::kTiny));
+  positive = above(positive, c[0], bound);
+  positive = above(positive, c[1], bound3);
+  positive = above(positive, c[2], bound3);
+  return above(positive, c[3], bound) == 0xffff;
 }
 
 }  // namespace cscd

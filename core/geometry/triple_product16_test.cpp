@@ -1,0 +1,75 @@
+#include "core/geometry/triple_product16.h"
+
+#include <gtest/gtest.h>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace cscd {
+namespace {
+
+// Where all third vectors are equally long, whether all are certainly positive is the same by both ways, in
+// whichever coefficient they fail, be it by their sign or by the bound. Mutations: one of the four
+// coefficients left out, the middle two held against the outer ones' bound, a hundredth of the reach.
+TEST(TripleProduct16, AllArePositiveWhereEachIs) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> digits(-1, 1);
+  std::size_t all = 0, not_all[4] = {};
+  for (int round = 0; round < 400000; ++round) {
+    const float error = round % 2 == 0 ? 0x1p-22F : 0.002F, reach = 2;
+    VectorLanes16 a, b, c;
+    for (VectorLanes16* v : {&a, &b, &c})
+      for (auto& end : v->at)
+        for (Float16& component : end) {
+          const float middle = digits(random);
+          for (std::size_t l = 0; l < kLanes16; ++l) component[l] = middle + 0.02F * digits(random);
+        }
+    const float sign = digits(random) < 0 ? -1.0F : 1.0F;
+    c.at[round & 1][round % 3] = all_lanes(sign * reach);
+    Float16 normal[3][3], coefficient[4];
+    cross(a, b, normal);
+    coefficients(normal, c, coefficient);
+    const Rounding16 rounding = rounding_of(largest_component(a), largest_component(b), error);
+    const TripleProducts16 products = bounded(coefficient, c, rounding, error);
+    const bool each = products.positive() == 0xffff;
+    EXPECT_EQ(all_positive(coefficient, rounding, reach + 2 * error), each);
+    EXPECT_FALSE(all_positive(coefficient, rounding, std::numeric_limits<float>::infinity()));
+    all += each;
+    const auto holds = [&](int k) {
+      return above(coefficient[k], k == 0 || k == 3 ? products.bound : products.bound3) == 0xffff;
+    };
+    int fails = 0, last = 0;
+    for (int k = 0; k < 4; ++k)
+      if (!holds(k)) ++fails, last = k;
+    if (fails == 1) ++not_all[last];
+  }
+  EXPECT_GT(all, 1000u);
+  for (const std::size_t alone : not_all) EXPECT_GT(alone, 100u);
+}
+
+// Of what is so small that products underflow nothing is certain, by either way. Mutations: nothing added to
+// the bound for it, no look at the area.
+TEST(TripleProduct16, OfWhatUnderflowsNothingIsCertain) {
+  for (int down = 0; down < 40; ++down)
+    for (int away = 0; away < 40; ++away) {
+      const float size = std::ldexp(1.0F, -30 - down), far = std::ldexp(1.0F, away - 20);
+      const auto all = [](float x, float y, float z) {
+        VectorLanes16 v;
+        for (auto& end : v.at) end[0] = all_lanes(x), end[1] = all_lanes(y), end[2] = all_lanes(z);
+        return v;
+      };
+      const VectorLanes16 a = all(size, 0, 0), b = all(0, size, 0), c = all(0, 0, far);
+      Float16 normal[3][3], coefficient[4];
+      cross(a, b, normal);
+      coefficients(normal, c, coefficient);
+      const Rounding16 rounding = rounding_of(all_lanes(size), all_lanes(size), 1e-37F);
+      const bool known = size * size > 1e-30F && size * size * far > 1e-30F;
+      EXPECT_EQ(bounded(coefficient, c, rounding, 1e-37F).positive() == 0xffff, known);
+      if (!known) {
+        EXPECT_FALSE(all_positive(coefficient, rounding, far));
+      }
+    }
+}
+
+}  // namespace
+}  // namespace cscd
