@@ -40,11 +40,11 @@ std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
 
 class FastCuller : public Culler {
  public:
-  FastCuller(const Setup& setup, Covers covers, const DrvbcFastOptions& options)
+  FastCuller(const Setup& setup, Covers covers, std::size_t least_cell, const DrvbcFastOptions& options)
       : covers_(std::move(covers)),
         options_(options),
         positions_(setup.reference),
-        tree_(make_patches(setup.mesh, setup.reference, covers_)),
+        tree_(make_patches(setup.mesh, setup.reference, covers_, least_cell)),
         certificates_(tree_, covers_, capped(setup, covers_, options)),
         stars_(setup.mesh),
         team_(setup.threads),
@@ -128,6 +128,7 @@ class CountingSink : public TrianglePairSink {
 // an observer that is placed, or a pair that is left.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
+constexpr std::size_t kLeastCoarseCell = 96;  // leaves short limbs in fewer patches
 
 // Gives up where it is more than `most`.
 std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint64_t most) {
@@ -145,44 +146,68 @@ std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint6
   return tests;
 }
 
+// How a surface is cut.
+struct Cut {
+  std::vector<std::int32_t> cluster_of;  // of the first cover
+  std::size_t least_cell = kLeastCell;
+};
 struct Candidate {
-  std::vector<std::int32_t> cluster_of;
+  Cut cut;
   std::unique_ptr<FastCuller> culler;
 };
 
-Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
-  auto culler =
-      std::make_unique<FastCuller>(setup, make_covers(setup.mesh, setup.reference, cluster_of), options);
-  return {std::move(cluster_of), std::move(culler)};
+Candidate made(const Setup& setup, Cut cut, const DrvbcFastOptions& options) {
+  auto culler = std::make_unique<FastCuller>(setup, make_covers(setup.mesh, setup.reference, cut.cluster_of),
+                                             cut.least_cell, options);
+  return {std::move(cut), std::move(culler)};
 }
 
-// Of clusters of bones or of the surface, and with as many covers, as make the least work where bones turn.
+// Keeps the candidate that makes the least work in a few poses.
+class Choice {
+ public:
+  explicit Choice(std::vector<Trial> trials) : trials_(std::move(trials)) {}
+
+  // With as many covers as are worth while.
+  void consider(Candidate candidate) {
+    bool better = false;
+    for (std::size_t count = kCovers; count > 0; --count) {
+      candidate.culler->use_covers(count);
+      const std::uint64_t needed = work(*candidate.culler, trials_, least_);
+      if (needed >= least_) continue;
+      better = true, covers_ = count, least_ = needed;
+    }
+    if (better) best_ = std::move(candidate);
+  }
+  Candidate& best() { return best_; }
+  std::size_t covers() const { return covers_; }
+
+ private:
+  std::vector<Trial> trials_;
+  Candidate best_;
+  std::size_t covers_ = 0;
+  std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
+};
+
+// Of clusters of bones or of the surface, cut into more or fewer cells, and with as many covers, as make the
+// least work where bones turn.
 Candidate chosen(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
-    return made(setup, surface_clusters(setup.mesh, setup.reference), options);
+    return made(setup, {surface_clusters(setup.mesh, setup.reference)}, options);
   const std::vector<BoneId> bone_of = radial::bones_of_triangles(setup, {}, clock);
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-  if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
+  if (options.clusters == Clusters::of_bones) return made(setup, {std::move(of_bones)}, options);
 
   // Rows that leave something out take what the whole would, so that nothing else differs.
   const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
-  Candidate candidates[] = {made(setup, std::move(of_bones), whole),
-                            made(setup, surface_clusters(setup.mesh, setup.reference), whole)};
-  const std::vector<Trial> trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-  Candidate* best = nullptr;
-  std::size_t covers = 0;
-  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-  for (Candidate& candidate : candidates)
-    for (std::size_t count = kCovers; count > 0; --count) {
-      candidate.culler->use_covers(count);
-      const std::uint64_t needed = work(*candidate.culler, trials, least);
-      if (needed >= least) continue;
-      best = &candidate, covers = count, least = needed;
-    }
-  if (options != whole) *best = made(setup, std::move(best->cluster_of), options);
-  best->culler->use_covers(std::min(covers, options.covers));
-  return std::move(*best);
+  Choice choice(trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials));
+  choice.consider(made(setup, {std::move(of_bones)}, whole));
+  choice.consider(made(setup, {surface_clusters(setup.mesh, setup.reference)}, whole));
+  choice.consider(made(setup, {choice.best().cut.cluster_of, kLeastCoarseCell}, whole));
+  Candidate best = std::move(choice.best());
+  if (options != whole) best = made(setup, std::move(best.cut), options);
+  best.culler->use_covers(std::min(choice.covers(), options.covers));
+  return best;
 }
 
 }  // namespace
@@ -195,14 +220,14 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
                      " threads; give at least one");
   StageClock clock;
   clock.enter(Stage::decomposition);
-  auto [cluster_of, culler] = fast::chosen(setup, options, clock);
+  auto [cut, culler] = fast::chosen(setup, options, clock);
   clock.stop();
   Preparation preparation;
   if (clock.milliseconds(Stage::distance_and_heat) > 0)
     preparation.distance_and_heat_ms = clock.milliseconds(Stage::distance_and_heat);
   preparation.decomposition_ms = clock.milliseconds(Stage::decomposition);
-  preparation.atomic_clusters = 1 + *std::max_element(cluster_of.begin(), cluster_of.end());
-  preparation.atomic_cluster = std::move(cluster_of);
+  preparation.atomic_clusters = 1 + *std::max_element(cut.cluster_of.begin(), cut.cluster_of.end());
+  preparation.atomic_cluster = std::move(cut.cluster_of);
   preparation.threads = setup.threads;
   return {compose(std::move(culler), setup.mesh, setup.elementary), preparation};
 }

@@ -11,11 +11,10 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kLeast = 32;  // triangles of a cell that the second cover cuts out
-
 // Triangles that certificates treat alike are kept together: those of one cluster of the first cover and,
 // where that leaves enough of them, of one of the second, inside which all around them is or is not.
-std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Covers& covers) {
+std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Covers& covers,
+                                              std::size_t least) {
   const std::vector<bool> all = inside(mesh, covers[1].cluster_of);
   std::map<std::int32_t, std::map<std::pair<std::int32_t, bool>, std::vector<TriangleId>>> members;
   for (std::size_t t = 0; t < all.size(); ++t)
@@ -26,7 +25,7 @@ std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const Co
   for (auto& [first, parts] : members) {
     std::vector<TriangleId> rest;
     for (auto& [second, triangles] : parts)
-      if (triangles.size() >= kLeast)
+      if (triangles.size() >= least)
         cells.push_back(std::move(triangles));
       else
         rest.insert(rest.end(), triangles.begin(), triangles.end());
@@ -184,7 +183,8 @@ void enter(const TriangleMesh& mesh, const Cover& cover, std::size_t number, Pat
 
 }  // namespace
 
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers) {
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers,
+                       std::size_t least_cell) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
@@ -195,7 +195,7 @@ PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference
   std::vector<std::int32_t> cluster, cell_number;
   PatchCutter cutter(mesh, centroid, kLanes16);
   std::int32_t number = 0;
-  for (const std::vector<TriangleId>& cell : cells_of(mesh, covers)) {
+  for (const std::vector<TriangleId>& cell : cells_of(mesh, covers, least_cell)) {
     for (const std::vector<TriangleId>& patch : cutter.cut(cell)) {
       triangles.push_back(padded(patch));
       patches.push_back(make_patch(mesh, triangles.back(), patch.size()));

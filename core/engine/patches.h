@@ -106,7 +106,13 @@ struct PatchTree {
   }
 };
 
+// Triangles that the second cover has to cut out of a cluster of the first, or its seams give way to whole
+// patches. The more it takes, the fewer patches there are, but the more of them lie in no cluster of that
+// cover.
+inline constexpr std::size_t kLeastCell = 40;
+
 // Completes the covers: the second and the third are made of whole patches.
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers);
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference, Covers& covers,
+                       std::size_t least_cell = kLeastCell);
 
 }  // namespace cscd::fast

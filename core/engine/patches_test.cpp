@@ -109,6 +109,14 @@ TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
   for (const auto& [cluster, in] : components) EXPECT_EQ(in.size(), 1u);
 }
 
+// Mutation: cells are as small whatever is asked for.
+TEST(Patches, AreFewerWhereSeamsCutLargeCellsAlone) {
+  const Cut cut;
+  Covers covers = make_covers(cut.mesh, cut.shape.positions, cut.atomic.of_triangle);
+  EXPECT_LT(make_patches(cut.mesh, cut.shape.positions, covers, 10 * kLeastCell).patches.size(),
+            cut.tree.patches.size());
+}
+
 TEST(Patches, TheTreeHoldsThePatchesInOrder) {
   const Cut cut;
   std::size_t next = 0;

@@ -112,5 +112,25 @@ TEST(TrialPoses, DecideHowManyCoversAreUsed) {
   EXPECT_GT(observers(tube.shape, tube.rig, {}), observers(tube.shape, tube.rig, {.covers = 1}));
 }
 
+// Where limbs are short, seams of the second cover cut them into too many patches. Mutations: they always cut
+// as much; no trial of less.
+TEST(TrialPoses, DecideHowMuchSeamsCut) {
+  const Spikes spikes(12);
+  const TriangleMesh mesh = spikes.shape.mesh();
+  std::vector<Vec3> end;
+  for (const Vec3& p : spikes.shape.positions)
+    end.push_back(p + 0.05 * Vec3(std::sin(3 * p.y()), std::sin(2 * p.z()), std::sin(4 * p.x())));
+  const auto tests = [&](DrvbcFastOptions options) {
+    const cscd::Setup setup{mesh, spikes.shape.positions, &spikes.rig, elementary_tests().front()};
+    ContactSet found;
+    return *make_drvbc_fast(setup, options)
+                .detector->detect(Motion(spikes.shape.positions, end), nullptr, found)
+                .cull.bvot;
+  };
+  using Clusters = DrvbcFastOptions::Clusters;
+  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_bones}));
+  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_surface}));
+}
+
 }  // namespace
 }  // namespace cscd::fast
