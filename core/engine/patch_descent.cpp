@@ -170,7 +170,9 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
 // Which of some triangles of patch q are not proven apart from triangle `lane` of patch p.
 inline Mask16 PatchDescent::near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane) {
   if (!input_.positions.known()) return wanted;
-  bounds_of_triangles(p);  // so that the last call makes nothing, unless the second has made the newest
+  // Of p first: made after those of q they might take their place. Where those of q take theirs, they are
+  // made once more, elsewhere.
+  bounds_of_triangles(p);
   const TriangleBounds& triangles = bounds_of_triangles(q);
   return near(triangles, wanted, bounds_of_triangles(p), lane);
 }

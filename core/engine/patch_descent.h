@@ -6,7 +6,6 @@
 #include <new>
 #include <span>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "core/detect/culler.h"
