@@ -1,7 +1,7 @@
 #include "core/geometry/triple_product16.h"
 
-#include <gtest/gtest.h>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
