@@ -150,7 +150,7 @@ int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
 
 // With errors so large that bounds decide, and with lengths so small that nothing is known; and the same
 // whether it is known how far positions reach. Mutations: the smallest component taken for the largest; what
-// is not known passed as positive where all of a patch is; all positive where three coefficients are.
+// is not known passed as positive where all of a patch is.
 TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
   struct Case {
     float size, error;  // of lengths; in local units
