@@ -25,16 +25,12 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       own_(tree.patches.size()),
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
-      parent_(tree.nodes.size(), kNone),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle: `look` takes that for granted.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
-  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
-    parent_[node.left()] = parent_[node.right()] = static_cast<std::int32_t>(n);
-  });
   use_covers(kCovers);
 }
 
@@ -189,25 +185,18 @@ void Certificates::label_nodes() {
                                                  : kNone;
       some |= signs.positive | signs.negative;
     }
-    relabel(static_cast<std::size_t>(tree_.leaf[p]), label);
+    label_[static_cast<std::size_t>(tree_.leaf[p])] = label;
     counts_.positive -= count(patch.lanes & ~static_cast<unsigned>(certified_[p][0].positive));
     counts_.negative += count(certified_[p][0].negative);
     counts_.uncertain += count(patch.lanes & ~some);
     if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
-}
-
-// And what is above it.
-void Certificates::relabel(std::size_t n, Label label) {
-  for (;;) {
-    if (std::memcmp(&label_[n], &label, sizeof label) == 0) return;
-    label_[n] = label;
-    if (parent_[n] == kNone) return;
-    n = static_cast<std::size_t>(parent_[n]);
-    const PatchTree::Node& node = tree_.nodes[n];
+  // All inner ones, though few differ from the last interval's: the pass brings them near, one by one the
+  // descent would wait longer for them.
+  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
-    label = left == right ? left : Label{} + kNone;
-  }
+    label_[n] = left == right ? left : Label{} + kNone;
+  });
 }
 
 RadialView Certificates::view() const {

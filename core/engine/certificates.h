@@ -96,7 +96,6 @@ class Certificates {
   bool negative_all_round(std::size_t patch, std::size_t lane, std::size_t cover) const;
   void certify_clear();
   void label_nodes();
-  void relabel(std::size_t node, Label label);
 
   // Most patches are all positive in every cover, from one interval to the next. What is known of them stays.
   enum class State : std::uint8_t {
@@ -128,7 +127,6 @@ class Certificates {
   std::vector<std::array<Own, kCovers>> own_;          // of each patch
   std::vector<State> state_;                           // of each patch; then usual ones up to a whole word
   std::vector<Label> label_;                           // of each node
-  std::vector<std::int32_t> parent_;                   // of each node; kNone of the root
   std::vector<CappedClusters> capped_;
   std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
   RadialCounts counts_;
