@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/bring_near.h"
+
 namespace cscd::fast {
 namespace {
 
@@ -9,10 +11,13 @@ namespace {
 // that the last to end is not waited for long.
 constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
 
+// A descent that made so many tests a patch has met nearly all patches, and so will the next.
+constexpr std::size_t kTestsWhereAllAreMet = 32;
+
 }  // namespace
 
 SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
-    : team_(team), by_thread_(team.threads(), PatchDescent(input)) {
+    : input_(input), team_(team), by_thread_(team.threads(), PatchDescent(input)) {
   if (team.threads() > 1) kept_.resize(kRangesAThread * team.threads());
 }
 
@@ -20,6 +25,7 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
                                  TrianglePairSink& sink) {
   team_.each(by_thread_.size(),
              [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid); });
+  if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) bring_near();
   opened_.assign(1, {0, 0});
   if (kept_.empty()) {
     by_thread_[0].descend(opened_[0], sink);
@@ -32,9 +38,17 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
     });
     join(sink);
   }
-  std::uint64_t tests = 0;
-  for (const PatchDescent& descent : by_thread_) tests += descent.tests();
-  return tests;
+  tests_ = 0;
+  for (const PatchDescent& descent : by_thread_) tests_ += descent.tests();
+  return tests_;
+}
+
+// What a descent asks of pairs of patches that touch.
+void SharedDescent::bring_near() const {
+  cscd::bring_near(std::span(input_.tree.adjacent_offset));
+  cscd::bring_near(std::span(input_.tree.adjacent));
+  cscd::bring_near(std::span(input_.tree.common));
+  if (input_.stars != nullptr) input_.stars->bring_near();
 }
 
 // Level by level.

@@ -30,13 +30,16 @@ class SharedDescent {
       pairs.insert(pairs.end(), block.begin(), block.end());
     }
   };
+  void bring_near() const;
   void open();
   void join(TrianglePairSink& sink);
 
+  const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
   std::deque<Kept> kept_;  // of each range
   std::vector<NodePair> opened_, next_;
+  std::uint64_t tests_ = 0;  // of the last interval
 };
 
 }  // namespace cscd::fast

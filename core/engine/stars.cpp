@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/bring_near.h"
 #include "core/engine/patch_lanes.h"
 
 // Rounding, as in triple_product16.h: edges are off by 2 d + u of themselves. A component of a control vector
@@ -71,6 +72,11 @@ Stars::Stars(const TriangleMesh& mesh) {
     ring_.insert(ring_.end(), ring.begin(), ring.end());
     offset_.push_back(static_cast<std::int32_t>(ring_.size()));
   }
+}
+
+void Stars::bring_near() const {
+  cscd::bring_near(std::span(offset_));
+  cscd::bring_near(std::span(ring_));
 }
 
 bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {

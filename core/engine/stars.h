@@ -22,6 +22,8 @@ class Stars {
 
   // At the vertex, in the interval of these positions. False is no statement.
   bool flat(VertexId vertex, const LocalPositions& positions) const;
+  // For who is going to ask about most vertices.
+  void bring_near() const;
 
  private:
   std::vector<std::int32_t> offset_;  // of each vertex, in `ring_`

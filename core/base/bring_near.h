@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace cscd {
+
+// Reads each cache line of some memory, so that who soon needs all of it at random need not wait for every
+// line by itself. By loads, not by prefetches: a processor may drop those where it does not know the page.
+template <class T>
+void bring_near(std::span<const T> items) {
+  constexpr std::size_t kLine = 64;
+  const std::span<const std::byte> bytes = std::as_bytes(items);
+  for (std::size_t i = 0; i < bytes.size(); i += kLine)
+    static_cast<void>(*static_cast<const volatile std::byte*>(&bytes[i]));
+}
+
+}  // namespace cscd
