@@ -191,8 +191,7 @@ void Certificates::label_nodes() {
     counts_.uncertain += count(patch.lanes & ~some);
     if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
-  // All inner ones, though few differ from the last interval's: the pass brings them near, one by one the
-  // descent would wait longer for them.
+  // Of all inner nodes, though few differ from the last interval's: the descent asks for most of them soon.
   tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = left == right ? left : Label{} + kNone;
