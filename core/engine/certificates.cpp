@@ -191,7 +191,7 @@ void Certificates::label_nodes() {
     counts_.uncertain += count(patch.lanes & ~some);
     if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
-  // Of all inner nodes, though few differ from the last interval's: the descent asks for most of them soon.
+  // Of all inner nodes, though few differ from the last interval's: the descent soon asks for many.
   tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = left == right ? left : Label{} + kNone;
