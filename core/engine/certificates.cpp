@@ -129,30 +129,31 @@ void Certificates::for_each_unusual(const Take& take) const {
 
 void Certificates::certify_all_round() {
   for_each_unusual([&](std::size_t p) {
-    if (state_[p] != State::seen) return;
+    if (state_[p] == State::seen) look_round(p);
+  });
+}
+
+// Of a patch that by itself is not all positive, in all covers but the first, whose triangles go by
+// themselves.
+void Certificates::look_round(std::size_t p) {
+  const Patch& patch = tree_.patches[p];
+  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
+  unsigned any = 0;
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    any |= corners[c] = patch.corners_of(own_[p][c].not_positive);
+  if (any == 0) return;
+  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+    if (state_[q] != State::seen) state_[q] = State::spoiled;
     for (std::size_t c = 1; c < covers_used_; ++c) {
-      if (own_[p][c].not_positive != 0) spoil_round(p, c);
-      for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
-        certified_[p][c].negative |= static_cast<Mask16>(negative_all_round(p, lane, c) << lane);
-      });
+      certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners[c]));
+      not_negative[c] |= common.places(static_cast<Mask16>(~own_[q][c].negative));
     }
   });
-}
-
-void Certificates::spoil_round(std::size_t p, std::size_t c) {
-  const Mask16 corners = tree_.patches[p].corners_of(own_[p][c].not_positive);
-  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
-    certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners));
-    if (state_[q] != State::seen) state_[q] = State::spoiled;
-  });
-}
-
-bool Certificates::negative_all_round(std::size_t p, std::size_t lane, std::size_t c) const {
-  unsigned others = 0;
-  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
-    others |= common.beside(tree_.patches[p], lane) & ~static_cast<unsigned>(own_[q][c].negative);
-  });
-  return others == 0;
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
+      if (!patch.has_corner(lane, not_negative[c]))
+        certified_[p][c].negative |= static_cast<Mask16>(1U << lane);
+    });
 }
 
 void Certificates::certify_clear() {

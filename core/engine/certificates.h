@@ -92,8 +92,7 @@ class Certificates {
   void forget();
   void make_usual(std::size_t patch);
   void certify_all_round();
-  void spoil_round(std::size_t patch, std::size_t cover);
-  bool negative_all_round(std::size_t patch, std::size_t lane, std::size_t cover) const;
+  void look_round(std::size_t patch);
   void certify_clear();
   void label_nodes();
 

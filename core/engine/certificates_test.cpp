@@ -140,8 +140,8 @@ struct Case {
 constexpr Case kCases[] = {
     {false, Scene::Bones::chain}, {true, Scene::Bones::chain}, {false, Scene::Bones::sixths}};
 
-// Mutations: spoil_round clears the lane that is not positive instead of all round it; needed compares signs
-// whatever the cluster, or drops what different covers certify; negative_all_round does not look around.
+// Mutations: look_round clears the lane that is not positive instead of all round it; needed compares signs
+// whatever the cluster, or drops what different covers certify; look_round asks no neighbour for negatives.
 TEST(Certificates, APairIsDroppedOnlyByOneField) {
   for (const auto& [inside_out, bones] : kCases)
     for (int seed = 1; seed <= 2; ++seed) {

@@ -28,6 +28,10 @@ struct alignas(64) Patch {
     });
     return static_cast<Mask16>(places);
   }
+  // Whether a triangle has a corner at one of some places.
+  bool has_corner(std::size_t lane, Mask16 places) const {
+    return ((places >> corner[0][lane] | places >> corner[1][lane] | places >> corner[2][lane]) & 1) != 0;
+  }
 };
 static_assert(sizeof(Patch) == 2 * 64);
 
@@ -43,15 +47,22 @@ struct Common {
 
   // Triangles that have one of the vertices at some places. All places at once: which of them are asked for
   // no processor foresees.
-  Mask16 lanes(Mask16 places) const {
-    using Masks = Mask16 __attribute__((vector_size(sizeof at)));
-    constexpr Masks kBit = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
-                            1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
-    Masks found;
-    std::memcpy(&found, at.data(), sizeof found);
-    found = ((Masks{} + places) & kBit) != 0 ? found : Masks{};
+  Mask16 lanes(Mask16 places) const { return any_of(((Rows{} + places) & kPlace) != 0 ? rows() : Rows{}); }
+  // Places of the vertices that some of the triangles have.
+  Mask16 places(Mask16 lanes) const { return any_of((rows() & lanes) != 0 ? kPlace : Rows{}); }
+
+ private:
+  using Rows = Mask16 __attribute__((vector_size(2 * kLanes16)));
+  static constexpr Rows kPlace = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
+                                  1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
+  Rows rows() const {
+    Rows rows;
+    std::memcpy(&rows, at.data(), sizeof rows);
+    return rows;
+  }
+  static Mask16 any_of(Rows rows) {
     std::uint64_t fours[4];
-    std::memcpy(fours, &found, sizeof fours);
+    std::memcpy(fours, &rows, sizeof fours);
     std::uint64_t any = (fours[0] | fours[1]) | (fours[2] | fours[3]);
     any |= any >> 32;
     return static_cast<Mask16>(any | any >> 16);

@@ -71,6 +71,7 @@ TEST(Patches, AllTrianglesWithACommonVertexAreFound) {
         const Mask16 lanes = common.beside(patch, l);
         EXPECT_EQ(common.lanes(patch.corners_of(1U << l)), lanes);
         for (std::size_t m = 0; lanes >> m != 0; ++m) {
+          EXPECT_EQ(patch.has_corner(l, common.places(static_cast<Mask16>(1U << m))), (lanes >> m & 1) != 0);
           if (!(lanes >> m & 1)) continue;
           EXPECT_TRUE(found.insert(cut.tree.triangles[q][m]).second);
         }
