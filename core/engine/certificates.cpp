@@ -151,7 +151,7 @@ void Certificates::look_round(std::size_t p) {
   });
   for (std::size_t c = 1; c < covers_used_; ++c)
     for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
-      if (!patch.has_corner(lane, not_negative[c]))
+      if ((patch.corners_of(1U << lane) & not_negative[c]) == 0)
         certified_[p][c].negative |= static_cast<Mask16>(1U << lane);
     });
 }

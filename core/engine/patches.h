@@ -28,10 +28,6 @@ struct alignas(64) Patch {
     });
     return static_cast<Mask16>(places);
   }
-  // Whether a triangle has a corner at one of some places.
-  bool has_corner(std::size_t lane, Mask16 places) const {
-    return ((places >> corner[0][lane] | places >> corner[1][lane] | places >> corner[2][lane]) & 1) != 0;
-  }
 };
 static_assert(sizeof(Patch) == 2 * 64);
 
