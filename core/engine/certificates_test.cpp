@@ -137,8 +137,10 @@ struct Case {
   bool inside_out;
   Scene::Bones bones;
 };
-constexpr Case kCases[] = {
-    {false, Scene::Bones::chain}, {true, Scene::Bones::chain}, {false, Scene::Bones::sixths}};
+constexpr Case kCases[] = {{false, Scene::Bones::chain},
+                           {true, Scene::Bones::chain},
+                           {false, Scene::Bones::sixths},
+                           {true, Scene::Bones::sixths}};
 
 // Mutations: look_round clears the lane that is not positive instead of all round it; needed compares signs
 // whatever the cluster, or drops what different covers certify; look_round asks no neighbour for negatives.
