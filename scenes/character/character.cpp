@@ -27,6 +27,9 @@ bool usable(const Vec3& x) {
 bool usable(const Transform& map) {
   return usable(map.column[0]) && usable(map.column[1]) && usable(map.column[2]) && usable(map.origin);
 }
+bool usable(double x) {
+  return std::isfinite(x);
+}
 bool usable(const Quaternion& q) {
   return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
 }
@@ -55,6 +58,16 @@ void check_part(const Character& character, const Part& part) {
       refuse(where + ", joint '" + character.nodes[static_cast<std::size_t>(joint.node)].name +
              "': its bind matrix is not finite; repair it");
   }
+  for (const MorphTarget& target : part.targets) {
+    const std::string target_where = where + ", morph target '" + target.name + "'";
+    if (target.displacements.size() != vertices)
+      refuse(target_where + ": has " + std::to_string(target.displacements.size()) + " displacements for " +
+             std::to_string(vertices) + " vertices; repair it");
+    if (!std::isfinite(target.weight)) refuse(target_where + ": its weight is not finite; repair it");
+    for (std::size_t v = 0; v < vertices; ++v)
+      if (!usable(target.displacements[v]))
+        refuse(target_where + ", vertex " + std::to_string(v) + ": is not finite, or beyond 1e15; repair it");
+  }
   if (part.first.size() != vertices + 1 || part.first.front() != 0 ||
       part.first.back() != part.influences.size() || !std::is_sorted(part.first.begin(), part.first.end()))
     refuse(where + ": its influences are not one list a vertex; repair it");
@@ -75,17 +88,69 @@ void check_part(const Character& character, const Part& part) {
 template <class Value>
 void check_keys(const std::vector<Key<Value>>& keys, const std::string& where) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (!std::isfinite(keys[i].time) || !usable(keys[i].value))
+    const bool tangents = keys[i].next != Between::cubic || usable(keys[i].leaving);
+    const bool arrives = i == 0 || keys[i - 1].next != Between::cubic || usable(keys[i].arriving);
+    if (!std::isfinite(keys[i].time) || !usable(keys[i].value) || !tangents || !arrives)
       refuse(where + ", key " + std::to_string(i) + ": is not finite; repair the animation");
     if (i > 0 && !(keys[i].time > keys[i - 1].time))
       refuse(where + ", key " + std::to_string(i) + ": does not come later than the one before; repair it");
   }
 }
 
+void check_components(const Components& components, const std::string& where) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    check_keys(components.axis[k], where);
+    if (!std::isfinite(components.rest[k])) refuse(where + ": is not finite at rest; repair the animation");
+  }
+}
+
+std::size_t keys_of(const Components& components) {
+  return components.axis[0].size() + components.axis[1].size() + components.axis[2].size();
+}
+
+std::size_t keys_of(const Animation& animation) {
+  std::size_t keys = 0;
+  for (const Channel& channel : animation.channels)
+    keys += channel.moves.size() + channel.rotations.size() + channel.scales.size() +
+            keys_of(channel.move_components) + keys_of(channel.scale_components) +
+            keys_of(channel.angles.degrees);
+  for (const MorphChannel& morph : animation.morphs)
+    for (const Curve& curve : morph.weights) keys += curve.size();
+  return keys;
+}
+
+void check_animation(const Character& character, const Animation& animation) {
+  const std::string where = "clip '" + animation.name + "'";
+  if (!std::isfinite(animation.start + animation.seconds) || animation.seconds < 0)
+    refuse(where + ": its length is not a number of seconds; repair it");
+  for (const Channel& channel : animation.channels) {
+    require_node(character, channel.node, where);
+    const std::string node =
+        where + ", node '" + character.nodes[static_cast<std::size_t>(channel.node)].name + "'";
+    check_keys(channel.moves, node);
+    check_keys(channel.rotations, node);
+    check_keys(channel.scales, node);
+    check_components(channel.move_components, node);
+    check_components(channel.scale_components, node);
+    check_components(channel.angles.degrees, node);
+    std::array<int, 3> axes = channel.angles.order;
+    std::sort(axes.begin(), axes.end());
+    if (axes != std::array{0, 1, 2}) refuse(node + ": its order of rotation is unknown; repair it");
+  }
+  for (const MorphChannel& morph : animation.morphs) {
+    const auto part = static_cast<std::size_t>(morph.part);
+    if (morph.part < 0 || part >= character.parts.size() ||
+        morph.weights.size() != character.parts[part].targets.size())
+      refuse(where + ": its weights fit no mesh's morph targets; repair it");
+    for (const Curve& curve : morph.weights)
+      check_keys(curve, where + ", weights of mesh '" + character.parts[part].name + "'");
+  }
+}
+
 }  // namespace
 
 void validate(const Character& character, const CharacterLimits& limits) {
-  std::size_t vertices = 0, triangles = 0, influences = 0, keys = 0;
+  std::size_t vertices = 0, triangles = 0, influences = 0, displacements = 0, keys = 0;
   require_count("nodes", character.nodes.size(), limits.nodes);
   require_count("meshes", character.parts.size(), limits.parts);
   require_count("clips", character.animations.size(), limits.animations);
@@ -93,16 +158,21 @@ void validate(const Character& character, const CharacterLimits& limits) {
     vertices += part.positions.size();
     triangles += part.triangles.size();
     influences += part.influences.size();
+    displacements += part.targets.size() * part.positions.size();
   }
   require_count("vertices", vertices, limits.vertices);
   require_count("triangles", triangles, limits.triangles);
   require_count("weights", influences, limits.influences);
+  require_count("displacements of morph targets", displacements, limits.displacements);
 
   for (std::size_t n = 0; n < character.nodes.size(); ++n) {
     const Node& node = character.nodes[n];
     if (node.parent < -1 || node.parent >= static_cast<int>(n) || (node.parent == -1) != (n == 0))
       refuse("node '" + node.name + "': has no parent before it; nodes must form one tree");
     if (!usable(node.local))
+      refuse("node '" + node.name + "': its transform is not finite, or beyond 1e15; repair it");
+    if (node.written &&
+        !(usable(node.written->move) && usable(node.written->rotation) && usable(node.written->scale)))
       refuse("node '" + node.name + "': its transform is not finite, or beyond 1e15; repair it");
   }
   for (const Part& part : character.parts) check_part(character, part);
@@ -114,19 +184,9 @@ void validate(const Character& character, const CharacterLimits& limits) {
   require_count("bones", joints.size(), limits.joints);
 
   for (const Animation& animation : character.animations) {
-    const std::string where = "clip '" + animation.name + "'";
-    if (!std::isfinite(animation.start + animation.seconds) || animation.seconds < 0)
-      refuse(where + ": its length is not a number of seconds; repair it");
-    for (const Channel& channel : animation.channels) {
-      require_node(character, channel.node, where);
-      keys += channel.moves.size() + channel.rotations.size() + channel.scales.size();
-      require_count("animation keys", keys, limits.keys);
-      const std::string node =
-          where + ", node '" + character.nodes[static_cast<std::size_t>(channel.node)].name + "'";
-      check_keys(channel.moves, node);
-      check_keys(channel.rotations, node);
-      check_keys(channel.scales, node);
-    }
+    keys += keys_of(animation);
+    require_count("animation keys", keys, limits.keys);
+    check_animation(character, animation);
   }
 }
 

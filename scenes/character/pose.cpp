@@ -10,6 +10,9 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
+double between(double a, double b, double s) {
+  return (1 - s) * a + s * b;
+}
 Vec3 between(const Vec3& a, const Vec3& b, double s) {
   return (1 - s) * a + s * b;
 }
@@ -17,14 +20,59 @@ Quaternion between(const Quaternion& a, const Quaternion& b, double s) {
   return slerp(a, b, s);
 }
 
+// The cubic from p with slope m to q with slope n, both slopes over the whole way (glTF 2.0, appendix C).
+double hermite(double p, double m, double q, double n, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * m + (3 * s2 - 2 * s3) * q + (s3 - s2) * n;
+}
+double cubic(const Key<double>& a, const Key<double>& b, double s) {
+  const double length = b.time - a.time;
+  return hermite(a.value, length * a.leaving, b.value, length * b.arriving, s);
+}
+Vec3 cubic(const Key<Vec3>& a, const Key<Vec3>& b, double s) {
+  const double length = b.time - a.time;
+  Vec3 out;
+  for (int k = 0; k < 3; ++k)
+    out[k] = hermite(a.value[k], length * a.leaving[k], b.value[k], length * b.arriving[k], s);
+  return out;
+}
+Quaternion cubic(const Key<Quaternion>& a, const Key<Quaternion>& b, double s) {
+  const double length = b.time - a.time;
+  const auto along = [&](double Quaternion::*x) {
+    return hermite(a.value.*x, length * a.leaving.*x, b.value.*x, length * b.arriving.*x, s);
+  };
+  return normalised(
+      {along(&Quaternion::w), along(&Quaternion::x), along(&Quaternion::y), along(&Quaternion::z)});
+}
+
 template <class Value>
 Value sample(const std::vector<Key<Value>>& keys, double seconds) {
   const auto next = std::upper_bound(keys.begin(), keys.end(), seconds,
                                      [](double time, const Key<Value>& key) { return time < key.time; });
   if (next == keys.begin()) return keys.front().value;
-  if (next == keys.end()) return keys.back().value;
   const Key<Value>& before = *(next - 1);
-  return between(before.value, next->value, (seconds - before.time) / (next->time - before.time));
+  if (next == keys.end() || before.next == Between::constant) return before.value;
+  const double s = (seconds - before.time) / (next->time - before.time);
+  return before.next == Between::cubic ? cubic(before, *next, s) : between(before.value, next->value, s);
+}
+
+Vec3 sample(const Components& components, double seconds) {
+  Vec3 out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[static_cast<int>(k)] =
+        components.axis[k].empty() ? components.rest[k] : sample(components.axis[k], seconds);
+  return out;
+}
+
+Quaternion sample(const EulerAngles& angles, double seconds) {
+  return from_euler(sample(angles.degrees, seconds), angles.order);
+}
+
+// As the file writes it, or taken out of the map at rest where the file gives nothing else.
+ScaleTurnMove parts_at_rest(const Node& node) {
+  if (node.written) return *node.written;
+  const Parts rest = parts_of(node.local);
+  return {rest.move, rest.rotation, Vec3(rest.rest[0].x(), rest.rest[1].y(), rest.rest[2].z())};
 }
 
 Pose world_of(const Character& character, const std::vector<Transform>& local) {
@@ -73,14 +121,42 @@ Pose pose_at(const Character& character, const Animation& animation, double seco
   std::vector<Transform> local;
   for (const Node& node : character.nodes) local.push_back(node.local);
   for (const Channel& channel : animation.channels) {
-    const Parts rest = parts_of(character.nodes[at(channel.node)].local);
-    const Vec3 scale(rest.rest[0].x(), rest.rest[1].y(), rest.rest[2].z());
-    local[at(channel.node)] =
-        from_parts(channel.moves.empty() ? rest.move : sample(channel.moves, seconds),
-                   channel.rotations.empty() ? rest.rotation : sample(channel.rotations, seconds),
-                   channel.scales.empty() ? scale : sample(channel.scales, seconds));
+    const ScaleTurnMove rest = parts_at_rest(character.nodes[at(channel.node)]);
+    Vec3 move = rest.move, scale = rest.scale;
+    Quaternion rotation = rest.rotation;
+    if (!channel.moves.empty()) move = sample(channel.moves, seconds);
+    if (!channel.move_components.empty()) move = sample(channel.move_components, seconds);
+    if (!channel.rotations.empty()) rotation = sample(channel.rotations, seconds);
+    if (!channel.angles.degrees.empty()) rotation = sample(channel.angles, seconds);
+    if (!channel.scales.empty()) scale = sample(channel.scales, seconds);
+    if (!channel.scale_components.empty()) scale = sample(channel.scale_components, seconds);
+    local[at(channel.node)] = from_parts(move, rotation, scale);
   }
   return world_of(character, local);
+}
+
+MorphWeights rest_weights(const Character& character) {
+  MorphWeights weights;
+  for (const Part& part : character.parts) {
+    std::vector<double>& own = weights.emplace_back();
+    for (const MorphTarget& target : part.targets) own.push_back(target.weight);
+  }
+  return weights;
+}
+
+MorphWeights weights_at(const Character& character, const Animation& animation, double seconds) {
+  MorphWeights weights = rest_weights(character);
+  for (const MorphChannel& morph : animation.morphs)
+    for (std::size_t t = 0; t < morph.weights.size(); ++t)
+      if (!morph.weights[t].empty()) weights[at(morph.part)][t] = sample(morph.weights[t], seconds);
+  return weights;
+}
+
+MorphWeights blend(const MorphWeights& a, const MorphWeights& b, double s) {
+  MorphWeights weights = a;
+  for (std::size_t p = 0; p < a.size(); ++p)
+    for (std::size_t t = 0; t < a[p].size(); ++t) weights[p][t] = (1 - s) * a[p][t] + s * b[p][t];
+  return weights;
 }
 
 Pose blend(const Character& character, const Pose& a, const Pose& b, double s) {
@@ -101,14 +177,17 @@ Pose blend(const Character& character, const Pose& a, const Pose& b, double s) {
   return world_of(character, local);
 }
 
-void skin(const Character& character, const Pose& pose, std::vector<Vec3>& out) {
+void skin(const Character& character, const Pose& pose, const MorphWeights& weights, std::vector<Vec3>& out) {
   out.clear();
   std::vector<Transform> moved;  // by joint of the part
-  for (const Part& part : character.parts) {
+  for (std::size_t p = 0; p < character.parts.size(); ++p) {
+    const Part& part = character.parts[p];
     moved.clear();
     for (const Joint& joint : part.joints) moved.push_back(composed(pose[at(joint.node)], joint.offset));
     for (std::size_t v = 0; v < part.positions.size(); ++v) {
-      const Vec3& x = part.positions[v];
+      Vec3 x = part.positions[v];
+      for (std::size_t t = 0; t < part.targets.size(); ++t)
+        if (weights[p][t] != 0) x += weights[p][t] * part.targets[t].displacements[v];
       if (part.first[v] == part.first[v + 1]) {
         out.push_back(pose[at(part.node)](x));
         continue;
@@ -122,6 +201,10 @@ void skin(const Character& character, const Pose& pose, std::vector<Vec3>& out) 
       out.push_back(sum);
     }
   }
+}
+
+void skin(const Character& character, const Pose& pose, std::vector<Vec3>& out) {
+  skin(character, pose, rest_weights(character), out);
 }
 
 }  // namespace cscd::scenes

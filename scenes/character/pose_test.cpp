@@ -58,6 +58,82 @@ TEST(Pose, PartsWithoutKeysStayAtRest) {
   EXPECT_EQ(pose[2].origin, rest_pose(tube)[2].origin);
 }
 
+// One node that moves along x by the keys given.
+double moved_to(std::vector<Key<Vec3>> keys, double seconds) {
+  Character tube = bending_tube();
+  tube.animations[0].channels = {{0, std::move(keys), {}, {}}};
+  return pose_at(tube, tube.animations[0], seconds)[0].origin.x();
+}
+
+TEST(Pose, KeysStayOrGoStraightOrAlongACubicAsTheySay) {
+  const Vec3 one(1, 0, 0), two(2, 0, 0), flat = Vec3::Zero(), steep(3, 0, 0);
+  EXPECT_EQ(moved_to({{0, one, Between::constant, flat, flat}, {2, two}}, 1.999), 1);
+  EXPECT_EQ(moved_to({{0, one, Between::constant, flat, flat}, {2, two}}, 2), 2);
+  EXPECT_EQ(moved_to({{0, one, Between::line, flat, flat}, {2, two}}, 1), 1.5);
+  // Flat at both ends: 3 s^2 - 2 s^3 of the way. With a slope of 3 a second at the start, over two seconds:
+  // (s^3 - 2 s^2 + s) times 6 beside that.
+  const Key<Vec3> end{2, two, Between::line, flat, flat};
+  EXPECT_NEAR(moved_to({{0, one, Between::cubic, flat, flat}, end}, 0.5), 1 + 3 / 16.0 - 2 / 64.0, kNear);
+  EXPECT_NEAR(moved_to({{0, one, Between::cubic, flat, steep}, end}, 0.5),
+              1 + 3 / 16.0 - 2 / 64.0 + 6 * (1 / 64.0 - 2 / 16.0 + 1 / 4.0), kNear);
+}
+
+TEST(Pose, CubicRotationsAreNormalised) {
+  Character tube = bending_tube();
+  std::vector<Key<Quaternion>>& keys = tube.animations[0].channels[0].rotations;
+  const Quaternion none{0, 0, 0, 0};
+  for (Key<Quaternion>& key : keys) key = {key.time, key.value, Between::cubic, none, none};
+  const Vec3 turned = pose_at(tube, tube.animations[0], 0.25)[4].column[0];
+  // The weighted sum of both quaternions, 3 s^2 - 2 s^3 = 0.15625 of the way, as one rotation.
+  const double half = std::sqrt(0.5), angle = 2 * std::atan2(0.15625 * half, 0.84375 + 0.15625 * half);
+  EXPECT_LT((turned - Vec3(std::cos(angle), std::sin(angle), 0)).norm(), 1e-9);
+}
+
+TEST(Pose, ComponentsHaveKeysOfTheirOwnAndElseRest) {
+  Character tube = bending_tube();
+  Channel channel{4, {}, {}, {}};
+  channel.move_components = {{Curve{{0, 1.0}, {4, 5.0}}, {}, Curve{{1, 0.0}, {2, 8.0}}}, {9, 7, 9}};
+  channel.angles = {{{Curve{}, Curve{}, Curve{{0, 0.0}, {1, 90.0}}}, {90, 0, 0}}, {0, 1, 2}};
+  tube.animations[0].channels = {channel};
+  const Transform upper = pose_at(tube, tube.animations[0], 1.5)[4];
+  EXPECT_LT((upper.origin - Vec3(1 + 2.5, 7, 5 + 4)).norm(), kNear);
+  // First a quarter turn about x, then one about z: z goes to -y, and that to x.
+  EXPECT_LT((upper.column[2] - Vec3(1, 0, 0)).norm(), 1e-9);
+}
+
+// No rotation, and no matrix, gives [-1, 1, 1] back once it has been multiplied out.
+TEST(Pose, MirroredScalesAreKeptAsWritten) {
+  Character tube = bending_tube();
+  tube.nodes[4].written = ScaleTurnMove{{1, 0, 0}, {}, {1, -1, -1}};
+  tube.nodes[4].local = from_parts({1, 0, 0}, {}, {1, -1, -1});
+  tube.animations[0].channels = {{4, {{0, Vec3(1, 0, 0)}}, {}, {}}};
+  EXPECT_EQ(pose_at(tube, tube.animations[0], 0)[4].column, rest_pose(tube)[4].column);
+  const double half = std::sqrt(0.5);
+  tube.animations[0].channels = {{4, {}, {{0, Quaternion{half, 0, 0, half}}}, {}}};
+  const Transform turned = pose_at(tube, tube.animations[0], 0)[4];
+  EXPECT_LT((turned.column[1] - Vec3(1, 0, 0)).norm(), kNear);
+  EXPECT_LT((turned.column[2] - Vec3(0, 0, -1)).norm(), kNear);
+}
+
+TEST(Pose, MorphTargetsAreAddedBeforeJointsMove) {
+  Character tube = bending_tube();
+  Part& part = tube.parts[0];
+  part.targets = {{"wide", std::vector<Vec3>(part.positions.size(), Vec3(0, 1, 0)), 0.25},
+                  {"high", std::vector<Vec3>(part.positions.size(), Vec3(0, 0, 2)), 0}};
+  tube.animations[0].morphs = {{0, {Curve{}, Curve{{0, 0.0}, {1, 1.0}}}}};
+  validate(tube, {});
+  std::vector<Vec3> out;
+  skin(tube, pose_at(tube, tube.animations[0], 1), weights_at(tube, tube.animations[0], 0.5), out);
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    const Vec3 x = part.positions[v] + Vec3(0, 0.25, 1);
+    if (part.positions[v].x() > 2.6) {
+      EXPECT_LT((out[v] - Vec3(2 - x.y(), x.x() - 2, x.z() + 5)).norm(), kNear);
+    }
+  }
+  skin(tube, rest_pose(tube), out);
+  EXPECT_LT((out[3] - part.positions[3] - Vec3(0, 0.25, 5)).norm(), kNear);
+}
+
 TEST(Pose, VerticesWithoutWeightsFollowTheirNode) {
   Character tube = bending_tube();
   Part& part = tube.parts[0];
@@ -168,6 +244,18 @@ TEST(Validate, NamesWhatIsWrong) {
   EXPECT_NE(refusal([](Character& c) { c.animations[0].channels[0].rotations[1].time = 0; }).find("key 1"),
             std::string::npos);
   EXPECT_NE(refusal([](Character& c) { c.animations[0].channels[0].node = 77; }).find("node 77"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) {
+              c.parts[0].targets = {{"smile", {Vec3::Zero()}}};
+            }).find("'smile': has 1 displacements"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Character& c) {
+              c.animations[0].morphs = {{0, {Curve{}}}};
+            }).find("morph targets"),
+            std::string::npos);
+  EXPECT_NE(refusal([&](Character& c) {
+              c.animations[0].channels[0].angles.degrees.axis[1] = {{0, nan}};
+            }).find("key 0"),
             std::string::npos);
 }
 

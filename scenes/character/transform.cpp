@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scenes/shape/circle.h"
+
 namespace cscd::scenes {
 namespace {
 
@@ -11,6 +13,13 @@ double dot(const Quaternion& a, const Quaternion& b) {
 
 Quaternion weighted(double s, const Quaternion& a, double t, const Quaternion& b) {
   return {s * a.w + t * b.w, s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
+}
+
+// The rotation `after` what `before` does.
+Quaternion product(const Quaternion& after, const Quaternion& before) {
+  const Quaternion &p = after, &q = before;
+  return {p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+          p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
 std::array<Vec3, 3> columns_of(const Quaternion& q) {
@@ -82,6 +91,17 @@ Quaternion slerp(const Quaternion& a, const Quaternion& b, double s) {
     s = s < 0.5 ? 2 * s : 2 * s - 1;
   }
   return normalised(weighted(1 - s, low, s, high));
+}
+
+Quaternion from_euler(const Vec3& degrees, const std::array<int, 3>& order) {
+  Quaternion q;
+  for (const int axis : order) {
+    const CirclePoint half = circle_point(degrees[axis] / 720);
+    Quaternion turn{half.cosine, 0, 0, 0};
+    (axis == 0 ? turn.x : axis == 1 ? turn.y : turn.z) = half.sine;
+    q = product(turn, q);
+  }
+  return normalised(q);
 }
 
 Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& scale) {

@@ -36,6 +36,9 @@ Quaternion normalised(const Quaternion& q);
 // SIGGRAPH 1985), by halving the way until it is straight to 1e-12: square roots only, no sine.
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double s);
 
+// Turns by `degrees` about the axes x, y and z; `order` lists these axes (0 to 2) in the order of turning.
+Quaternion from_euler(const Vec3& degrees, const std::array<int, 3>& order);
+
 // Scale, then rotate, then move.
 Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& scale);
 
