@@ -1,0 +1,47 @@
+#include "core/detect/crossings.h"
+
+#include <algorithm>
+#include <cassert>
+#include <iterator>
+
+namespace cscd {
+namespace {
+
+std::span<const TriangleId> triangles_with_first(const TriangleMesh& mesh, const FeaturePair& pair) {
+  if (pair.kind == FeaturePair::Kind::vertex_face) return mesh.triangles_at(VertexId{pair.a});
+  return mesh.triangles_at(EdgeId{pair.a});
+}
+
+}  // namespace
+
+bool Crossings::contains(const TrianglePair& pair) const {
+  return std::binary_search(pairs.begin(), pairs.end(), pair);
+}
+
+std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
+  const TriangleId face{pair.b};
+  const std::span<const TriangleId> others =
+      pair.kind == FeaturePair::Kind::vertex_face ? std::span(&face, 1) : mesh.triangles_at(EdgeId{pair.b});
+  std::vector<TrianglePair> out;
+  for (const TriangleId s : triangles_with_first(mesh, pair))
+    for (const TriangleId t : others)
+      if (s != t) out.emplace_back(std::min(s, t), std::max(s, t));
+  return out;
+}
+
+bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair) {
+  if (crossings.pairs.empty()) return false;
+  const std::vector<TrianglePair> both = carriers(mesh, pair);
+  return std::any_of(both.begin(), both.end(), [&](const TrianglePair& p) { return crossings.contains(p); });
+}
+
+Crossings without(const Crossings& crossings, const Crossings& known) {
+  assert(crossings.all_kept());
+  Crossings rest;
+  std::set_difference(crossings.pairs.begin(), crossings.pairs.end(), known.pairs.begin(), known.pairs.end(),
+                      std::back_inserter(rest.pairs));
+  rest.total = rest.pairs.size();
+  return rest;
+}
+
+}  // namespace cscd

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/detect/contact.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd {
+
+// Two different triangles of one mesh, the smaller number first.
+using TrianglePair = std::pair<TriangleId, TriangleId>;
+
+// The pairs of triangles that cross in one pose: pairs that meet outside the vertices and edges they share.
+struct Crossings {
+  std::vector<TrianglePair> pairs;  // sorted; all of them, unless there are more than the caller wanted kept
+  std::size_t total = 0;
+
+  bool all_kept() const { return pairs.size() == total; }
+  bool contains(const TrianglePair& pair) const;
+};
+
+// The pairs of triangles that carry a feature pair: one triangle has the first feature, the other the second.
+std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& pair);
+
+// Does one of the crossing pairs carry the feature pair?
+bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair);
+
+// `crossings` without the pairs that are also in `known`. `crossings.total` counts what stays, so all pairs
+// of `crossings` have to be kept.
+Crossings without(const Crossings& crossings, const Crossings& known);
+
+}  // namespace cscd
