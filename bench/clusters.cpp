@@ -23,6 +23,7 @@ void clusters(const ClusterOptions& options) {
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
   OutputFile output(options.output, options.force);
   Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   if (strategy == nullptr) strategy = &default_strategy(input);
   if (options.frame >= input.clip->interval_count())
     throw InputError("--frame " + std::to_string(options.frame) + ": " + options.input +

@@ -13,6 +13,7 @@ struct ExitStatus {
   int code;
 };
 inline constexpr ExitStatus kVerificationFailed{1};
+inline constexpr ExitStatus kContactFound{3};  // query --fail-on-contact
 
 void add_query(CLI::App& app);
 void add_inspect(CLI::App& app);

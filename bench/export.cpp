@@ -23,6 +23,7 @@ void export_frames(const ExportOptions& options) {
     throw InputError(options.output +
                      ": exists already; choose another name, or ask to overwrite with --force");
   const Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
   scenes::copy_frames(*input.clip, writer);
   writer.finish();

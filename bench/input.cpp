@@ -54,12 +54,13 @@ Input open_input(const std::string& name, const ModelOptions& options) {
                      "files (--clip, --fps, ...)");
   std::unique_ptr<scenes::ClipSource> clip;
   std::optional<scenes::ImportReport> import;
+  std::optional<scenes::SourceMap> sources;
   if (model) {
     ImportedModel imported = import_model(name, options);
     scenes::limit_memory(options.answer_memory_mib << 20);
     clip = std::move(imported.clip);
     import = std::move(imported.report);
-    std::printf("%s (%s)\n%s", name.c_str(), import->format.c_str(), import_text(*import).c_str());
+    sources = std::move(imported.sources);
   } else if (is_point_cache(name)) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
   } else {
@@ -70,7 +71,14 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::optional<Rig> rig = scenes::rig_of(*clip);
   const scenes::FrameView first = clip->load_frame(0);
   std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-  return {name, std::move(clip), std::move(mesh), std::move(reference), std::move(rig), std::move(import)};
+  return {name,           std::move(clip),   std::move(mesh),   std::move(reference),
+          std::move(rig), std::move(import), std::move(sources)};
+}
+
+void say_what_was_read(const Input& input, std::FILE* to) {
+  if (input.import)
+    std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
+                 import_text(*input.import).c_str());
 }
 
 IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {

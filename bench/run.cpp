@@ -127,6 +127,7 @@ bool run_one(RunOptions options, OutputFile& output) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
   Input input = open_input(options.scene, options.model);
+  say_what_was_read(input, stdout);
   input.threads = options.threads;
   IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   if (options.smoke) {

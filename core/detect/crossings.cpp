@@ -14,15 +14,15 @@ std::span<const TriangleId> triangles_with_first(const TriangleMesh& mesh, const
 
 }  // namespace
 
-bool Crossings::contains(const TrianglePair& pair) const {
+bool Crossings::contains(const CrossingPair& pair) const {
   return std::binary_search(pairs.begin(), pairs.end(), pair);
 }
 
-std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
+std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
   const TriangleId face{pair.b};
   const std::span<const TriangleId> others =
       pair.kind == FeaturePair::Kind::vertex_face ? std::span(&face, 1) : mesh.triangles_at(EdgeId{pair.b});
-  std::vector<TrianglePair> out;
+  std::vector<CrossingPair> out;
   for (const TriangleId s : triangles_with_first(mesh, pair))
     for (const TriangleId t : others)
       if (s != t) out.emplace_back(std::min(s, t), std::max(s, t));
@@ -31,8 +31,8 @@ std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& 
 
 bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair) {
   if (crossings.pairs.empty()) return false;
-  const std::vector<TrianglePair> both = carriers(mesh, pair);
-  return std::any_of(both.begin(), both.end(), [&](const TrianglePair& p) { return crossings.contains(p); });
+  const std::vector<CrossingPair> both = carriers(mesh, pair);
+  return std::any_of(both.begin(), both.end(), [&](const CrossingPair& p) { return crossings.contains(p); });
 }
 
 Crossings without(const Crossings& crossings, const Crossings& known) {

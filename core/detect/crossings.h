@@ -10,19 +10,19 @@
 namespace cscd {
 
 // Two different triangles of one mesh, the smaller number first.
-using TrianglePair = std::pair<TriangleId, TriangleId>;
+using CrossingPair = std::pair<TriangleId, TriangleId>;
 
 // The pairs of triangles that cross in one pose: pairs that meet outside the vertices and edges they share.
 struct Crossings {
-  std::vector<TrianglePair> pairs;  // sorted; all of them, unless there are more than the caller wanted kept
+  std::vector<CrossingPair> pairs;  // sorted; all of them, unless there are more than the caller wanted kept
   std::size_t total = 0;
 
   bool all_kept() const { return pairs.size() == total; }
-  bool contains(const TrianglePair& pair) const;
+  bool contains(const CrossingPair& pair) const;
 };
 
 // The pairs of triangles that carry a feature pair: one triangle has the first feature, the other the second.
-std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& pair);
+std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair);
 
 // Does one of the crossing pairs carry the feature pair?
 bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair);

@@ -52,7 +52,7 @@ struct Frame {
 
 }  // namespace
 
-bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const TrianglePair& pair) {
+bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair) {
   const Frame frame{mesh, positions};
   return frame.reaches(pair.first, pair.second) || frame.reaches(pair.second, pair.first);
 }
@@ -68,15 +68,15 @@ void EmbeddingTest::search(std::span<const Vec3> positions, const Found& found) 
   const auto skip_once_done = [&](NodeIndex, NodeIndex) { return done; };
   const auto check = [&](NodeIndex a, NodeIndex b) {
     const TriangleId s = tree_.triangle(a), t = tree_.triangle(b);
-    const TrianglePair pair(std::min(s, t), std::max(s, t));
+    const CrossingPair pair(std::min(s, t), std::max(s, t));
     if (triangles_meet(mesh_, positions, pair)) done = !found(pair);
   };
   self_descent(tree_, bounds_, 0, is_leaf, skip_once_done, check);
 }
 
-std::optional<TrianglePair> EmbeddingTest::find_intersection(std::span<const Vec3> positions) {
-  std::optional<TrianglePair> first;
-  search(positions, [&](const TrianglePair& pair) {
+std::optional<CrossingPair> EmbeddingTest::find_intersection(std::span<const Vec3> positions) {
+  std::optional<CrossingPair> first;
+  search(positions, [&](const CrossingPair& pair) {
     first = pair;
     return false;
   });
@@ -85,7 +85,7 @@ std::optional<TrianglePair> EmbeddingTest::find_intersection(std::span<const Vec
 
 Crossings EmbeddingTest::find_all(std::span<const Vec3> positions, std::size_t most) {
   Crossings all;
-  search(positions, [&](const TrianglePair& pair) {
+  search(positions, [&](const CrossingPair& pair) {
     if (all.total++ < most) all.pairs.push_back(pair);
     return true;
   });

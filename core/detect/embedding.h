@@ -11,7 +11,7 @@
 namespace cscd {
 
 // Do two different triangles meet in these positions, except in the vertices and edges they share? Exact.
-bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const TrianglePair& pair);
+bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
 
 // Decides exactly whether a frame is embedded: no two triangles meet except in the vertices and edges they
 // share. (No feature pair touches, and no edge pierces a face.) The theorem behind the guarantee
@@ -22,7 +22,7 @@ class EmbeddingTest {
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
   // Two triangles that meet, or nothing if the frame is embedded.
-  std::optional<TrianglePair> find_intersection(std::span<const Vec3> positions);
+  std::optional<CrossingPair> find_intersection(std::span<const Vec3> positions);
   bool embedded(std::span<const Vec3> positions) { return !find_intersection(positions); }
 
   // All of them are counted; up to `most` are kept.

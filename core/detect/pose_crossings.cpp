@@ -24,15 +24,15 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
   positions_.assign(positions.begin(), positions.end());
   if (touched.contacts.empty()) return crossings_;
 
-  std::vector<TrianglePair> changed;
+  std::vector<CrossingPair> changed;
   for (const Contact& contact : touched.contacts)
-    for (const TrianglePair& pair : carriers(mesh_, contact.pair)) changed.push_back(pair);
+    for (const CrossingPair& pair : carriers(mesh_, contact.pair)) changed.push_back(pair);
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  std::erase_if(crossings_.pairs, [&](const TrianglePair& pair) {
+  std::erase_if(crossings_.pairs, [&](const CrossingPair& pair) {
     return std::binary_search(changed.begin(), changed.end(), pair);
   });
-  for (const TrianglePair& pair : changed)
+  for (const CrossingPair& pair : changed)
     if (triangles_meet(mesh_, positions, pair)) crossings_.pairs.push_back(pair);
   std::sort(crossings_.pairs.begin(), crossings_.pairs.end());
   crossings_.total = crossings_.pairs.size();

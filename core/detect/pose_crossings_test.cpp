@@ -66,7 +66,7 @@ TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
   for (int step = 0; step < 60; ++step) {
     const std::vector<Vec3> to = two.pose();
     const ContactSet touched = all_contacts(two.mesh, Motion(from, to));
-    const std::vector<TrianglePair> before = followed.crossings().pairs;
+    const std::vector<CrossingPair> before = followed.crossings().pairs;
     const Crossings& got = followed.follow(to, touched);
     const Crossings expected = from_nothing.find_all(to, kAll);
     ASSERT_EQ(got.pairs, expected.pairs) << step;
@@ -123,9 +123,9 @@ TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
   const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.5));
   const TriangleMesh mesh = shape.mesh();
   const FeaturePair pair = FeaturePair::of(VertexId{0}, TriangleId{12});
-  const std::vector<TrianglePair> both = carriers(mesh, pair);
+  const std::vector<CrossingPair> both = carriers(mesh, pair);
   ASSERT_EQ(both.size(), 4u);
-  for (const TrianglePair& p : both) EXPECT_EQ(p.second, TriangleId{12});
+  for (const CrossingPair& p : both) EXPECT_EQ(p.second, TriangleId{12});
   EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
   const Crossings one{{both[2]}, 1};
   EXPECT_TRUE(carried_by(one, mesh, pair));

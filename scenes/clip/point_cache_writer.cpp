@@ -81,6 +81,7 @@ struct PointCacheWriter::File {
       for (const VertexId corner : triangle) corners.push_back(static_cast<std::int32_t>(corner));
     write_integers("/triangles", {header.triangles.size(), 3}, corners);
     positions = create_growing("/positions", header.vertex_count);
+    if (!header.rest.empty()) write_rest();
     if (header.predicted) predicted = create_growing("/predicted", header.vertex_count);
     if (header.bone_parent.empty()) return;
     const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
@@ -114,6 +115,21 @@ struct PointCacheWriter::File {
         H5Dclose);
     if (H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
+  }
+
+  void write_rest() {
+    if (header.rest.size() != header.vertex_count)
+      throw InputError(path.string() + ", pose at rest: has " + std::to_string(header.rest.size()) +
+                       " vertices; the frames have " + std::to_string(header.vertex_count));
+    require_finite(header.rest, path.string() + ", pose at rest");
+    const hsize_t shape[2] = {header.vertex_count, 3};
+    const Hdf5Handle creation = timeless_dataset();
+    const Hdf5Handle space(H5Screate_simple(2, shape, nullptr), H5Sclose);
+    const Hdf5Handle dataset(H5Dcreate2(file.get(), "/rest", H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
+                                        creation.get(), H5P_DEFAULT),
+                             H5Dclose);
+    if (H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
+      fail("HDF5 did not take /rest (is the disk full?)");
   }
 
   Growing create_growing(const char* name, std::size_t points) {
