@@ -4,11 +4,15 @@
 #include "bench/command.h"
 #include "bench/input.h"
 #include "bench/model_options.h"
+#include "bench/output_format.h"
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::bench {
 namespace {
+
+constexpr std::string_view kFormats[] = {".h5", ".hdf5"};
 
 struct ExportOptions {
   std::string input, output;
@@ -17,11 +21,11 @@ struct ExportOptions {
 };
 
 void export_frames(const ExportOptions& options) {
-  // What exists already is refused before the work, not after it.
-  std::error_code ignored;
-  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(options.output, ignored)))
-    throw InputError(options.output +
-                     ": exists already; choose another name, or ask to overwrite with --force");
+  // What cannot be written is refused before the work, not after it.
+  require_format(options.output, kFormats);
+  if (find_output_target(options.output, options.force).is_stream)
+    throw InputError("output " + options.output +
+                     ": is a device or a pipe, and HDF5 writes to ordinary files alone; choose a file");
   const Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);

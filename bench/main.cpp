@@ -5,7 +5,10 @@
 #include <string>
 
 #include "bench/command.h"
+#include "bench/output.h"
+#include "bench/standard_streams.h"
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 
 namespace {
 
@@ -16,9 +19,7 @@ int complain(const std::string& text) {
   return kBadUsage;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
       "  cscd list                            what there is\n"
@@ -50,6 +51,8 @@ int main(int argc, char** argv) {
     return complain(std::string(error.what()) + "; see cscd --help");
   } catch (const cscd::bench::ExitStatus& status) {
     return status.code;
+  } catch (const cscd::bench::NobodyReads&) {
+    cscd::bench::end_by_broken_pipe();
   } catch (const cscd::InputError& error) {
     return complain(error.what());
   } catch (const std::bad_alloc&) {
@@ -58,4 +61,12 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(std::string("unexpected: ") + error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cscd::bench::prepare_standard_streams();
+  cscd::remove_temporaries_at_signals();
+  return cscd::bench::finish_standard_output(run(argc, argv));
 }

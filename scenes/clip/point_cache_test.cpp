@@ -344,7 +344,7 @@ std::string write_refusal(const fs::path& path, bool force) {
 
 TEST_F(PointCache, OverwritesOnlyWhenAsked) {
   std::ofstream(file) << "precious";
-  EXPECT_NE(write_refusal(file, false).find("exists already"), std::string::npos);
+  EXPECT_NE(write_refusal(file, false).find("exists; choose another name"), std::string::npos);
   EXPECT_EQ(bytes(file), "precious");
   EXPECT_EQ(write_refusal(file, true), "");
   EXPECT_EQ(refusal(), "");
@@ -378,9 +378,9 @@ TEST_F(PointCache, AppearsWholeOrNotAtAll) {
 }
 
 TEST_F(PointCache, SaysWhereItCannotWrite) {
-  EXPECT_NE(write_refusal(folder / "no" / "such.h5", false).find("cannot be written"), std::string::npos);
+  EXPECT_NE(write_refusal(folder / "no" / "such.h5", false).find("cannot be created"), std::string::npos);
   EXPECT_NE(write_refusal(folder, true).find("is a folder"), std::string::npos);
-  EXPECT_NE(write_refusal("/proc/clip.h5", false).find("cannot be written"), std::string::npos);
+  EXPECT_NE(write_refusal("/proc/clip.h5", false).find("cannot be created"), std::string::npos);
   EXPECT_TRUE(files().empty());
 }
 

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <atomic>
+#include <optional>
 #include <string>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/point_cache.h"
 
@@ -22,9 +22,10 @@ struct Growing {
 }  // namespace
 
 struct PointCacheWriter::File {
-  std::filesystem::path path, temporary;
+  std::filesystem::path path;
   ClipHeader header;
   bool force;
+  std::optional<UnfinishedFile> unfinished;
   Hdf5Handle file;
   Growing positions, head, tail, predicted, predicted_head, predicted_tail;
   std::vector<Vec3> scratch;
@@ -32,12 +33,12 @@ struct PointCacheWriter::File {
   File(std::filesystem::path name, ClipHeader shared, bool overwrite)
       : path(std::move(name)), header(std::move(shared)), force(overwrite) {
     silence_hdf5();
-    refuse_existing();
-    static std::atomic<unsigned> serial{0};
-    temporary = path;
-    temporary += ".partial-" + std::to_string(getpid()) + "-" + std::to_string(serial++);
-    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) fail("its folder is missing or not writable");
+    const OutputTarget target = find_output_target(path, force);
+    if (target.is_stream) fail("it is a device or a pipe, and HDF5 writes to ordinary files alone");
+    unfinished.emplace(target.path, force);
+    file =
+        Hdf5Handle(H5Fcreate(unfinished->path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) fail("HDF5 made no file");
     try {
       create();
     } catch (...) {
@@ -50,16 +51,7 @@ struct PointCacheWriter::File {
   File& operator=(const File&) = delete;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(path.string() + ": cannot be written: " + what + "; choose another place");
-  }
-
-  void refuse_existing() const {
-    std::error_code error;
-    if (!force && std::filesystem::exists(std::filesystem::symlink_status(path, error)))
-      throw InputError(path.string() +
-                       ": exists already; choose another name, or ask to overwrite with --force");
-    if (std::filesystem::is_directory(path, error))
-      throw InputError(path.string() + ": is a folder; give the name of a file");
+    throw InputError("output " + path.string() + ": cannot be written: " + what + "; choose another place");
   }
 
   void close_datasets() {
@@ -70,8 +62,7 @@ struct PointCacheWriter::File {
   void discard() {
     close_datasets();
     file = Hdf5Handle();
-    std::error_code ignored;
-    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
+    unfinished.reset();
   }
 
   void create() {
@@ -197,11 +188,7 @@ void PointCacheWriter::finish() {
                      " frames; a point cache needs at least 2");
   file.close_datasets();
   if (!file.file.close()) file.fail("the last data did not reach the disk");
-  file.refuse_existing();
-  std::error_code error;
-  std::filesystem::rename(file.temporary, file.path, error);
-  if (error) file.fail(error.message());
-  file.temporary.clear();
+  file.unfinished->finish();
 }
 
 }  // namespace cscd::scenes

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 #include "scenes/character/report.h"
 #include "scenes/import/convert.h"
 #include "scenes/import/read_model.h"
@@ -35,6 +36,7 @@ int complain(const std::string& what) {
 int main(int argc, char** argv) {
   using namespace cscd::scenes;
   std::set_new_handler(end_without_memory);
+  cscd::remove_temporaries_at_signals();
   const std::vector<std::string> words(argv + 1, argv + argc);
   if (words.size() < 4)
     return complain("usage: cscd-import MODEL CACHE.h5 REPORT SOURCES [options]; run by cscd");
