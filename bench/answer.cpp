@@ -12,6 +12,8 @@ namespace {
 
 // Of one pose so many crossing pairs are kept (eight bytes each): more is a surface that has collapsed.
 constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
+// Each pair that crosses at rest explains its neighbourhood, which takes a few hundred bytes.
+constexpr std::size_t kMostLeftOut = 500'000;
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
 
@@ -59,12 +61,12 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
       poses_(input.mesh, input.reference, kMostCrossings) {
   rest_ = poses_.find(input.rest());
   if (!options.keep_rest_crossings) {
-    if (!rest_.all_kept())
+    if (rest_.total > kMostLeftOut)
       throw InputError(
           input.name + ": " + std::to_string(rest_.total) +
           " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
           "--keep-rest-crossings");
-    left_out_ = rest_;
+    left_out_ = RestCrossings(input.mesh, rest_);
   }
   main_ = make(strategy);
 }
@@ -72,7 +74,7 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
 Answerer::Row Answerer::make(const Strategy& strategy) const {
   Prepared prepared = strategy.make(input_.setup(elementary_));
   // With pairs left out, the earliest contact may be one of theirs, and then later ones are asked for.
-  if (options_.first && left_out_.pairs.empty() && !prepared.detector->look_for_first_only())
+  if (options_.first && left_out_.empty() && !prepared.detector->look_for_first_only())
     throw InputError("--first: strategy " + std::string(strategy.name) +
                      " tests pairs by itself and finds all; leave one of the two out");
   return {&strategy, std::move(prepared.detector), prepared.preparation.threads};
@@ -84,7 +86,7 @@ Answerer::Row& Answerer::stand_in() {
 }
 
 bool Answerer::finds_all(const Row& row) const {
-  const bool first_only = options_.first && left_out_.pairs.empty();
+  const bool first_only = options_.first && left_out_.empty();
   return row.strategy->guarantee == Guarantee::complete && !row.strategy->own_test &&
          elementary_.apart_is_proof && !first_only;
 }
@@ -137,10 +139,9 @@ void Answerer::know_end(const scenes::ClipInterval& interval, const Row& row, co
 }
 
 std::size_t Answerer::leave_out(ContactSet& found) const {
-  if (left_out_.pairs.empty()) return 0;
-  return std::erase_if(found.contacts, [&](const Contact& contact) {
-    return carried_by(left_out_, input_.mesh, contact.pair);
-  });
+  if (left_out_.empty()) return 0;
+  return std::erase_if(found.contacts,
+                       [&](const Contact& contact) { return left_out_.explains(contact.pair); });
 }
 
 IntervalAnswer Answerer::answer(std::size_t index) {
@@ -155,13 +156,10 @@ IntervalAnswer Answerer::answer(std::size_t index) {
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
   const Crossings& crossing = poses_.crossings();
   answer.starts_embedded = crossing.total == 0;
-  if (!answer.starts_embedded)
-    for (const CrossingPair& pair : left_out_.pairs)
-      answer.rest_pairs += crossing.all_kept() ? crossing.contains(pair)
-                                               : triangles_meet(input_.mesh, interval.motion.start(), pair);
   answer.start = crossing;
-  std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) { return left_out_.contains(pair); });
-  answer.start.total = crossing.total - answer.rest_pairs;
+  answer.rest_pairs =
+      std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) { return left_out_.explains(pair); });
+  answer.start.total -= answer.rest_pairs;
 
   const bool needs_start = main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
   const auto ask = [&](Row& row) -> const Row& {

@@ -10,6 +10,7 @@
 #include "core/detect/crossings.h"
 #include "core/detect/detector.h"
 #include "core/detect/pose_crossings.h"
+#include "core/detect/rest_crossings.h"
 #include "core/detect/strategy.h"
 
 // What a query says of one interval.
@@ -23,7 +24,8 @@ enum class IntervalVerdict {
 };
 std::string_view to_string(IntervalVerdict verdict);
 
-// Pairs that cross at rest are left out of everything but the two counts that say so.
+// What crossings at rest explain (see RestCrossings) is left out of everything but the two counts that say
+// so.
 struct IntervalAnswer {
   std::size_t index = 0;
   IntervalVerdict verdict = IntervalVerdict::clear;
@@ -81,7 +83,8 @@ class Answerer {
   Row main_;
   std::optional<Row> stand_in_;
   PoseCrossings poses_;
-  Crossings rest_, left_out_;      // left_out_: those of rest_ that the options leave out
+  Crossings rest_;
+  RestCrossings left_out_;
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
   std::vector<Vec3> touched_end_;  // the end of the last interval, where contacts kept it from being known
 };

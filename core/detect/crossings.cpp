@@ -1,8 +1,6 @@
 #include "core/detect/crossings.h"
 
 #include <algorithm>
-#include <cassert>
-#include <iterator>
 
 namespace cscd {
 namespace {
@@ -27,21 +25,6 @@ std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& 
     for (const TriangleId t : others)
       if (s != t) out.emplace_back(std::min(s, t), std::max(s, t));
   return out;
-}
-
-bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair) {
-  if (crossings.pairs.empty()) return false;
-  const std::vector<CrossingPair> both = carriers(mesh, pair);
-  return std::any_of(both.begin(), both.end(), [&](const CrossingPair& p) { return crossings.contains(p); });
-}
-
-Crossings without(const Crossings& crossings, const Crossings& known) {
-  assert(crossings.all_kept());
-  Crossings rest;
-  std::set_difference(crossings.pairs.begin(), crossings.pairs.end(), known.pairs.begin(), known.pairs.end(),
-                      std::back_inserter(rest.pairs));
-  rest.total = rest.pairs.size();
-  return rest;
 }
 
 }  // namespace cscd

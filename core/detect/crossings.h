@@ -24,11 +24,4 @@ struct Crossings {
 // The pairs of triangles that carry a feature pair: one triangle has the first feature, the other the second.
 std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair);
 
-// Does one of the crossing pairs carry the feature pair?
-bool carried_by(const Crossings& crossings, const TriangleMesh& mesh, const FeaturePair& pair);
-
-// `crossings` without the pairs that are also in `known`. `crossings.total` counts what stays, so all pairs
-// of `crossings` have to be kept.
-Crossings without(const Crossings& crossings, const Crossings& known);
-
 }  // namespace cscd

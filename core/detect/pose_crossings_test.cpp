@@ -127,10 +127,6 @@ TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
   ASSERT_EQ(both.size(), 4u);
   for (const CrossingPair& p : both) EXPECT_EQ(p.second, TriangleId{12});
   EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
-  const Crossings one{{both[2]}, 1};
-  EXPECT_TRUE(carried_by(one, mesh, pair));
-  EXPECT_FALSE(carried_by(one, mesh, FeaturePair::of(VertexId{0}, TriangleId{13})));
-  EXPECT_EQ(without(Crossings{both, 4}, one).total, 3u);
 }
 
 }  // namespace
