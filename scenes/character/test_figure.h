@@ -70,7 +70,7 @@ inline Shape figure_body() {
 
 // The body's triangles around the trunk and the shoulders, held off by `gap` along its normals and open in
 // front, at the waist, at the neck and at the sleeves.
-inline Part figure_shirt(const Part& body, double gap) {
+inline Part figure_shirt(const Part& body, int node, double gap) {
   std::vector<Vec3> normals(body.positions.size(), Vec3::Zero());
   for (const auto& t : body.triangles) {
     const Vec3 &a = body.positions[static_cast<std::size_t>(t[0])],
@@ -84,7 +84,7 @@ inline Part figure_shirt(const Part& body, double gap) {
   };
   Part shirt;
   shirt.name = "shirt";
-  shirt.node = body.node;
+  shirt.node = node;
   shirt.joints = body.joints;
   std::map<std::int32_t, std::int32_t> place;
   for (const auto& t : body.triangles) {
@@ -107,12 +107,12 @@ inline Part figure_shirt(const Part& body, double gap) {
 }
 
 // Parts: the body, the left and the right eye, the shirt. Clips, one second each: in `walk` the body does not
-// touch itself, in `hug` its forearms meet in front of the chest.
+// touch itself, in `hug` its arms meet in front of the chest.
 inline Character walking_figure() {
   const Shape body = figure_body();
   Character character;
   character.format = "test";
-  character.nodes = {{"figure", -1, Transform()}, {"meshes", 0, Transform()}};
+  character.nodes = {{"figure", -1, Transform()}, {"skin", 0, Transform()}, {"clothes", 0, Transform()}};
   const auto node_of = [&](const std::string& name) {
     const auto found = std::ranges::find(character.nodes, name, &Node::name);
     return static_cast<int>(found - character.nodes.begin());
@@ -143,13 +143,13 @@ inline Character walking_figure() {
 
   // Balls of 80 triangles that hang on the head and stick half in it.
   const int head = node_of("head");
-  const Vec3 neck = skin.joints[static_cast<std::size_t>(head) - 2].offset.origin;
+  const Vec3 to_head = std::ranges::find(skin.joints, head, &Joint::node)->offset.origin;
   for (const double side : {1.0, -1.0}) {
     const test::Shape ball = test::icosphere(1, 2);
     Part eye;
     eye.name = side > 0 ? "left_eye" : "right_eye";
     eye.node = static_cast<int>(character.nodes.size());
-    character.nodes.push_back({eye.name, head, moved_by(neck + Vec3(side * 3.4, -8.6, 166))});
+    character.nodes.push_back({eye.name, head, moved_by(to_head + Vec3(side * 3.4, -8.6, 166))});
     eye.positions = ball.positions;
     for (const Triangle& t : ball.triangles)
       eye.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
@@ -157,7 +157,7 @@ inline Character walking_figure() {
     eye.first.assign(eye.positions.size() + 1, 0);
     character.parts.push_back(eye);
   }
-  character.parts.push_back(figure_shirt(character.parts.front(), 1));
+  character.parts.push_back(figure_shirt(character.parts.front(), node_of("clothes"), 1));
 
   // Degrees about x, y and z, at equal times from 0 to 1 second.
   const auto turns = [&](const std::string& bone, const std::vector<Vec3>& degrees) {
@@ -178,7 +178,8 @@ inline Character walking_figure() {
                    turns("head", {{0, 0, 8}, {0, 0, -8}, {0, 0, 8}}),
                    turns("left_eye", {{0, 0, 20}, {0, 0, -20}, {0, 0, 20}}),
                    turns("right_eye", {{0, 0, 20}, {0, 0, -20}, {0, 0, 20}})};
-  walk.channels.push_back({2, {{0, character.nodes[2].local.origin}, {1, {0, -90, 92}}}, {}, {}});
+  const Vec3 hips = body.rig.reference.front().head;
+  walk.channels.push_back({node_of("pelvis"), {{0, hips}, {1, hips + Vec3(0, -90, 0)}}, {}, {}});
   Animation hug{"hug", 0, 1, 0, {}};
   hug.channels = {turns("left_arm", {{0, 0, 0}, {0, 5, -70}}), turns("left_arm_2", {{0, 0, 0}, {0, 0, -90}}),
                   turns("right_arm", {{0, 0, 0}, {0, -5, 70}}),
