@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "bench/command.h"
+#include "bench/export_glb.h"
 #include "bench/input.h"
 #include "bench/model_options.h"
 #include "core/base/error.h"
@@ -22,6 +23,10 @@ void export_frames(const ExportOptions& options) {
   if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(options.output, ignored)))
     throw InputError(options.output +
                      ": exists already; choose another name, or ask to overwrite with --force");
+  if (std::filesystem::path(options.output).extension() == ".glb") {
+    export_glb(options.input, options.model, options.output, options.force);
+    return;
+  }
   const Input input = open_input(options.input, options.model);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
   scenes::copy_frames(*input.clip, writer);
@@ -35,11 +40,13 @@ void export_frames(const ExportOptions& options) {
 void add_export(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export",
-                                         "Write exactly the frames that a run replays as a point cache.\n\n"
+                                         "Write exactly the frames that a run replays as a point cache,\n"
+                                         "or a linearly skinned scene as an animated model.\n\n"
                                          "  cscd export rope rope.h5\n"
+                                         "  cscd export rope rope.glb\n"
                                          "  cscd export character.glb walk.h5 --clip walk --fps 60");
   command->add_option("input", options->input, kInputHelp)->required();
-  command->add_option("output", options->output, "the .h5 file to write")->required();
+  command->add_option("output", options->output, "the .h5 or .glb file to write")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { export_frames(*options); });

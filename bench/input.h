@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ Input open_input(const std::string& name_or_path, const ModelOptions& options = 
 
 // Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
 bool is_model_file(const std::string& name_or_path);
+bool is_point_cache(const std::filesystem::path& path);
 
 // Half-open range of intervals.
 struct IntervalRange {
