@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "bench/command.h"
+#include "bench/export_glb.h"
 #include "bench/input.h"
 #include "bench/model_options.h"
 #include "bench/output_format.h"
@@ -12,7 +13,7 @@
 namespace cscd::bench {
 namespace {
 
-constexpr std::string_view kFormats[] = {".h5", ".hdf5"};
+constexpr std::string_view kFormats[] = {".h5", ".hdf5", ".glb"};
 
 struct ExportOptions {
   std::string input, output;
@@ -22,10 +23,14 @@ struct ExportOptions {
 
 void export_frames(const ExportOptions& options) {
   // What cannot be written is refused before the work, not after it.
-  require_format(options.output, kFormats);
+  const std::string format = require_format(options.output, kFormats);
   if (find_output_target(options.output, options.force).is_stream)
     throw InputError("output " + options.output +
-                     ": is a device or a pipe, and HDF5 writes to ordinary files alone; choose a file");
+                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  if (format == ".glb") {
+    export_glb(options.input, options.model, options.output, options.force);
+    return;
+  }
   const Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
@@ -40,11 +45,13 @@ void export_frames(const ExportOptions& options) {
 void add_export(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = app.add_subcommand("export",
-                                         "Write exactly the frames that a run replays as a point cache.\n\n"
+                                         "Write exactly the frames that a run replays as a point cache,\n"
+                                         "or a linearly skinned scene as an animated model.\n\n"
                                          "  cscd export rope rope.h5\n"
+                                         "  cscd export rope rope.glb\n"
                                          "  cscd export character.glb walk.h5 --clip walk --fps 60");
   command->add_option("input", options->input, kInputHelp)->required();
-  command->add_option("output", options->output, "the .h5 file to write")->required();
+  command->add_option("output", options->output, "the .h5 or .glb file to write")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { export_frames(*options); });

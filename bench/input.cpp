@@ -15,10 +15,6 @@
 namespace cscd::bench {
 namespace {
 
-bool is_point_cache(const std::filesystem::path& path) {
-  return path.extension() == ".h5" || path.extension() == ".hdf5";
-}
-
 std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
   const scenes::Scene scene = scenes::load_scene(name);
   std::optional<Progress> progress;
@@ -39,6 +35,10 @@ std::size_t parse_frame(std::string_view digits, std::size_t otherwise, const st
 }
 
 }  // namespace
+
+bool is_point_cache(const std::filesystem::path& path) {
+  return path.extension() == ".h5" || path.extension() == ".hdf5";
+}
 
 bool is_model_file(const std::string& name) {
   const std::filesystem::path path(name);

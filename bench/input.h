@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +47,7 @@ void say_what_was_read(const Input& input, std::FILE* to);
 
 // Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
 bool is_model_file(const std::string& name_or_path);
+bool is_point_cache(const std::filesystem::path& path);
 
 // Half-open range of intervals.
 struct IntervalRange {

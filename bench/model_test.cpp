@@ -13,11 +13,9 @@
 
 #include "bench/catalogue.h"
 #include "bench/input.h"
-#include "bench/test_program.h"
+#include "bench/test_generated.h"
 #include "core/base/error.h"
 #include "core/detect/embedding.h"
-#include "scenes/character/test_characters.h"
-#include "scenes/character/test_gltf.h"
 
 // Model files from end to end: real characters, and some that the tests write.
 namespace cscd::bench {
@@ -34,7 +32,14 @@ constexpr const char* kUsable[] = {"cesium_man.glb",
                                    "dembones_decomposition20.fbx",
                                    "eagle.fbx"};
 
-class Characters : public testing::TestWithParam<const char*> {};
+class Characters : public testing::TestWithParam<const char*> {
+ protected:
+  const Scratch scratch;
+  const std::string file = character_file(GetParam(), scratch);
+  void SetUp() override {
+    if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  }
+};
 
 // The time of the first decided contact.
 std::optional<double> first_contact(Detector& detector, const scenes::ClipInterval& interval) {
@@ -49,7 +54,6 @@ std::optional<double> first_contact(Detector& detector, const scenes::ClipInterv
 // On every embedded start of some intervals of every clip, every strategy that can finds the reference's
 // first contact at the reference's time.
 TEST_P(Characters, NoFirstContactIsLost) {
-  if (absent(GetParam())) GTEST_SKIP() << "no " << model(GetParam());
   const ElementaryTest& exact = elementary_test_named("exact");
   ModelOptions options;
   options.import.from_bind_pose = true;
@@ -57,7 +61,7 @@ TEST_P(Characters, NoFirstContactIsLost) {
   for (std::size_t clip = 0; clip < clips; ++clip) {
     options.import.clip = std::to_string(clip);
     if (GetParam() == std::string("hand_xrtools_left.gltf")) options.import.clip.clear();  // it has none
-    Input input = open_input(model(GetParam()), options);
+    Input input = open_input(file, options);
     clips = std::max<std::size_t>(1, input.import->clips.size());
     ASSERT_TRUE(input.mesh.closed_and_oriented());
     ASSERT_TRUE(input.rig.has_value());
@@ -84,18 +88,19 @@ TEST_P(Characters, NoFirstContactIsLost) {
   std::printf("%s: %zu clips, %zu intervals, %zu start embedded, %zu of them with a contact\n", GetParam(),
               clips, intervals, embedded, with_contact);
 }
-INSTANTIATE_TEST_SUITE_P(Shared, Characters, testing::ValuesIn(kUsable), [](const auto& name) {
+std::string word_of(const testing::TestParamInfo<const char*>& name) {
   std::string word = name.param;
   std::replace_if(
       word.begin(), word.end(), [](char c) { return !std::isalnum(c); }, '_');
   return word;
-});
+}
+INSTANTIATE_TEST_SUITE_P(Shared, Characters, testing::ValuesIn(kUsable), word_of);
+INSTANTIATE_TEST_SUITE_P(Generated, Characters,
+                         testing::Values("generated_figure.glb", "generated_tube.gltf"), word_of);
 
 // The program itself: what it says of the character, and that drvbc finds in it what base does.
 TEST_P(Characters, AreInspectedAndQueried) {
-  if (absent(GetParam())) GTEST_SKIP() << "no " << model(GetParam());
-  const Scratch scratch;
-  const Outcome looked = cscd({"inspect", model(GetParam()), "--json", scratch / "i.json"});
+  const Outcome looked = cscd({"inspect", file, "--json", scratch / "i.json"});
   ASSERT_EQ(looked.code, 0) << looked.errors;
   const auto facts = nlohmann::json::parse(read(scratch / "i.json"));
   EXPECT_EQ(facts["components"][0]["facing"], "outward");
@@ -104,9 +109,8 @@ TEST_P(Characters, AreInspectedAndQueried) {
   nlohmann::json answer[2];
   const char* strategy[] = {"base", "drvbc"};
   for (std::size_t s = 0; s < 2; ++s) {
-    const Outcome asked =
-        cscd({"query", model(GetParam()), "--from-bind-pose", "--frames", "0:12", "--strategy", strategy[s],
-              "--json", scratch / (strategy[s] + std::string(".json"))});
+    const Outcome asked = cscd({"query", file, "--from-bind-pose", "--frames", "0:12", "--strategy",
+                                strategy[s], "--json", scratch / (strategy[s] + std::string(".json"))});
     ASSERT_EQ(asked.code, 0) << asked.errors;
     answer[s] = nlohmann::json::parse(read(scratch / (strategy[s] + std::string(".json"))));
   }
@@ -308,7 +312,10 @@ TEST(Models, QueryAndInspectAnswerInJson) {
 }
 
 TEST(Models, LeaveNothingBehind) {
-  if (absent("fox_khronos.glb")) GTEST_SKIP();
+  const Scratch scratch;
+  const std::string figure = character_file("generated_figure.glb", scratch),
+                    large = character_file("generated_large_tube.glb", scratch);
+  write(scratch.path / "nothing.glb", "glTF and no more");
   const fs::path cache = scenes::scenes_folder().parent_path() / ".cache";
   std::error_code ignored;
   // Folders of processes that have ended: other tests may be importing at the same time.
@@ -321,10 +328,8 @@ TEST(Models, LeaveNothingBehind) {
     }
     return count;
   };
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{model("fox_khronos.glb")},
-                                             {model("bvh/cmu_02_01_walk.bvh")},
-                                             {model("horse.glb"), "--import-seconds", "0.01"}}) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {figure}, {scratch / "nothing.glb"}, {large, "--import-seconds", "0.01"}}) {
     std::vector<std::string> arguments{"inspect"};
     arguments.insert(arguments.end(), words.begin(), words.end());
     cscd(arguments);
@@ -340,7 +345,7 @@ TEST(Models, LeaveNothingBehind) {
   fs::create_directories(dead);
   fs::create_directories(living);
   write(dead / "frames.h5", "half of it");
-  cscd({"inspect", model("fox_khronos.glb")});
+  cscd({"inspect", figure});
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(living));
   fs::remove_all(living);

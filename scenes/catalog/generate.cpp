@@ -35,7 +35,8 @@ class EffectClock {
 
 }  // namespace
 
-Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress) {
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress,
+                    const SeeState& see) {
   const Shape shape = make_shape(scene.shape, scene.shape_parameters);
   require_count(scene, "vertices", shape.positions.size(), scene.expected.vertices);
   require_count(scene, "triangles", shape.triangles.size(), scene.expected.triangles);
@@ -54,6 +55,7 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
     const FrameView* prediction = effects.predicts() && frame > 0 ? &predicted : nullptr;
     sink.append(view, prediction);
     digest.add(view, prediction);
+    if (see) see(state);
     if (progress) progress(frame + 1, scene.frames);
   }
 

@@ -28,10 +28,13 @@ struct Generated {
 };
 
 // Hands the scene's shape to `begin`, which returns the sink of the frames; then runs the effects and appends
-// frame by frame. Throws InputError when the shape's counts are not the expected ones. Does not judge the
-// digest.
+// frame by frame. `see` is called with the state of every frame, which tells more than the frame does: the
+// shape with its weights, and the rotations of its bones. Throws InputError when the shape's counts are not
+// the expected ones. Does not judge the digest.
 using BeginFrames = std::function<FrameSink&(ClipHeader header)>;
-Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {});
+using SeeState = std::function<void(const SceneState& state)>;
+Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {},
+                    const SeeState& see = {});
 
 // Throws InputError when the frames are not those that the scene file promises.
 void require_expected_digest(const Scene& scene, const std::string& digest);

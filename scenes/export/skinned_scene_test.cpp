@@ -1,0 +1,114 @@
+#include "scenes/export/skinned_scene.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "scenes/catalog/test_scenes.h"
+#include "scenes/clip/digest.h"
+#include "scenes/export/test_round_trip.h"
+
+namespace cscd::scenes {
+namespace {
+
+void expect_round_trip(const Scene& scene) {
+  SCOPED_TRACE(scene.name);
+  const Clip wanted = generate(scene);
+  const Character character = skinned_scene(scene);
+  const ReadBack back = read_back(to_glb(character));
+  expect_same_frames(wanted, back.clip);
+  EXPECT_EQ(back.clip.header().bone_parent.size(), wanted.header().bone_parent.size());
+  ASSERT_EQ(back.report.clips.size(), 1u);
+  EXPECT_EQ(back.report.clips[0].name, scene.name);
+}
+
+std::string refusal(const Scene& scene) {
+  try {
+    skinned_scene(scene);
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.what();
+  }
+  return "";
+}
+
+// Lets the scene promise the frames that come of it.
+void promise(Scene& scene) {
+  DigestSink sink;
+  scene.expected.digest = run_scene(scene, [&](const ClipHeader&) -> FrameSink& { return sink; }).digest;
+}
+
+// A scene of the catalogue with changes, and the digest of what comes of them.
+Scene changed(const std::string& base, const std::string& patch) {
+  Scene scene = parse_scene(base,
+                            R"({"schema": "cscd.scene/1", "base": ")" + base +
+                                R"(", "story": "For a test.", "patch": [)" + patch +
+                                R"(], "expected": {"digest": "none yet"}})",
+                            "test");
+  promise(scene);
+  return scene;
+}
+
+TEST(SkinnedScene, ASmallChainIsReadBackAsItWas) {
+  expect_round_trip(parse_scene("small", small_scene_with_digest(), "small.json"));
+}
+
+// Every scene that ends in linear skinning, and refusals of all others by the effect that is in the way.
+TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
+  std::vector<std::string> written;
+  for (const SceneSummary& summary : list_scenes()) {
+    const Scene scene = load_scene(summary.name);
+    const std::string& last = scene.effects.back().name;
+    if (last == "skinning_linear") {
+      expect_round_trip(scene);
+      written.push_back(scene.name);
+    } else {
+      EXPECT_NE(refusal(scene).find("scene " + scene.name + ": its last effect is " + last),
+                std::string::npos);
+    }
+  }
+  EXPECT_EQ(written, (std::vector<std::string>{"octopus", "rope", "urchin"}));
+}
+
+// Bodies with limbs, skinned linearly instead: bones in a tree, blended by up to four.
+TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
+  const std::string frames = R"({"op": "replace", "path": "/frames", "value": 41})";
+  expect_round_trip(changed(
+      "man", frames + R"(, {"op": "replace", "path": "/effects/2", "value": {"name": "skinning_linear"}})"));
+  expect_round_trip(changed("box", frames + R"(, {"op": "remove", "path": "/effects/4"},
+      {"op": "replace", "path": "/effects/3", "value": {"name": "skinning_linear"}})"));
+}
+
+// With far too few substeps the bones of a chain do not stay rigid.
+TEST(SkinnedScene, BonesThatStretchAreRefused) {
+  EXPECT_NE(refusal(changed("rope", R"({"op": "replace", "path": "/frames", "value": 5},
+      {"op": "remove", "path": "/effects/1"}, {"op": "remove", "path": "/effects/0/steady_bone"},
+      {"op": "replace", "path": "/substeps", "value": 4},
+      {"op": "replace", "path": "/shape/bones", "value": 400},
+      {"op": "replace", "path": "/expected/bones", "value": 400})"))
+                .find("is stretched or sheared"),
+            std::string::npos);
+}
+
+TEST(SkinnedScene, WhatIsNotLinearOrNotAsPromisedIsRefused) {
+  Scene scene = parse_scene("small", small_scene_with_digest(), "small.json");
+  EXPECT_EQ(refusal(scene), "");
+  Scene other = scene;
+  other.expected.digest = "0000000000000000";
+  EXPECT_NE(refusal(other).find("the scene file expects 0000000000000000"), std::string::npos);
+  other = scene;
+  other.effects.pop_back();  // the surface stays at rest while the bones move
+  EXPECT_NE(refusal(other).find("its last effect is chain_dynamics"), std::string::npos);
+  other = scene;
+  std::reverse(other.effects.begin(), other.effects.end());
+  EXPECT_NE(refusal(other).find("export it as .h5"), std::string::npos);
+  other = scene;
+  other.effects.clear();
+  EXPECT_NE(refusal(other).find("its last effect is none"), std::string::npos);
+  other = scene;
+  other.frames = 100'000'000;
+  EXPECT_NE(refusal(other).find("100000000 frames of 4 bones are more keys"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes

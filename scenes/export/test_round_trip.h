@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+#include "scenes/character/pose.h"
+#include "scenes/clip/point_cache.h"
+#include "scenes/export/glb.h"
+#include "scenes/import/convert.h"
+#include "scenes/import/read_model.h"
+
+// What cscd-import makes of an exported file.
+namespace cscd::scenes {
+
+struct ReadBack {
+  Character character;
+  ImportReport report;
+  Clip clip;
+};
+
+inline ReadBack read_back(const std::string& glb, const ImportOptions& options = {}) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("cscd-export-" + std::to_string(getpid()) + ".glb");
+  const std::filesystem::path cache = std::filesystem::path(file).replace_extension(".h5");
+  std::ofstream(file, std::ios::binary) << glb;
+  Character character = read_model(file, {});
+  ImportReport report = convert(character, options, {}, cache);
+  PointCacheReader reader(cache);
+  Clip clip(reader.header());
+  copy_frames(reader, clip);
+  std::filesystem::remove(file);
+  std::filesystem::remove(cache);
+  return {std::move(character), std::move(report), std::move(clip)};
+}
+
+// Single precision rounds by half of this share.
+inline constexpr double kUlp = 0x1p-23;
+
+// All frames, vertex by vertex, and the triangles. Positions, offsets, weights and keys lose a few roundings
+// of the surface's distance from the origin. The times of keys are rounded too, by a share that grows with
+// the frame's number, and a vertex is then as far off as it moves in that time.
+inline void expect_same_frames(const Clip& wanted, const Clip& got) {
+  ASSERT_EQ(got.frame_count(), wanted.frame_count());
+  ASSERT_EQ(got.header().vertex_count, wanted.header().vertex_count);
+  EXPECT_TRUE(got.header().triangles == wanted.header().triangles);
+  double farthest = 0;
+  for (std::size_t frame = 0; frame < wanted.frame_count(); ++frame) {
+    const auto before = wanted.frame(frame > 0 ? frame - 1 : 0).positions,
+               expected = wanted.frame(frame).positions,
+               after = wanted.frame(std::min(frame + 1, wanted.frame_count() - 1)).positions,
+               found = got.frame(frame).positions;
+    double size = 0;
+    for (const Vec3& x : expected) size = std::max(size, x.norm());
+    for (std::size_t v = 0; v < expected.size(); ++v) {
+      const double step = std::max((expected[v] - before[v]).norm(), (after[v] - expected[v]).norm());
+      const double bound = 4 * kUlp * size + static_cast<double>(frame) * kUlp * step;
+      const double off = (found[v] - expected[v]).norm();
+      farthest = std::max(farthest, off / bound);
+      ASSERT_LT(off, bound) << "frame " << frame << ", vertex " << v;
+    }
+  }
+  testing::Test::RecordProperty("share_of_bound_" + std::to_string(wanted.header().triangles.size()),
+                                std::to_string(farthest));
+}
+
+}  // namespace cscd::scenes
