@@ -27,5 +27,6 @@ void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_scale(CLI::App& app);
+void add_scene(CLI::App& app);
 
 }  // namespace cscd::bench

@@ -16,14 +16,17 @@ using nlohmann::json;
 
 json scenes_json() {
   json rows = json::array();
-  for (const scenes::SceneSummary& scene : scenes::list_scenes())
-    rows.push_back({{"name", scene.name},
-                    {"story", scene.story},
-                    {"frames", scene.frames},
-                    {"vertices", scene.vertices},
-                    {"triangles", scene.triangles},
-                    {"bones", scene.bones},
-                    {"effects", scene.effects}});
+  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+    json& row = rows.emplace_back(json{{"name", scene.name}});
+    if (!scene.fault.empty()) {
+      row["fault"] = scene.fault;
+      continue;
+    }
+    row.update({{"story", scene.story}, {"frames", scene.frames}, {"effects", scene.effects}});
+    if (scene.expected.vertices) row["vertices"] = *scene.expected.vertices;
+    if (scene.expected.triangles) row["triangles"] = *scene.expected.triangles;
+    if (scene.expected.bones) row["bones"] = *scene.expected.bones;
+  }
   return rows;
 }
 

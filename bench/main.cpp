@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   cscd::bench::add_scale(app);
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);
+  cscd::bench::add_scene(app);
 
   try {
     app.parse(argc, argv);

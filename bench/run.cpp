@@ -17,6 +17,7 @@
 #include "bench/timing.h"
 #include "bench/verification.h"
 #include "core/base/error.h"
+#include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/digest.h"
 
@@ -65,8 +66,13 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
 
 SceneRecord describe(Input& input) {
   SceneRecord record;
+  const bool is_scene_file = scenes::is_scene_file(input.name);
+  const bool is_file = !is_scene_file && (input.import || std::filesystem::path(input.name).has_extension());
   record.name = input.name;
-  const bool is_file = input.import || std::filesystem::path(input.name).has_extension();
+  if (is_file || is_scene_file) {
+    record.name = scenes::plain_name(input.name);
+    record.path = input.name;
+  }
   if (!is_file) {
     const scenes::Scene scene = scenes::load_scene(input.name);
     record.story = scene.story;
@@ -182,9 +188,14 @@ bool run_all(const RunOptions& options) {
   if (error)
     throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
                      "; choose another with --json");
+  const std::vector<scenes::SceneSummary> all = scenes::list_scenes();
+  for (const scenes::SceneSummary& scene : all)
+    if (!scene.fault.empty())
+      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
+                       "); mend or remove that file, or name the scenes one by one");
   std::vector<RunOptions> runs;
   std::deque<OutputFile> outputs;  // what stands in the way of any is found before the work
-  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+  for (const scenes::SceneSummary& scene : all) {
     runs.push_back(options);
     runs.back().scene = scene.name;
     outputs.emplace_back(folder / (scene.name + ".json"), options.force);

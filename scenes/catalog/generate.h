@@ -33,7 +33,8 @@ struct Generated {
 using BeginFrames = std::function<FrameSink&(ClipHeader header)>;
 Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {});
 
-// Throws InputError when the frames are not those that the scene file promises.
+// Throws InputError when the frames are not those that the scene file promises. A file without a digest
+// promises nothing.
 void require_expected_digest(const Scene& scene, const std::string& digest);
 
 // All frames in memory, verified.
