@@ -23,9 +23,11 @@ struct ExportOptions {
 void export_frames(const ExportOptions& options) {
   // What cannot be written is refused before the work, not after it.
   require_format(options.output, kFormats);
-  if (find_output_target(options.output, options.force).is_stream)
+  const OutputTarget target = find_output_target(options.output, options.force);
+  if (target.is_stream)
     throw InputError("output " + options.output +
                      ": is a device or a pipe, and HDF5 writes to ordinary files alone; choose a file");
+  { const UnfinishedFile can_be_made(target.path, options.force); }
   const Input input = open_input(options.input, options.model);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
   scenes::copy_frames(*input.clip, writer);

@@ -88,12 +88,18 @@ std::string text(const json& value) {
   return joined;
 }
 
-void list(const std::string& only, bool as_json) {
+void list(const std::string& only, bool as_json, bool names_only) {
   json document = {{"schema", "cscd.list/1"}};
   for (const Section& section : kSections)
     if (only.empty() || only == section.name) document[section.name] = section.rows();
   if (as_json) {
     std::printf("%s\n", document.dump(1).c_str());
+    return;
+  }
+  if (names_only) {
+    for (const Section& section : kSections)
+      if (document.contains(section.name))
+        for (const json& row : document[section.name]) std::printf("%s\n", text(row["name"]).c_str());
     return;
   }
   for (const Section& section : kSections) {
@@ -117,8 +123,10 @@ void add_list(CLI::App& app) {
       "Show the scenes, strategies, elementary tests, effects and families of hard queries there are.");
   command->add_option("what", *only, "one of scenes, strategies, tests, effects, families; default all")
       ->check(CLI::IsMember({"scenes", "strategies", "tests", "effects", "families"}));
-  command->add_flag("--json", *as_json, "for a machine to read");
-  command->callback([only, as_json] { list(*only, *as_json); });
+  auto names_only = std::make_shared<bool>(false);
+  CLI::Option* json_flag = command->add_flag("--json", *as_json, "for a machine to read");
+  command->add_flag("--names", *names_only, "names alone, a line each")->excludes(json_flag);
+  command->callback([only, as_json, names_only] { list(*only, *as_json, *names_only); });
 }
 
 }  // namespace cscd::bench

@@ -14,6 +14,7 @@
 #include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/record.h"
+#include "bench/run_times.h"
 #include "bench/timing.h"
 #include "bench/verification.h"
 #include "core/base/error.h"
@@ -177,12 +178,16 @@ bool run_one(RunOptions options, OutputFile& output) {
   print(verified.record, options.elementary);
   record.verification = std::move(verified.record);
   output.commit(json_text(to_json(record)));
+  std::printf("%s", run_times_text(record).c_str());
   return ok;
 }
 
 // Every scene that there is, each to its own record in the folder named as output.
 bool run_all(const RunOptions& options) {
   const std::filesystem::path folder = options.output;
+  if (is_standard_output(folder))
+    throw InputError("--json " + options.output +
+                     ": several records do not go to standard output; name a folder, or one scene");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
@@ -204,6 +209,7 @@ bool run_all(const RunOptions& options) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
     ok = run_one(runs[i], outputs[i]) && ok;
+    std::printf("record: %s\n", (folder / (runs[i].scene + ".json")).c_str());
   }
   return ok;
 }
@@ -217,7 +223,9 @@ void run(const RunOptions& options) {
     return;
   }
   OutputFile output(options.output, options.force);
-  if (!run_one(options, output)) throw kVerificationFailed;
+  const bool ok = run_one(options, output);
+  std::printf("record: %s\n", options.output.c_str());
+  if (!ok) throw kVerificationFailed;
 }
 
 }  // namespace
@@ -267,7 +275,7 @@ void add_run(CLI::App& app) {
                     "8 intervals in the middle, every 4th of them verified and timed twice");
   command
       ->add_option("--json", options->output,
-                   "where the record goes; with --scene all, the folder of the records")
+                   "where the record goes, - is standard output; with --scene all, the folder of the records")
       ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_threads_option(*command, options->threads);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/base/closest_name.h"
 #include "core/base/error.h"
 #include "scenes/catalog/plain_name.h"
 
@@ -239,12 +240,16 @@ Scene load_scene(std::string_view name) {
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     return parse_scene(plain_name(file), read_text(file), file.string(), folder);
   }
-  std::string known;
+  std::vector<std::string> names;
   for (const fs::path& file : scene_files(scenes_folder())) {
     if (file.stem() == name) return parse_scene(name, read_text(file), file.string());
-    known += (known.empty() ? "" : ", ") + file.stem().string();
+    names.push_back(file.stem().string());
   }
-  throw InputError("unknown scene " + std::string(name) + "; known are: " + known);
+  std::string known;
+  for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  throw InputError("unknown scene " + std::string(name) + did_you_mean(name, views) +
+                   "; known are: " + known);
 }
 
 std::vector<SceneSummary> list_scenes() {
