@@ -28,5 +28,7 @@ void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_scale(CLI::App& app);
+void add_scene(CLI::App& app);
+void add_help(CLI::App& app);  // and completion, man
 
 }  // namespace cscd::bench

@@ -24,13 +24,15 @@ struct ExportOptions {
 void export_frames(const ExportOptions& options) {
   // What cannot be written is refused before the work, not after it.
   const std::string format = require_format(options.output, kFormats);
-  if (find_output_target(options.output, options.force).is_stream)
+  const OutputTarget target = find_output_target(options.output, options.force);
+  if (target.is_stream)
     throw InputError("output " + options.output +
                      ": is a device or a pipe, and this format needs an ordinary file; choose one");
   if (format == ".glb") {
     export_glb(options.input, options.model, options.output, options.force);
     return;
   }
+  { const UnfinishedFile can_be_made(target.path, options.force); }
   const Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);

@@ -8,9 +8,11 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"
@@ -67,9 +69,11 @@ class TemporaryFolder {
     std::string name = (place / (kPrefix + std::to_string(getpid()) + "-XXXXXX")).string();
     if (mkdtemp(name.data()) == nullptr) return false;
     path_ = name;
+    registered_.emplace(path_);
     return true;
   }
   fs::path path_;
+  std::optional<Temporary> registered_;
 };
 
 void require_model_file(const fs::path& path) {

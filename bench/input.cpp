@@ -17,6 +17,10 @@ namespace {
 
 std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
   const scenes::Scene scene = scenes::load_scene(name);
+  if (!scene.expected.digest)
+    std::fprintf(stderr,
+                 "note: %s promises no digest, so its frames may be any; cscd scene accept FILE writes it\n",
+                 name.c_str());
   std::optional<Progress> progress;
   return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
     if (!progress) progress.emplace("generating " + name, total);
@@ -43,7 +47,8 @@ bool is_point_cache(const std::filesystem::path& path) {
 bool is_model_file(const std::string& name) {
   const std::filesystem::path path(name);
   std::error_code ignored;
-  return !is_point_cache(path) && (path.has_extension() || std::filesystem::exists(path, ignored));
+  return !is_point_cache(path) && !scenes::is_scene_file(path) &&
+         (path.has_extension() || std::filesystem::exists(path, ignored));
 }
 
 Input open_input(const std::string& name, const ModelOptions& options) {

@@ -171,6 +171,28 @@ TEST_F(Output, VanishesAtSignalsThatEndTheProcess) {
   }
 }
 
+TEST_F(Output, EndsTheHelperThatWritesIntoAFolder) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const int end = end_child_by(SIGTERM, [&] {
+    fs::create_directory(folder / "work");
+    static const Temporary work(folder / "work");
+    const pid_t process = fork();
+    if (process == 0) {  // writes on and on, as long as it lives
+      close(ends[0]);
+      for (int i = 0;; ++i) put(folder / "work" / std::to_string(i), "frame");
+    }
+    static const TemporaryHelper helper(process);
+    usleep(20'000);
+  });
+  EXPECT_EQ(end, SIGTERM);
+  EXPECT_EQ(files(), 0u);
+  close(ends[1]);
+  char byte;
+  EXPECT_EQ(read(ends[0], &byte, 1), 0) << "nobody holds the other end: the helper is gone";
+  close(ends[0]);
+}
+
 TEST_F(Output, LeavesFinishedFilesAndThoseOfTheParentAlone) {
   UnfinishedFile of_parent(folder / "parent", false);
   EXPECT_EQ(end_child_by(SIGINT,
