@@ -15,7 +15,9 @@ namespace cscd::bench {
 void export_glb(const std::string& input, const ModelOptions& options, const std::filesystem::path& output,
                 bool force) {
   if (is_model_file(input))
-    throw InputError("input " + input + ": is a model file already; export it as .h5, or name a scene");
+    throw InputError("input " + input +
+                     ": is a file; only a scene, by its name in `cscd list`, can become a .glb file; export "
+                     "this as .h5");
   if (is_point_cache(input))
     throw InputError(
         "input " + input +

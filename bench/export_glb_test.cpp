@@ -81,7 +81,7 @@ TEST(ExportGlb, WhatCannotBeExportedIsRefused) {
       {{"box", out}, "its last effect is volume_bulge"},
       {{"rope_contact", out}, "its last effect is contact_response"},
       {{"nobody", out}, "unknown scene nobody"},
-      {{scratch / "model.gltf", out}, "is a model file already"},
+      {{scratch / "model.gltf", out}, "only a scene, by its name"},
       {{scratch / "cache.h5", out}, "is a point cache, which has no weights"},
       {{"urchin", out, "--fps", "60"}, "leave out the options of model files"},
       {{"urchin", scratch / "there.glb"}, "exists"},

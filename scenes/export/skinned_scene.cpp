@@ -1,5 +1,7 @@
 #include "scenes/export/skinned_scene.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "scenes/clip/digest.h"
 
@@ -61,6 +63,9 @@ class Recorder {
       character_.animations[0].channels.push_back({node, {}, {}, {}});
       part.joints.push_back({node, offset});
     }
+    // Readers that know nodes by their names must not take the surface's for a bone.
+    while (std::ranges::count(character_.nodes, character_.nodes[0].name, &Node::name) > 1)
+      character_.nodes[0].name += "_surface";
     part.positions = shape.positions;
     for (const Triangle& t : shape.triangles)
       part.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
@@ -83,7 +88,7 @@ class Recorder {
         parts_of(parent == BoneId{-1} ? world_[bone] : composed(inverse(world_[+parent]), world_[bone]));
     for (std::size_t i = 0; i < 3; ++i)
       if (!((parts.rest[i] - Transform().column[i]).norm() < kRigid))
-        throw InputError("scene " + character_.nodes[0].name + ", frame " + std::to_string(frames_ - 1) +
+        throw InputError("scene " + character_.animations[0].name + ", frame " + std::to_string(frames_ - 1) +
                          ": bone " + state.shape.bone_names[bone] +
                          " is stretched or sheared, which keys of a model file cannot say; export it as .h5");
     Channel& channel = character_.animations[0].channels[bone];

@@ -53,6 +53,14 @@ TEST(SkinnedScene, ASmallChainIsReadBackAsItWas) {
   expect_round_trip(parse_scene("small", small_scene_with_digest(), "small.json"));
 }
 
+// A reader that knows nodes by name would let the keys of the bone move the surface's node. Mutation: the
+// node of the surface keeps the scene's name.
+TEST(SkinnedScene, ASceneMayBeCalledLikeABone) {
+  Scene scene = parse_scene("bone_2", small_scene_with_digest(), "small.json");
+  EXPECT_EQ(skinned_scene(scene).nodes[0].name, "bone_2_surface");
+  expect_round_trip(scene);
+}
+
 // Every scene that ends in linear skinning, and refusals of all others by the effect that is in the way.
 TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
   std::vector<std::string> written;
