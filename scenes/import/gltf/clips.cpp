@@ -28,6 +28,11 @@ void normalise(Quaternion& value) {
 void normalise(Vec3&) {}
 void normalise(double&) {}
 
+struct ByNode {
+  bool operator()(const Part& part, int node) const { return part.node < node; }
+  bool operator()(int node, const Part& part) const { return node < part.node; }
+};
+
 struct Reach {
   double first = std::numeric_limits<double>::infinity(), last = -first;
 
@@ -120,13 +125,14 @@ Animation Clips::read(const tinygltf::Animation& source, const Tree& tree, const
     const int node = at(tree.place, channel.target_node, "node");
     const std::string& path = channel.target_path;
     if (path == "weights") {
+      const auto [first, last] = std::equal_range(parts.begin(), parts.end(), node, ByNode{});
       bool any = false;
-      for (std::size_t p = 0; p < parts.size(); ++p) {
-        const std::size_t targets = parts[p].targets.size();
-        if (parts[p].node != node || targets == 0) continue;
+      for (auto part = first; part != last; ++part) {
+        const std::size_t targets = part->targets.size();
+        if (targets == 0) continue;
         any = true;
-        const int part = static_cast<int>(p);
-        const auto [to, fresh] = by_part.try_emplace(part, MorphChannel{part, {}});
+        const int index = static_cast<int>(part - parts.begin());
+        const auto [to, fresh] = by_part.try_emplace(index, MorphChannel{index, {}});
         if (!fresh) {
           ++twice_;
           continue;

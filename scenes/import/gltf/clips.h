@@ -12,6 +12,7 @@ class Clips {
   Clips(const Document& document, Accessors& accessors, const CharacterLimits& limits)
       : document_(document), accessors_(accessors), limits_(limits) {}
 
+  // `parts` stand in the order of their nodes.
   Animation read(const tinygltf::Animation& source, const Tree& tree, const std::vector<Part>& parts);
 
   std::vector<std::string> notes() const;

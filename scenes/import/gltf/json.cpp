@@ -1,5 +1,6 @@
 #include "scenes/import/gltf/json.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepest = 64;
+constexpr std::size_t kDeepest = 64;
 
 // What a member of this name must be, wherever it stands in the sections that are read.
 enum class Kind { whole, wholes, wholes_by_name, by_name_list, numbers, text, flag, object, objects };
@@ -209,15 +210,28 @@ std::vector<std::string> target_names(const json& mesh) {
   return names;
 }
 
+// How deep brackets nest outside of texts. The JSON library could tell, too, but at a cost that grows with
+// the square of a list's length.
+std::size_t deepest(std::string_view text) {
+  std::size_t depth = 0, most = 0;
+  bool within_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (within_text && c == '\\') ++i;
+    if (c == '"') within_text = !within_text;
+    if (within_text) continue;
+    if (c == '{' || c == '[') most = std::max(most, ++depth);
+    if ((c == '}' || c == ']') && depth > 0) --depth;
+  }
+  return most;
+}
+
 json parsed(std::string_view text) {
-  const auto shallow = [](int depth, json::parse_event_t, json&) {
-    if (depth > kDeepest)
-      throw InputError("the glTF file's JSON nests deeper than " + std::to_string(kDeepest) +
-                       " levels; repair the file");
-    return true;
-  };
+  if (deepest(text) > kDeepest)
+    throw InputError("the glTF file's JSON nests deeper than " + std::to_string(kDeepest) +
+                     " levels; repair the file");
   try {
-    return json::parse(text.begin(), text.end(), shallow);
+    return json::parse(text.begin(), text.end());
   } catch (const json::exception& error) {
     throw InputError(std::string("the glTF file's JSON is damaged (") + error.what() + "); export it again");
   }

@@ -1,5 +1,6 @@
 #include "scenes/import/gltf/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -153,12 +154,14 @@ Part Surfaces::read_primitive(const tinygltf::Node& node, int primitive_index,
 }
 
 void Surfaces::read_skin(const tinygltf::Skin& skin, const std::vector<int>& place, Part& part) {
+  const Expected matrices{"inverse bind matrices", TINYGLTF_TYPE_MAT4, Components::floats, false,
+                          limits_.nodes};
+  const int bind = skin.inverseBindMatrices;
   // Ten times as many as nodes, because parts may share a skin.
-  require_count(joints_ += skin.joints.size(), 10 * limits_.nodes, "joints of all meshes together");
+  joints_ += std::max(skin.joints.size(), bind >= 0 ? accessors_.checked(bind, matrices).count : 0);
+  require_count(joints_, 10 * limits_.nodes, "joints of all meshes together");
   std::optional<Numbers> offsets;
-  if (skin.inverseBindMatrices >= 0)
-    offsets = accessors_.read(skin.inverseBindMatrices, {"inverse bind matrices", TINYGLTF_TYPE_MAT4,
-                                                         Components::floats, false, limits_.nodes});
+  if (bind >= 0) offsets = accessors_.read(bind, matrices);
   if (offsets && offsets->count < skin.joints.size())
     throw InputError("a skin of the glTF file has " + std::to_string(skin.joints.size()) + " joints, but " +
                      std::to_string(offsets->count) + " inverse bind matrices; export it again");
@@ -174,6 +177,7 @@ void Surfaces::read_influences(Attributes& attributes, Part& part, const std::st
   std::vector<Set> sets;
   const std::size_t vertices = part.positions.size();
   for (;;) {
+    require_count(influences_ + 4 * vertices * sets.size(), limits_.influences, "weights");
     const std::string number = std::to_string(sets.size());
     const auto joints = attributes.read("JOINTS_" + number, TINYGLTF_TYPE_VEC4,
                                         Components::unsigned_bytes | Components::unsigned_shorts, vertices);
@@ -206,7 +210,6 @@ void Surfaces::read_influences(Attributes& attributes, Part& part, const std::st
       }
     for (std::size_t i = first; i < part.influences.size(); ++i) part.influences[i].weight /= sum;
     part.first[v + 1] = part.influences.size();
-    require_count(influences_ + part.influences.size(), limits_.influences, "weights");
   }
   influences_ += part.influences.size();
 }
