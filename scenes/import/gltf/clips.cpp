@@ -22,11 +22,11 @@ Quaternion quaternion(std::span<const double> q) {
 }
 
 // Rotations of keys are unit quaternions up to rounding; tangents are of any length.
-void normalise(Quaternion& value) {
-  value = normalised(value);
+void normalise(Quaternion& value, const std::string& where) {
+  value = unit(value, where);
 }
-void normalise(Vec3&) {}
-void normalise(double&) {}
+void normalise(const Vec3&, const std::string&) {}
+void normalise(double, const std::string&) {}
 
 struct ByNode {
   bool operator()(const Part& part, int node) const { return part.node < node; }
@@ -49,6 +49,7 @@ struct Reach {
 
 // A sampler's numbers.
 struct Clips::Sampled {
+  std::string where;
   Numbers times, values;
   Between next;
   // Of the values, by key: as many elements as morph targets; of a cubic three times as many, those of the
@@ -61,6 +62,7 @@ Clips::Sampled Clips::sampled(const tinygltf::Animation& source, int index, cons
   const std::string where = "clip '" + source.name + "' of the glTF file, sampler " + std::to_string(index);
   const tinygltf::AnimationSampler& sampler = at(source.samplers, index, "animation sampler");
   Sampled out;
+  out.where = where;
   out.next = between(sampler.interpolation, where);
   out.elements = path == "weights" ? targets : 1;
   const std::size_t most = limits_.keys - keys_;
@@ -104,7 +106,7 @@ std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert)
       });
     };
     Key<Value> key{time, element(cubic ? 1 : 0), from.next};
-    normalise(key.value);
+    normalise(key.value, from.where);
     if (cubic) {
       key.arriving = element(0);
       key.leaving = element(2);

@@ -128,6 +128,13 @@ TEST(GltfClips, WhatDoesNotFitIsRefused) {
   EXPECT_NE(refusal(endless).find("time is not finite"), std::string::npos);
   missing.animate(2, "translation", {0, 1}, missing.accessor(std::vector<float>(6, infinity), "VEC3"));
   EXPECT_NE(refusal(missing).find("is not finite"), std::string::npos);
+  TubeFile no_turn, no_number;
+  no_turn.root["animations"][0]["samplers"][0]["output"] =
+      no_turn.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 0}, "VEC4");
+  EXPECT_NE(refusal(no_turn).find("rotation is zero"), std::string::npos);
+  no_number.root["animations"][0]["samplers"][0]["output"] = no_number.accessor(
+      std::vector<float>{0, 0, 0, 1, 0, 0, 0, std::numeric_limits<float>::quiet_NaN()}, "VEC4");
+  EXPECT_NE(refusal(no_number).find("not finite"), std::string::npos);
 }
 
 }  // namespace

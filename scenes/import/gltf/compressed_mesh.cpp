@@ -41,6 +41,10 @@ std::size_t CompressedMesh::vertices() const {
   return mesh_->num_points();
 }
 
+std::size_t CompressedMesh::triangles() const {
+  return mesh_->num_faces();
+}
+
 std::vector<std::uint32_t> CompressedMesh::corners() const {
   std::vector<std::uint32_t> corners;
   for (draco::FaceIndex f(0); f < mesh_->num_faces(); ++f)
@@ -56,7 +60,7 @@ Numbers CompressedMesh::attribute(int id, const tinygltf::Accessor& accessor, co
   numbers.count = vertices();
   numbers.width =
       static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
-  if (attribute->num_components() != numbers.width || accessor.count != numbers.count)
+  if (attribute->num_components() != numbers.width)
     throw InputError(what + ": the Draco data and their accessor differ in size; export it again");
   const int type = component_type(attribute->data_type(), what);
   const auto component = static_cast<std::size_t>(draco::DataTypeLength(attribute->data_type()));

@@ -131,8 +131,14 @@ TEST(GltfCompressed, DracoDataThatDoNotFitAreRefused) {
     EXPECT_NE(told.find(words), std::string::npos) << where << " = " << value << ": " << told;
   }
   TubeFile file = with_draco();
-  file.root["accessors"][0]["count"] = 3;
-  EXPECT_NE(refusal(file).find("differ in size"), std::string::npos);
+  file.root["accessors"][0]["type"] = "VEC4";
+  EXPECT_NE(refusal(file).find("wrong type"), std::string::npos);
+  CharacterLimits few;
+  few.vertices = 100;
+  TubeFile counted_before = with_draco();
+  counted_before.root["accessors"][0]["count"] = 1;
+  EXPECT_EQ(refusal(counted_before), "");
+  EXPECT_NE(refusal(counted_before, few).find("more than 100 vertices"), std::string::npos);
 }
 
 }  // namespace

@@ -139,6 +139,9 @@ TEST(GltfDocument, TextThatIsNoGltfIsRefused) {
   EXPECT_NE(told(folder, "test.gltf", "[]").find("is no object"), std::string::npos);
   EXPECT_NE(told(folder, "test.gltf", R"({"asset":{"version":"2.0"},"scene":1e999})").find("damaged"),
             std::string::npos);
+  // A byte order mark is forgiven.
+  EXPECT_EQ(told(folder, "test.gltf", "\xEF\xBB\xBF" + with_uri("data:;base64," + base64(TubeFile().bytes))),
+            "");
   // Brackets within texts are not nested.
   TubeFile file;
   file.root["nodes"][0]["name"] = std::string(200, '[') + "\"" + std::string(200, '{');
@@ -173,6 +176,9 @@ TEST(GltfDocument, OptionalExtensionsThatMayMoveVerticesAreNoted) {
   EXPECT_TRUE(has_note(character, "'EXT_mesh_gpu_instancing' is not read"));
   EXPECT_TRUE(has_note(character, "'KHR_node_visibility' is not read"));
   EXPECT_EQ(character.notes.size(), 2u);
+  file.root["extensionsUsed"].clear();
+  for (int i = 0; i < 100; ++i) file.root["extensionsUsed"].push_back("VENDOR_" + std::to_string(i));
+  EXPECT_TRUE(has_note(read(file), "81 more optional glTF extensions"));
 }
 
 // Damaged images, huge textures and the like are nobody's business here.

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kRead = {kMeshopt, kDraco, "KHR_mesh_quantization"};
 
 // These extensions say how a surface looks, where light comes from, or who made the file.
-constexpr std::array<std::string_view, 15> kHarmless = {"KHR_lights_punctual",
+constexpr std::array<std::string_view, 19> kHarmless = {"KHR_lights_punctual",
                                                         "KHR_texture_basisu",
                                                         "KHR_texture_transform",
                                                         "KHR_xmp",
@@ -24,6 +24,10 @@ constexpr std::array<std::string_view, 15> kHarmless = {"KHR_lights_punctual",
                                                         "EXT_texture_avif",
                                                         "EXT_texture_astc",
                                                         "MSFT_texture_dds",
+                                                        "EXT_mesh_features",
+                                                        "EXT_instance_features",
+                                                        "EXT_structural_metadata",
+                                                        "CESIUM_primitive_outline",
                                                         "FB_ngon_encoding",
                                                         "GODOT_single_root",
                                                         "MSFT_packing_occlusionRoughnessMetallic"};
@@ -47,11 +51,18 @@ void require_known(const std::set<std::string>& required) {
 }
 
 std::vector<std::string> notes_on(const std::set<std::string>& used) {
+  constexpr std::size_t kMostNamed = 20;
   std::vector<std::string> notes;
-  for (const std::string& name : used)
+  std::size_t more = 0;
+  for (const std::string& name : used) {
     // The channels of KHR_animation_pointer have a note each.
-    if (!is_read(name) && !is_harmless(name) && name != kPointer)
+    if (is_read(name) || is_harmless(name) || name == kPointer) continue;
+    if (notes.size() < kMostNamed)
       notes.push_back("the optional glTF extension '" + name + "' is not read");
+    else
+      ++more;
+  }
+  if (more > 0) notes.push_back(std::to_string(more) + " more optional glTF extensions are not read");
   return notes;
 }
 

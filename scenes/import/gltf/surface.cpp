@@ -71,12 +71,16 @@ class Attributes {
     const Expected expected{what_ + ", " + name, type, components, must_normalize, most};
     const auto id = compressed_.find(name);
     if (id == compressed_.end()) return accessors_.read(found->second, expected);
+    require_count(mesh_->vertices(), most, "vertices");
     return mesh_->attribute(id->second, accessors_.checked(found->second, expected), expected.what);
   }
 
   // The corners in the order of the primitive's mode; Draco always holds separate triangles.
   Corners corners(std::size_t vertices, std::size_t most) {
-    if (mesh_) return mesh_->corners();
+    if (mesh_) {
+      require_count(3 * mesh_->triangles(), most, "corners of triangles");
+      return mesh_->corners();
+    }
     const std::optional<Numbers> indices =
         read(kIndices, TINYGLTF_TYPE_SCALAR,
              Components::unsigned_bytes | Components::unsigned_shorts | Components::unsigned_ints, most);

@@ -1,5 +1,7 @@
 #include "scenes/import/gltf/tree.h"
 
+#include <cmath>
+
 #include "scenes/import/gltf/surface.h"
 
 namespace cscd::scenes::gltf {
@@ -43,8 +45,8 @@ Node node_of(const tinygltf::Node& source, int parent) {
   if (!source.translation.empty())
     written.move = {source.translation[0], source.translation[1], source.translation[2]};
   if (!source.rotation.empty())
-    written.rotation =
-        normalised({source.rotation[3], source.rotation[0], source.rotation[1], source.rotation[2]});
+    written.rotation = unit({source.rotation[3], source.rotation[0], source.rotation[1], source.rotation[2]},
+                            "node '" + source.name + "' of the glTF file");
   if (!source.scale.empty()) written.scale = {source.scale[0], source.scale[1], source.scale[2]};
   node.local = from_parts(written.move, written.rotation, written.scale);
   node.written = written;
@@ -52,6 +54,13 @@ Node node_of(const tinygltf::Node& source, int parent) {
 }
 
 }  // namespace
+
+Quaternion unit(const Quaternion& q, const std::string& where) {
+  const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  if (!std::isfinite(square) || !(square > 0))
+    throw InputError(where + ": a rotation is zero or not finite; repair it");
+  return normalised(q);
+}
 
 Tree make_tree(const tinygltf::Model& model, std::size_t most_nodes) {
   if (model.nodes.empty()) throw InputError("has no nodes; export it again");

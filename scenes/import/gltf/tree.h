@@ -5,6 +5,10 @@
 
 namespace cscd::scenes::gltf {
 
+// The unit quaternion of the same direction. Throws InputError where there is none, which normalised() would
+// take for no rotation.
+Quaternion unit(const Quaternion& q, const std::string& where);
+
 // A file's nodes as one tree, parents first. Nodes outside the scene stand in it too, because they may be
 // joints.
 struct Tree {

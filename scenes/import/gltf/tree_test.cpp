@@ -68,6 +68,17 @@ TEST(GltfTree, MirroredAndUnevenScalesStayAsWritten) {
   EXPECT_LT(pose_at(got, got.animations[0], 0.7)[4].determinant(), 0);
 }
 
+TEST(GltfTree, RotationsNeedADirectionButNoLength) {
+  TubeFile file;
+  file.root["nodes"][0]["rotation"] = {0, 0, 0, 3};
+  expect_same_motion(read(file), bending_tube());
+  for (const double x : {0.0, 1e200}) {
+    file.root["nodes"][0]["rotation"] = {x, 0, 0, 0};
+    EXPECT_NE(refusal(file).find("node 'root' of the glTF file: a rotation is zero or not finite"),
+              std::string::npos);
+  }
+}
+
 TEST(GltfTree, WhatIsNoTreeIsRefused) {
   TubeFile two_parents, loop, no_root, nothing;
   two_parents.root["nodes"][1]["children"] = {2};
