@@ -116,61 +116,74 @@ std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert)
   return keys;
 }
 
+void Clips::read_weights(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel,
+                         int node, const std::vector<Part>& parts, std::map<int, MorphChannel>& by_part) {
+  bool any = false;
+  const auto [first, last] = std::equal_range(parts.begin(), parts.end(), node, ByNode{});
+  for (auto part = first; part != last; ++part) {
+    const std::size_t targets = part->targets.size();
+    if (targets == 0) continue;
+    any = true;
+    const int index = static_cast<int>(part - parts.begin());
+    const auto [to, fresh] = by_part.try_emplace(index, MorphChannel{index, {}});
+    if (!fresh) {
+      ++twice_;
+      continue;
+    }
+    const Sampled from = sampled(source, channel.sampler, channel.target_path, targets);
+    for (std::size_t t = 0; t < targets; ++t)
+      to->second.weights.push_back(keys<double>(from, [t](const auto& at) { return at(t)[0]; }));
+  }
+  no_targets_ += !any;
+}
+
+void Clips::read_node(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel,
+                      Channel& to) {
+  const std::string& path = channel.target_path;
+  const auto fill = [&](auto& list, const auto& convert) {
+    if (!list.empty()) {
+      ++twice_;
+      return;
+    }
+    using Value = decltype(list[0].value);
+    list = keys<Value>(sampled(source, channel.sampler, path, 1), convert);
+  };
+  const auto to_vector = [](const auto& at) { return vector(at(0)); };
+  if (path == "translation")
+    fill(to.moves, to_vector);
+  else if (path == "rotation")
+    fill(to.rotations, [](const auto& at) { return quaternion(at(0)); });
+  else if (path == "scale")
+    fill(to.scales, to_vector);
+  else
+    throw InputError("clip '" + source.name + "' of the glTF file moves the unknown '" + path +
+                     "' of a node; export it again");
+}
+
 Animation Clips::read(const tinygltf::Animation& source, const Tree& tree, const std::vector<Part>& parts) {
   Animation animation;
   animation.name = source.name;
   animation.ticks_per_second = 1;  // glTF's times are seconds
-  Reach reach;
   std::map<int, Channel> by_node;
   std::map<int, MorphChannel> by_part;
   for (const tinygltf::AnimationChannel& channel : source.channels) {
     const int node = at(tree.place, channel.target_node, "node");
-    const std::string& path = channel.target_path;
-    if (path == "weights") {
-      const auto [first, last] = std::equal_range(parts.begin(), parts.end(), node, ByNode{});
-      bool any = false;
-      for (auto part = first; part != last; ++part) {
-        const std::size_t targets = part->targets.size();
-        if (targets == 0) continue;
-        any = true;
-        const int index = static_cast<int>(part - parts.begin());
-        const auto [to, fresh] = by_part.try_emplace(index, MorphChannel{index, {}});
-        if (!fresh) {
-          ++twice_;
-          continue;
-        }
-        const Sampled from = sampled(source, channel.sampler, path, targets);
-        for (std::size_t t = 0; t < targets; ++t) {
-          to->second.weights.push_back(keys<double>(from, [t](const auto& at) { return at(t)[0]; }));
-          reach.take(to->second.weights.back());
-        }
-      }
-      no_targets_ += !any;
-      continue;
-    }
-    Channel& to = by_node.try_emplace(node, Channel{node, {}, {}, {}}).first->second;
-    const auto fill = [&](auto& list, const auto& convert) {
-      if (!list.empty()) {
-        ++twice_;
-        return;
-      }
-      using Value = decltype(list[0].value);
-      list = keys<Value>(sampled(source, channel.sampler, path, 1), convert);
-      reach.take(list);
-    };
-    const auto to_vector = [](const auto& at) { return vector(at(0)); };
-    if (path == "translation")
-      fill(to.moves, to_vector);
-    else if (path == "rotation")
-      fill(to.rotations, [](const auto& at) { return quaternion(at(0)); });
-    else if (path == "scale")
-      fill(to.scales, to_vector);
+    if (channel.target_path == "weights")
+      read_weights(source, channel, node, parts, by_part);
     else
-      throw InputError("clip '" + source.name + "' of the glTF file moves the unknown '" + path +
-                       "' of a node; export it again");
+      read_node(source, channel, by_node.try_emplace(node, Channel{node, {}, {}, {}}).first->second);
   }
-  for (auto& [node, channel] : by_node) animation.channels.push_back(std::move(channel));
-  for (auto& [part, morph] : by_part) animation.morphs.push_back(std::move(morph));
+  Reach reach;
+  for (auto& [node, channel] : by_node) {
+    reach.take(channel.moves);
+    reach.take(channel.rotations);
+    reach.take(channel.scales);
+    animation.channels.push_back(std::move(channel));
+  }
+  for (auto& [part, morph] : by_part) {
+    for (const Curve& weights : morph.weights) reach.take(weights);
+    animation.morphs.push_back(std::move(morph));
+  }
   if (reach.first <= reach.last) {
     animation.start = reach.first;
     animation.seconds = reach.last - reach.first;

@@ -21,6 +21,9 @@ class Clips {
   struct Sampled;
   Sampled sampled(const tinygltf::Animation& source, int sampler, const std::string& path,
                   std::size_t targets);
+  void read_weights(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, int node,
+                    const std::vector<Part>& parts, std::map<int, MorphChannel>& by_part);
+  void read_node(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, Channel& to);
   template <class Value, class Convert>
   std::vector<Key<Value>> keys(const Sampled& from, const Convert& convert);
 
