@@ -38,8 +38,8 @@ void export_glb(const std::string& input, const ModelOptions& options, const std
   progress.reset();
   file.commit(scenes::to_glb(character));
   std::printf("%s: %zu frames at %g a second of %zu bones, %zu vertices and %zu triangles\n",
-              output.string().c_str(), scene.frames, scenes::kExportedFps, scene.expected.bones,
-              scene.expected.vertices, scene.expected.triangles);
+              output.string().c_str(), scene.frames, scenes::kExportedFps, character.parts[0].joints.size(),
+              character.parts[0].positions.size(), character.parts[0].triangles.size());
 }
 
 }  // namespace cscd::bench

@@ -19,24 +19,31 @@ void require_linear(const Scene& scene) {
     throw InputError("scene " + scene.name + ": its last effect is " + last +
                      ", so its vertices are not where linear blending of its bones (skinning_linear) takes "
                      "them, which is all that a skin in a model file can say; export it as .h5");
+}
+
+// What is written has to be read back.
+void require_readable(const Scene& scene, std::size_t bones) {
   const CharacterLimits limits;
-  if (scene.frames > limits.frames || scene.frames * scene.expected.bones > limits.keys / 2)
+  if (scene.frames > limits.frames || scene.frames * bones > limits.keys / 2)
     throw InputError("scene " + scene.name + ": " + std::to_string(scene.frames) + " frames of " +
-                     std::to_string(scene.expected.bones) +
+                     std::to_string(bones) +
                      " bones are more keys than are read back from a model file; export it as .h5");
 }
 
 // Collects a character from the states of a scene.
 class Recorder {
  public:
-  explicit Recorder(const std::string& name) {
+  explicit Recorder(const Scene& scene) : scene_(scene) {
     character_.format = "scene";
-    character_.nodes.push_back({name, -1, Transform()});
-    character_.animations.push_back({name, 0, 0, 0, {}});
+    character_.nodes.push_back({scene.name, -1, Transform()});
+    character_.animations.push_back({scene.name, 0, 0, 0, {}});
   }
 
   void add(const SceneState& state) {
-    if (frames_ == 0) add_surface(state.shape);
+    if (frames_ == 0) {
+      require_readable(scene_, state.shape.rig.parent.size());
+      add_surface(state.shape);
+    }
     const double seconds = static_cast<double>(frames_++) / kExportedFps;
     character_.animations[0].seconds = seconds;
     world_.clear();
@@ -96,6 +103,7 @@ class Recorder {
     channel.rotations.push_back({seconds, parts.rotation});
   }
 
+  const Scene& scene_;
   Character character_;
   std::size_t frames_ = 0;
   std::vector<Transform> world_;  // of every bone's node in the current frame
@@ -111,7 +119,7 @@ class NoFrames final : public FrameSink {
 
 Character skinned_scene(const Scene& scene, const Progress& progress) {
   require_linear(scene);
-  Recorder recorder(scene.name);
+  Recorder recorder(scene);
   NoFrames sink;
   const Generated generated = run_scene(
       scene, [&](const ClipHeader&) -> FrameSink& { return sink; }, progress,
