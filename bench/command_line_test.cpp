@@ -143,6 +143,8 @@ TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
   EXPECT_NE(tables.out.find("| mein_Stück |"), std::string::npos) << tables.out;
   EXPECT_EQ(tables.out.find("no record of"), std::string::npos) << tables.out;
   EXPECT_NE(tables.out.find("times faster"), std::string::npos);
+  EXPECT_NE(tables.out.find("--scene 'mein Stück.json' --strategy base,drvbc_fast "), std::string::npos)
+      << tables.out;
 }
 
 TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {

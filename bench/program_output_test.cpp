@@ -141,7 +141,7 @@ TEST_F(ProgramOutput, VanishesWhereASignalEndsTheProgram) {
   put_long_scene("longer");
   // The signal is sent as soon as all that is unfinished can be seen.
   const auto interrupt = [&](const std::string& command, const std::string& signal, int unfinished) {
-    return run("set -m; mkdir -p records; cscd " + command + " & for i in $(seq 600); do\n" +
+    return run("ulimit -t 60; set -m; mkdir -p records; cscd " + command + " & for i in $(seq 600); do\n" +
                "  n=$(find . -name '.cscd-unfinished-*' | wc -l); [ $n -ge " + std::to_string(unfinished) +
                " ] && break; sleep 0.05; done; echo $n; kill -" + signal + " $!; wait $!; status=$?\n" +
                "find . -name '.cscd-*' >+left; rmdir records; exit $status");
