@@ -129,8 +129,8 @@ TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
   const Ran second = run("cscd query " + file + " --json -");
   EXPECT_EQ(second.errors.find("note"), std::string::npos) << second.errors;
 
-  for (const std::string command : {"export " + file + " out.h5", "nearness " + file, "inspect " + file,
-                                    "clusters " + file + " --json c.json"})
+  for (const std::string& command : {"export " + file + " out.h5", "nearness " + file, "inspect " + file,
+                                     "clusters " + file + " --json c.json"})
     EXPECT_EQ(run("cscd " + command).status, 0) << command;
   const Ran ran = run("cscd run --smoke --strategy base,drvbc_fast --scene " + file + " --json r.json");
   EXPECT_EQ(ran.status, 0) << ran.errors;
@@ -143,6 +143,8 @@ TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
   EXPECT_NE(tables.out.find("| mein_Stück |"), std::string::npos) << tables.out;
   EXPECT_EQ(tables.out.find("no record of"), std::string::npos) << tables.out;
   EXPECT_NE(tables.out.find("times faster"), std::string::npos);
+  EXPECT_NE(tables.out.find("--scene 'mein Stück.json' --strategy base,drvbc_fast "), std::string::npos)
+      << tables.out;
 }
 
 TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {

@@ -35,8 +35,12 @@ void add_help(CLI::App& app) {
   help->add_option("command", *words, "the command; default the program");
   help->callback([words, &app] {
     const CLI::App* command = &app;
-    for (const std::string& word : *words) command = &command_below(*command, word);
-    print(command->help());
+    std::string called = app.get_name();
+    for (const std::string& word : *words) {
+      command = &command_below(*command, word);
+      called += " " + word;
+    }
+    print(command->get_formatter()->make_help(command, called, CLI::AppFormatMode::Normal));
   });
 
   auto shell = std::make_shared<std::string>();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bench/command.h"
+#include "bench/help_format.h"
 #include "bench/output.h"
 #include "bench/standard_streams.h"
 #include "bench/usage.h"
@@ -31,6 +32,7 @@ int run(int argc, char** argv) {
       "  cscd help query                      what a command does and takes\n\n"
       "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input.",
       "cscd");
+  app.formatter(std::make_shared<cscd::bench::HelpFormat>());  // commands that are added have it, too
   app.require_subcommand(1);
   app.set_version_flag("--version", cscd::bench::version_text,
                        "show the version, the build and the libraries");

@@ -9,6 +9,7 @@ namespace cscd::bench {
 namespace {
 
 constexpr Progress::Seconds kBetweenBars{0.1};
+constexpr char kClearLine[] = "\r\033[K";
 
 }  // namespace
 
@@ -37,14 +38,17 @@ Progress::Progress(std::string title, std::size_t total, Seconds between_lines)
 }
 
 Progress::~Progress() {
-  if (terminal_) std::fputs("\r\033[K", stderr);
+  if (terminal_ && done_ != total_) std::fputs(kClearLine, stderr);
 }
 
 void Progress::set(std::size_t done) {
   done_ = done;
   const auto now = std::chrono::steady_clock::now();
-  const bool last = done_ == total_;
-  if (now - drawn_ < (terminal_ ? kBetweenBars : between_lines_) && !(last && terminal_)) return;
+  if (terminal_ && done_ == total_) {  // what is printed next begins a line of its own
+    std::fputs(kClearLine, stderr);
+    return;
+  }
+  if (now - drawn_ < (terminal_ ? kBetweenBars : between_lines_)) return;
   drawn_ = now;
   draw(now - begin_);
 }
@@ -58,7 +62,8 @@ void Progress::draw(Seconds elapsed) const {
   constexpr std::size_t width = 30;
   const std::size_t filled = total_ == 0 ? width : std::min(width, width * done_ / total_);
   const std::string bar = std::string(filled, '=') + std::string(width - filled, ' ');
-  std::fprintf(stderr, "\r\033[K%s [%s] %zu/%zu%s", title_.c_str(), bar.c_str(), done_, total_, left.c_str());
+  std::fprintf(stderr, "%s%s [%s] %zu/%zu%s", kClearLine, title_.c_str(), bar.c_str(), done_, total_,
+               left.c_str());
   std::fflush(stderr);
 }
 

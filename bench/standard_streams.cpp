@@ -43,8 +43,9 @@ int finish_standard_output(int status) {
   if (std::fflush(stdout) == 0 && !failed_before) return status;
   const int reason = errno;
   if (nobody_reads()) end_by_broken_pipe();
-  std::fprintf(stderr, "cscd: standard output: cannot be written%s%s; what was printed is not complete\n",
-               reason != 0 ? ": " : "", reason != 0 ? std::strerror(reason) : "");
+  // The reason of a write that failed long ago is gone.
+  std::fprintf(stderr, "cscd: standard output: cannot be written (%s); what was printed is not complete\n",
+               reason != 0 ? std::strerror(reason) : "is the disk full?");
   return status != 0 ? status : kNotWritten;
 }
 

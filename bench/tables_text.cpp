@@ -1,7 +1,9 @@
 #include "bench/tables_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
+#include <string_view>
 
 #include "bench/data.h"
 
@@ -88,9 +90,17 @@ ordered_json source_json(const Record& record) {
           {"colliding_intervals", v.colliding.size()}};
 }
 
+// As a shell takes it: a word that holds more than letters, digits and a few signs stands in quotes.
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
-  for (const std::string& word : words) out.append(out.empty() ? "" : " ").append(word);
+  for (const std::string& word : words) {
+    const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return c >= 0x80 || std::isalnum(c) != 0 ||
+             std::string_view("_-+=:,./@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    out += out.empty() ? "" : " ";
+    out += plain && !word.empty() ? word : "'" + word + "'";
+  }
   return out;
 }
 

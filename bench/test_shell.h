@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +29,8 @@ class Program : public testing::Test {
   fs::path folder = fs::temp_directory_path() / ("cscd pröbe " + std::to_string(getpid()));
 
   void SetUp() override {
+    // Whoever runs the tests in the background ignores these, and what ignores them hands that on.
+    for (const int number : {SIGINT, SIGHUP, SIGPIPE}) signal(number, SIG_DFL);
     fs::remove_all(folder);
     fs::create_directories(folder / "scenes");
     put("scenes/small.json", scenes::small_scene_with_digest());

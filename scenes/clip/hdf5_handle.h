@@ -31,8 +31,12 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-// HDF5 prints its error stack on standard error by default; we report in one line of our own instead.
+// HDF5 prints its error stack on standard error by default; we report in one line of our own instead. Call
+// this before anything else of HDF5's.
 inline void silence_hdf5() {
+  // At the end of the process HDF5 closes again what could not be closed, and crashes where a disk was full
+  // (1.10.8). All files are closed by their handles.
+  [[maybe_unused]] static const herr_t no_cleaning = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 

@@ -187,7 +187,7 @@ void PointCacheWriter::finish() {
     throw InputError(file.path.string() + ": " + std::to_string(file.positions.frames) +
                      " frames; a point cache needs at least 2");
   file.close_datasets();
-  if (!file.file.close()) file.fail("the last data did not reach the disk");
+  if (!file.file.close()) file.fail("the last data did not reach the disk (is it full?)");
   file.unfinished->finish();
 }
 
