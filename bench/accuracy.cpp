@@ -207,7 +207,7 @@ class Study {
     }
     for (const ordered_json& ratio : ratios())
       if (!ratio.contains("name"))
-        std::printf("filtered_exact over newton, %s: %.3f [%.3f, %.3f]\n",
+        std::printf("time of filtered_exact as a share of newton's, %s: %.3f [%.3f, %.3f]\n",
                     ratio["group"].get<std::string>().c_str(), ratio["value"].get<double>(),
                     ratio["low"].get<double>(), ratio["high"].get<double>());
     if (contradicted_ > 0) std::printf("the referee contradicts %zu published truths\n", contradicted_);

@@ -15,6 +15,7 @@
 #include "baselines/mcd/mcd.h"
 #include "baselines/rvbc.h"
 #include "baselines/selfccd.h"
+#include "core/base/closest_name.h"
 #include "core/base/error.h"
 #include "core/engine/drvbc.h"
 #include "core/engine/drvbc_fast.h"
@@ -132,8 +133,13 @@ constexpr std::array kStrategies = {
 template <class Rows>
 [[noreturn]] void refuse(const char* what, std::string_view name, const Rows& rows) {
   std::string known;
-  for (const auto& row : rows) known += (known.empty() ? "" : ", ") + std::string(row.name);
-  throw InputError(std::string(what) + " '" + std::string(name) + "' is not known; choose one of " + known);
+  std::vector<std::string_view> names;
+  for (const auto& row : rows) {
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+    names.push_back(row.name);
+  }
+  throw InputError(std::string(what) + " '" + std::string(name) + "' is not known" +
+                   did_you_mean(name.substr(0, name.find('@')), names) + "; choose one of " + known);
 }
 
 // Of NAME@TOLERANCE[:STEPS].

@@ -42,8 +42,9 @@ ClaimResult judge(const ordered_json& claim, std::span<const Record> records) {
   if (!claim.contains("measure")) return result;
   result.expectation = text_of(claim.at("expect"));
   for (const ordered_json& scene : claim.at("scenes")) {
-    const auto record = std::find_if(records.begin(), records.end(),
-                                     [&](const Record& candidate) { return candidate.scene.name == scene; });
+    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
+      return candidate.scene.name == scene && candidate.scene.path.empty();
+    });
     if (record == records.end()) continue;
     for (const ordered_json& definition : claim["measure"]) {
       Evidence& evidence = result.evidence.emplace_back();

@@ -23,6 +23,7 @@ void clusters(const ClusterOptions& options) {
   const Strategy* strategy = options.strategy.empty() ? nullptr : &strategy_named(options.strategy);
   OutputFile output(options.output, options.force);
   Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   if (strategy == nullptr) strategy = &default_strategy(input);
   if (options.frame >= input.clip->interval_count())
     throw InputError("--frame " + std::to_string(options.frame) + ": " + options.input +
@@ -67,7 +68,7 @@ void add_clusters(CLI::App& app) {
   command->add_option("--frame", options->frame, "where the interval starts")->capture_default_str();
   command->add_option("--strategy", options->strategy,
                       "a radial strategy; default the best that the input allows");
-  command->add_option("--json", options->output, "where it goes")->required();
+  command->add_option("--json", options->output, "where it goes; - is standard output")->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { clusters(*options); });

@@ -13,6 +13,7 @@ struct ExitStatus {
   int code;
 };
 inline constexpr ExitStatus kVerificationFailed{1};
+inline constexpr ExitStatus kContactFound{3};  // query --fail-on-contact
 
 void add_query(CLI::App& app);
 void add_inspect(CLI::App& app);
@@ -27,5 +28,7 @@ void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_scale(CLI::App& app);
+void add_scene(CLI::App& app);
+void add_help(CLI::App& app);  // and completion, man
 
 }  // namespace cscd::bench

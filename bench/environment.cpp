@@ -92,20 +92,9 @@ constexpr const char* kInstructionSet =
 
 }  // namespace
 
-ordered_json environment() {
-  return {{"date", utc_now()},
-          {"program", build_info::kCscd},
-          {"commit", build_info::kCommit},
+ordered_json build_environment() {
+  return {{"commit", build_info::kCommit},
           {"dirty", build_info::kDirty},
-          {"cpu", value_in("/proc/cpuinfo", "model name")},
-          {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
-          {"usable_cores", usable_cores()},
-          {"caches", caches()},
-          {"memory", value_in("/proc/meminfo", "MemTotal")},
-          {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
-          {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
-          {"load_average", load_average()},
-          {"kernel", kernel()},
           {"compiler", build_info::kCompiler},
           {"flags", build_info::kFlags},
           {"instruction_set", kInstructionSet},
@@ -116,6 +105,28 @@ ordered_json environment() {
             {"gmp", gmp_version},
             {"nlohmann_json", build_info::kNlohmannJson},
             {"cli11", build_info::kCli11}}}};
+}
+
+ordered_json environment() {
+  const ordered_json build = build_environment();
+  return {{"date", utc_now()},
+          {"program", build_info::kCscd},
+          {"commit", build.at("commit")},
+          {"dirty", build.at("dirty")},
+          {"cpu", value_in("/proc/cpuinfo", "model name")},
+          {"cores", sysconf(_SC_NPROCESSORS_ONLN)},
+          {"usable_cores", usable_cores()},
+          {"caches", caches()},
+          {"memory", value_in("/proc/meminfo", "MemTotal")},
+          {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
+          {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
+          {"load_average", load_average()},
+          {"kernel", kernel()},
+          {"compiler", build.at("compiler")},
+          {"flags", build.at("flags")},
+          {"instruction_set", build.at("instruction_set")},
+          {"build_type", build.at("build_type")},
+          {"libraries", build.at("libraries")}};
 }
 
 }  // namespace cscd::bench

@@ -8,4 +8,7 @@ namespace cscd::bench {
 // date. What the machine does not tell is "unknown", never missing.
 nlohmann::ordered_json environment();
 
+// The part of it that is about the program alone: commit, compiler, flags, instruction set, libraries.
+nlohmann::ordered_json build_environment();
+
 }  // namespace cscd::bench

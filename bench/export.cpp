@@ -5,11 +5,15 @@
 #include "bench/export_glb.h"
 #include "bench/input.h"
 #include "bench/model_options.h"
+#include "bench/output_format.h"
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::bench {
 namespace {
+
+constexpr std::string_view kFormats[] = {".h5", ".hdf5", ".glb"};
 
 struct ExportOptions {
   std::string input, output;
@@ -18,16 +22,19 @@ struct ExportOptions {
 };
 
 void export_frames(const ExportOptions& options) {
-  // What exists already is refused before the work, not after it.
-  std::error_code ignored;
-  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(options.output, ignored)))
-    throw InputError(options.output +
-                     ": exists already; choose another name, or ask to overwrite with --force");
-  if (std::filesystem::path(options.output).extension() == ".glb") {
+  // What cannot be written is refused before the work, not after it.
+  const std::string format = require_format(options.output, kFormats);
+  const OutputTarget target = find_output_target(options.output, options.force);
+  if (target.is_stream)
+    throw InputError("output " + options.output +
+                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  if (format == ".glb") {
     export_glb(options.input, options.model, options.output, options.force);
     return;
   }
+  { const UnfinishedFile can_be_made(target.path, options.force); }
   const Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
   scenes::copy_frames(*input.clip, writer);
   writer.finish();

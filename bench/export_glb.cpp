@@ -29,7 +29,7 @@ void export_glb(const std::string& input, const ModelOptions& options, const std
         ": is a scene, whose frames are written as they are; leave out the options of model files "
         "(--clip, --fps, ...)");
   const scenes::Scene scene = scenes::load_scene(input);
-  OutputFile file(output, force);
+  OutputFile file(output, force, ".glb");
   std::optional<Progress> progress;
   const scenes::Character character = scenes::skinned_scene(scene, [&](std::size_t done, std::size_t total) {
     if (!progress) progress.emplace("generating " + input, total);

@@ -28,7 +28,7 @@ void write_hard_cases(const HardCasesOptions& options) {
     for (const hard::Kind kind : {hard::Kind::vertex_face, hard::Kind::edge_edge}) {
       const std::string name =
           std::string(family.name) + (kind == hard::Kind::vertex_face ? "-vf.csv" : "-ee.csv");
-      OutputFile output(folder / name, options.force);
+      OutputFile output(folder / name, options.force, ".csv");
       std::vector<Query> queries;
       std::size_t contacts = 0;
       for (std::size_t i = 0; i < options.queries; ++i) {

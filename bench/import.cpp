@@ -8,9 +8,11 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"
@@ -67,9 +69,11 @@ class TemporaryFolder {
     std::string name = (place / (kPrefix + std::to_string(getpid()) + "-XXXXXX")).string();
     if (mkdtemp(name.data()) == nullptr) return false;
     path_ = name;
+    registered_.emplace(path_);
     return true;
   }
   fs::path path_;
+  std::optional<Temporary> registered_;
 };
 
 void require_model_file(const fs::path& path) {
@@ -113,10 +117,15 @@ std::string listed(const std::vector<std::size_t>& numbers) {
 
 ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
   require_model_file(path);
+  if (options.import.clip == kAllClips)
+    throw InputError(std::string("--clip ") + kAllClips +
+                     ": only query answers all clips in one run; name one, or give its number");
   const TemporaryFolder folder;
-  const fs::path cache = folder.path() / "frames.h5", report = folder.path() / "report";
+  const fs::path cache = folder.path() / "frames.h5", report = folder.path() / "report",
+                 sources = folder.path() / "sources";
   std::error_code ignored;
-  std::vector<std::string> arguments{fs::absolute(path, ignored).string(), cache.string(), report.string()};
+  std::vector<std::string> arguments{fs::absolute(path, ignored).string(), cache.string(), report.string(),
+                                     sources.string()};
   const std::vector<std::string> wishes = to_arguments(options.import);
   arguments.insert(arguments.end(), wishes.begin(), wishes.end());
   scenes::Limits limits;
@@ -131,16 +140,28 @@ ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
   if (outcome.end == scenes::Outcome::End::exited && outcome.code == 2)
     throw InputError(path.string() + ": " + what);
   if (outcome.end != scenes::Outcome::End::exited || outcome.code != 0)
-    throw InputError(path.string() + ": its import " + to_text(outcome) +
-                     "; the file is damaged or needs more than --import-memory " +
-                     std::to_string(options.memory_mib) + " MiB; export it again");
+    throw InputError(path.string() + ": the reader failed on it (" + to_text(outcome) +
+                     "), which is a fault of the reader or more than --import-memory " +
+                     std::to_string(options.memory_mib) +
+                     " MiB holds; raise that, or convert the file to another format");
   try {
-    ImportedModel model{std::make_unique<scenes::PointCacheReader>(cache),
-                        scenes::parse_report(read_report(report))};
+    ImportedModel model{
+        std::make_unique<scenes::PointCacheReader>(cache), scenes::parse_report(read_report(report)), {}};
+    const scenes::ClipHeader& header = model.clip->header();
+    model.sources = scenes::read_source_map(sources, {header.triangles.size(), header.vertex_count,
+                                                      model.report.parts.size(), model.report.bones.size()});
     return model;  // the open file outlives its name
   } catch (const InputError& error) {
     throw InputError(path.string() + ": its import gave what cannot be used: " + error.what());
   }
+}
+
+double second_of_frame(const ImportReport& report, std::size_t frame, std::size_t frames) {
+  const double lead_in = static_cast<double>(report.lead_in);
+  const auto chosen = static_cast<std::size_t>(report.chosen_clip);
+  const double length =
+      report.chosen_clip >= 0 && chosen < report.clips.size() ? report.clips[chosen].seconds : 0;
+  return frame + 1 == frames ? length : (static_cast<double>(frame) - lead_in) / report.fps;
 }
 
 std::string import_text(const ImportReport& r) {
@@ -149,13 +170,18 @@ std::string import_text(const ImportReport& r) {
   if (r.chosen_clip >= 0 && static_cast<std::size_t>(r.chosen_clip) < r.clips.size()) {
     const ImportReport::Clip& clip = r.clips[static_cast<std::size_t>(r.chosen_clip)];
     std::string text = "clip " + std::to_string(r.chosen_clip) + " '" + clip.name + "' of " +
-                       std::to_string(r.clips.size()) + ": " + number(clip.seconds) + " s, " +
-                       std::to_string(clip.frames) + " frames at " + number(r.fps) + " a second, drives " +
-                       std::to_string(clip.driven) + " of " + std::to_string(r.joints) + " bones";
-    if (r.lead_in > 0) text += "; " + std::to_string(r.lead_in) + " frames from the bind pose before it";
-    if (clip.ticks_per_second == 0) text += "; the file gives no ticks a second, 25 assumed";
+                       std::to_string(r.clips.size()) + ": " + number(clip.seconds) + " s as " +
+                       std::to_string(clip.frames) + " frames, " + number(r.fps) +
+                       " a second and its last moment; drives " + std::to_string(clip.driven) + " of " +
+                       std::to_string(r.joints) + " bones";
+    if (clip.ticks_per_second == 0 && r.format != "glTF 2")
+      text += "; the file gives no ticks a second, 25 assumed";
     line(text);
   }
+  if (r.lead_in > 0)
+    line("begins with " + std::to_string(r.lead_in) + " frames (" +
+         number(static_cast<double>(r.lead_in) / r.fps) +
+         " s) from the bind pose to the first pose, which are no part of the clip: their times are negative");
   if (r.components > 0) {
     std::string which = (r.chosen_components.size() == 1 ? "component " : "components ") +
                         listed(r.chosen_components) + " of " + std::to_string(r.components);
@@ -180,10 +206,18 @@ nlohmann::json import_json(const ImportReport& r) {
   nlohmann::json clips = nlohmann::json::array();
   for (const ImportReport::Clip& clip : r.clips)
     clips.push_back({{"name", clip.name},
+                     {"start", clip.start},
                      {"seconds", clip.seconds},
                      {"ticks_per_second", clip.ticks_per_second},
                      {"frames", clip.frames},
                      {"bones_driven", clip.driven}});
+  nlohmann::json parts = nlohmann::json::array();
+  const auto count = [](std::int32_t n) { return n < 0 ? nlohmann::json() : nlohmann::json(n); };
+  for (const ImportReport::Part& part : r.parts)
+    parts.push_back({{"name", part.name},
+                     {"node", part.node},
+                     {"mesh", count(part.mesh)},
+                     {"primitive", count(part.primitive)}});
   nlohmann::json unit, chosen;
   if (r.centimetres_per_unit > 0) unit = r.centimetres_per_unit;
   if (r.chosen_clip >= 0) chosen = r.chosen_clip;
@@ -193,6 +227,7 @@ nlohmann::json import_json(const ImportReport& r) {
       {"nodes", r.nodes},
       {"meshes", r.meshes},
       {"bones", r.joints},
+      {"parts", parts},
       {"vertices", r.vertices},
       {"triangles", r.triangles},
       {"most_influences", r.most_influences},

@@ -7,6 +7,7 @@
 
 #include "scenes/character/options.h"
 #include "scenes/character/report.h"
+#include "scenes/character/source_map.h"
 #include "scenes/clip/clip.h"
 
 namespace cscd::bench {
@@ -20,15 +21,24 @@ struct ModelOptions {
   bool operator==(const ModelOptions&) const = default;
 };
 
+// Instead of a clip's name: every clip of the file, one after the other. A clip that has this name can be
+// chosen by its number.
+inline constexpr char kAllClips[] = "all";
+
 struct ImportedModel {
   std::unique_ptr<scenes::ClipSource> clip;
   scenes::ImportReport report;
+  scenes::SourceMap sources;
 };
 
 // Has cscd-import (beside this program) turn a model file into a temporary point cache, under limits, and
 // opens that; the file is gone when the clip is. Throws InputError, in one line, for whatever goes wrong with
 // the file or in the other process: a crash, too much time, too much memory.
 ImportedModel import_model(const std::filesystem::path& path, const ModelOptions& options);
+
+// When a frame is shown, in seconds after the clip's start; negative in the lead-in from the bind pose.
+// `frames` is the number of all frames.
+double second_of_frame(const scenes::ImportReport& report, std::size_t frame, std::size_t frames);
 
 // What was chosen and what was done to it, in a few lines.
 std::string import_text(const scenes::ImportReport& report);

@@ -17,6 +17,10 @@ namespace {
 
 std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
   const scenes::Scene scene = scenes::load_scene(name);
+  if (!scene.expected.digest)
+    std::fprintf(stderr,
+                 "note: %s promises no digest, so its frames may be any; cscd scene accept FILE writes it\n",
+                 name.c_str());
   std::optional<Progress> progress;
   return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
     if (!progress) progress.emplace("generating " + name, total);
@@ -43,7 +47,8 @@ bool is_point_cache(const std::filesystem::path& path) {
 bool is_model_file(const std::string& name) {
   const std::filesystem::path path(name);
   std::error_code ignored;
-  return !is_point_cache(path) && (path.has_extension() || std::filesystem::exists(path, ignored));
+  return !is_point_cache(path) && !scenes::is_scene_file(path) &&
+         (path.has_extension() || std::filesystem::exists(path, ignored));
 }
 
 Input open_input(const std::string& name, const ModelOptions& options) {
@@ -54,12 +59,13 @@ Input open_input(const std::string& name, const ModelOptions& options) {
                      "files (--clip, --fps, ...)");
   std::unique_ptr<scenes::ClipSource> clip;
   std::optional<scenes::ImportReport> import;
+  std::optional<scenes::SourceMap> sources;
   if (model) {
     ImportedModel imported = import_model(name, options);
     scenes::limit_memory(options.answer_memory_mib << 20);
     clip = std::move(imported.clip);
     import = std::move(imported.report);
-    std::printf("%s (%s)\n%s", name.c_str(), import->format.c_str(), import_text(*import).c_str());
+    sources = std::move(imported.sources);
   } else if (is_point_cache(name)) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
   } else {
@@ -70,7 +76,14 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::optional<Rig> rig = scenes::rig_of(*clip);
   const scenes::FrameView first = clip->load_frame(0);
   std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-  return {name, std::move(clip), std::move(mesh), std::move(reference), std::move(rig), std::move(import)};
+  return {name,           std::move(clip),   std::move(mesh),   std::move(reference),
+          std::move(rig), std::move(import), std::move(sources)};
+}
+
+void say_what_was_read(const Input& input, std::FILE* to) {
+  if (input.import)
+    std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
+                 import_text(*input.import).c_str());
 }
 
 IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {

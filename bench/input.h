@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -23,16 +24,26 @@ struct Input {
   std::vector<Vec3> reference;  // positions of frame 0
   std::optional<Rig> rig;
   std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
+  std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
   int threads = 1;                                            // for whatever can use them
+
+  // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
+  std::span<const Vec3> rest() const {
+    const std::vector<Vec3>& named = clip->header().rest;
+    return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
+  }
 
   Setup setup(const ElementaryTest& elementary) const {
     return {mesh, reference, rig ? &*rig : nullptr, elementary, threads};
   }
 };
 
-// Throws InputError. Generates a scene whose cache is missing; imports a model file and says on standard
-// output what was made of it. Options are for model files only.
+// Throws InputError. Generates a scene whose cache is missing; imports a model file. Options are for model
+// files only.
 Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
+
+// Says what was made of a model file, a few lines; nothing of other inputs.
+void say_what_was_read(const Input& input, std::FILE* to);
 
 // Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
 bool is_model_file(const std::string& name_or_path);

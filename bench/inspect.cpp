@@ -209,6 +209,7 @@ void inspect(InspectOptions options) {
   if (!options.output.empty()) output.emplace(options.output, options.force);
   if (is_model_file(options.input)) options.model.import.survey = true;
   Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   const std::vector<Moment> moments = moments_of(input);
   const std::vector<Piece> pieces = scenes::pieces_of(input.mesh);
   const bool has_bones = input.rig.has_value();

@@ -16,14 +16,17 @@ using nlohmann::json;
 
 json scenes_json() {
   json rows = json::array();
-  for (const scenes::SceneSummary& scene : scenes::list_scenes())
-    rows.push_back({{"name", scene.name},
-                    {"story", scene.story},
-                    {"frames", scene.frames},
-                    {"vertices", scene.vertices},
-                    {"triangles", scene.triangles},
-                    {"bones", scene.bones},
-                    {"effects", scene.effects}});
+  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+    json& row = rows.emplace_back(json{{"name", scene.name}});
+    if (!scene.fault.empty()) {
+      row["fault"] = scene.fault;
+      continue;
+    }
+    row.update({{"story", scene.story}, {"frames", scene.frames}, {"effects", scene.effects}});
+    if (scene.expected.vertices) row["vertices"] = *scene.expected.vertices;
+    if (scene.expected.triangles) row["triangles"] = *scene.expected.triangles;
+    if (scene.expected.bones) row["bones"] = *scene.expected.bones;
+  }
   return rows;
 }
 
@@ -85,12 +88,18 @@ std::string text(const json& value) {
   return joined;
 }
 
-void list(const std::string& only, bool as_json) {
+void list(const std::string& only, bool as_json, bool names_only) {
   json document = {{"schema", "cscd.list/1"}};
   for (const Section& section : kSections)
     if (only.empty() || only == section.name) document[section.name] = section.rows();
   if (as_json) {
     std::printf("%s\n", document.dump(1).c_str());
+    return;
+  }
+  if (names_only) {
+    for (const Section& section : kSections)
+      if (document.contains(section.name))
+        for (const json& row : document[section.name]) std::printf("%s\n", text(row["name"]).c_str());
     return;
   }
   for (const Section& section : kSections) {
@@ -114,8 +123,10 @@ void add_list(CLI::App& app) {
       "Show the scenes, strategies, elementary tests, effects and families of hard queries there are.");
   command->add_option("what", *only, "one of scenes, strategies, tests, effects, families; default all")
       ->check(CLI::IsMember({"scenes", "strategies", "tests", "effects", "families"}));
-  command->add_flag("--json", *as_json, "for a machine to read");
-  command->callback([only, as_json] { list(*only, *as_json); });
+  auto names_only = std::make_shared<bool>(false);
+  CLI::Option* json_flag = command->add_flag("--json", *as_json, "for a machine to read");
+  command->add_flag("--names", *names_only, "names alone, a line each")->excludes(json_flag);
+  command->callback([only, as_json, names_only] { list(*only, *as_json, *names_only); });
 }
 
 }  // namespace cscd::bench

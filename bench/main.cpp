@@ -5,7 +5,12 @@
 #include <string>
 
 #include "bench/command.h"
+#include "bench/output.h"
+#include "bench/standard_streams.h"
+#include "bench/usage.h"
+#include "bench/version.h"
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 
 namespace {
 
@@ -16,18 +21,19 @@ int complain(const std::string& text) {
   return kBadUsage;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
       "  cscd list                            what there is\n"
       "  cscd query rope --json answer.json   where and when does it touch itself?\n"
       "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
-      "  cscd tables r.json --out tables      the paper's tables, published beside measured\n\n"
+      "  cscd tables r.json --out tables      the paper's tables, published beside measured\n"
+      "  cscd help query                      what a command does and takes\n\n"
       "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input.",
       "cscd");
   app.require_subcommand(1);
+  app.set_version_flag("--version", cscd::bench::version_text,
+                       "show the version, the build and the libraries");
   cscd::bench::add_list(app);
   cscd::bench::add_query(app);
   cscd::bench::add_inspect(app);
@@ -41,15 +47,20 @@ int main(int argc, char** argv) {
   cscd::bench::add_scale(app);
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);
+  cscd::bench::add_scene(app);
+  cscd::bench::add_help(app);
 
   try {
+    cscd::bench::require_text(argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    return complain(std::string(error.what()) + "; see cscd --help");
+    return complain(cscd::bench::usage_error(app, error));
   } catch (const cscd::bench::ExitStatus& status) {
     return status.code;
+  } catch (const cscd::bench::NobodyReads&) {
+    cscd::bench::end_by_broken_pipe();
   } catch (const cscd::InputError& error) {
     return complain(error.what());
   } catch (const std::bad_alloc&) {
@@ -58,4 +69,12 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return complain(std::string("unexpected: ") + error.what());
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cscd::bench::prepare_standard_streams();
+  cscd::remove_temporaries_at_signals();
+  return cscd::bench::finish_standard_output(run(argc, argv));
 }

@@ -7,7 +7,10 @@ namespace cscd::bench {
 void add_model_options(CLI::App& command, ModelOptions& options) {
   constexpr char kGroup[] = "Model files";
   scenes::ImportOptions& import = options.import;
-  command.add_option("--clip", import.clip, "the clip, by name or number; default the first that moves")
+  command
+      .add_option("--clip", import.clip,
+                  "the clip, by name or number, or all of them (query alone); default the first that moves "
+                  "the surface")
       ->group(kGroup);
   command.add_option("--fps", import.fps, "frames a second")->capture_default_str()->group(kGroup);
   command
@@ -16,7 +19,8 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   command
       .add_option(
           "--component", import.component,
-          "largest, all, a number, or auto: the largest that is closed and oriented, else the largest")
+          "all, largest, a number (see inspect), or auto: the largest that is closed and oriented, else the\n"
+          "largest")
       ->capture_default_str()
       ->group(kGroup);
   command.add_option("--fill-holes", import.fill_holes, "fill holes of up to so many edges")

@@ -38,6 +38,7 @@ void nearness(const NearnessOptions& options) {
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
   Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const std::vector<std::size_t> chosen = every_kth(range, options.every);
 
@@ -106,7 +107,8 @@ void add_nearness(CLI::App& app) {
   command->add_option("--every", options->every, "measure each K-th interval, from the first")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("--json", options->output, "all distances, for a machine to read");
+  command->add_option("--json", options->output,
+                      "all distances, for a machine to read; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { nearness(*options); });

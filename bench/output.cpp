@@ -1,65 +1,82 @@
 #include "bench/output.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
 #include <unistd.h>
 
+#include "bench/output_format.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
 namespace {
 
-const char* pending = nullptr;
+// Keeps standard output for the answer, and lets all that is printed go to standard error. Returns the
+// descriptor of the answer.
+int take_standard_output() {
+  std::fflush(stdout);
+  const int answer = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  if (answer < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0)
+    throw InputError(std::string("output -: standard output cannot be used (") + std::strerror(errno) +
+                     "); name a file");
+  return answer;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path) {
+  throw InputError("output " + path.string() + ": cannot be written (" + std::strerror(errno) +
+                   "); choose another place");
+}
+
+void write_to_stream(const std::filesystem::path& path, std::string_view content) {
+  const int stream = open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+  if (stream < 0) fail(path);
+  const bool good = write_all(stream, content);
+  const int reason = errno;
+  close(stream);
+  errno = reason;
+  if (!good) fail(path);
+}
 
 }  // namespace
 
-OutputFile::OutputFile(std::filesystem::path path, bool force) : path_(std::move(path)), force_(force) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored))
-    throw InputError("output " + path_.string() + ": is a folder; name a file in it");
-  if (!force_ && std::filesystem::exists(path_, ignored))
-    throw InputError("output " + path_.string() +
-                     ": exists; choose another name or pass --force to replace it");
-  temporary_ = path_;
-  temporary_ += ".writing-" + std::to_string(getpid());
-  file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file_ < 0) fail("create");
-  pending = temporary_.c_str();
+bool is_standard_output(const std::filesystem::path& path) {
+  return path == "-" || path == "/dev/stdout" || path == "/dev/fd/1" || path == "/proc/self/fd/1";
+}
+
+OutputFile::OutputFile(std::filesystem::path path, bool force, std::string_view extension)
+    : path_(std::move(path)) {
+  if (is_standard_output(path_)) {
+    standard_output_ = take_standard_output();
+    return;
+  }
+  const OutputTarget target = find_output_target(path_, force);
+  is_stream_ = target.is_stream;
+  if (is_stream_) {
+    if (access(path_.c_str(), W_OK) != 0) fail(path_);
+    return;
+  }
+  if (path_.has_extension()) require_format(path_, std::span(&extension, 1));
+  file_.emplace(target.path, force);
 }
 
 OutputFile::~OutputFile() {
-  if (file_ < 0) return;
-  pending = nullptr;
-  close(file_);
-  unlink(temporary_.c_str());
+  if (standard_output_ >= 0) close(standard_output_);
 }
 
 void OutputFile::commit(std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = write(file_, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail("write");
-    content.remove_prefix(static_cast<std::size_t>(written));
+  if (standard_output_ >= 0) {
+    if (write_all(standard_output_, content)) return;
+    if (errno == EPIPE) throw NobodyReads();
+    fail(path_);
   }
-  if (fsync(file_) != 0) fail("write");
-  // A hard link fails if somebody else has written the file meanwhile; a rename replaces it.
-  if (!force_ && link(temporary_.c_str(), path_.c_str()) != 0) fail("name");
-  if (force_ && rename(temporary_.c_str(), path_.c_str()) != 0) fail("name");
-  pending = nullptr;
-  close(file_);
-  file_ = -1;
-  if (!force_) unlink(temporary_.c_str());
-}
-
-void discard_pending_output() noexcept {
-  if (pending != nullptr) unlink(pending);
-}
-
-void OutputFile::fail(const char* doing) const {
-  throw InputError("output " + path_.string() + ": cannot " + doing + " it (" + std::strerror(errno) +
-                   "); choose a folder that exists and can be written to");
+  if (is_stream_) {
+    write_to_stream(path_, content);
+    return;
+  }
+  file_->write(content);
+  file_->finish();
 }
 
 }  // namespace cscd::bench

@@ -1,32 +1,45 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "core/base/output_target.h"
 
 namespace cscd::bench {
 
-// A result file that appears whole or not at all: opened beside its final place before any work begins, so
-// that an unwritable folder is found at once, and given its name when everything has been written.
+// Nobody reads standard output any more (`| head -1`). The program ends without a word.
+class NobodyReads : public std::exception {
+  const char* what() const noexcept override { return "nobody reads standard output"; }
+};
+
+// Where the answer of a command goes. It is opened before any work begins, so that an unwritable place is
+// found at once. The name decides:
+// - `-` (and /dev/stdout) is standard output. From then on, what is printed goes to standard error, so that
+//   standard output holds the answer and nothing else.
+// - A device or a pipe is written to as it is. It is opened when the answer is there.
+// - A file appears whole or not at all. A symbolic link stays, and its target is what appears.
 class OutputFile {
  public:
-  // Throws InputError if something stands at `path` (unless `force`) or the folder cannot be written to.
-  OutputFile(std::filesystem::path path, bool force);
-  ~OutputFile();  // without commit, leaves nothing behind
+  // Throws InputError if a file stands there (unless `force`), if nothing can be written there, or if the
+  // name of a file ends in another extension than `extension`; a name without any is accepted.
+  OutputFile(std::filesystem::path path, bool force, std::string_view extension = ".json");
+  ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Throws InputError if the disk does not take it.
+  // Throws InputError if the place does not take it, NobodyReads if it is a standard output that was closed.
   void commit(std::string_view content);
 
  private:
-  [[noreturn]] void fail(const char* doing) const;
-  std::filesystem::path path_, temporary_;
-  bool force_;
-  int file_ = -1;
+  std::filesystem::path path_;
+  bool is_stream_ = false;
+  int standard_output_ = -1;
+  std::optional<UnfinishedFile> file_;
 };
 
-// Removes what the OutputFile made last has written so far, if it has not been committed. For signal
-// handlers: system calls only.
-void discard_pending_output() noexcept;
+// Whether an output's name stands for standard output.
+bool is_standard_output(const std::filesystem::path& path);
 
 }  // namespace cscd::bench

@@ -54,13 +54,17 @@ std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::
 
 std::vector<std::string> rows_of(const ordered_json& definition, const ordered_json& published,
                                  std::span<const Record> records, const std::string& only_scene) {
-  std::vector<std::string> scenes;
-  if (definition.contains("scenes")) {
+  std::vector<std::string> scenes, recorded;
+  for (const Record& record : records) add_new(recorded, record.scene.name);
+  if (definition.contains("scenes"))
     if (const ordered_json* rows = find_published(published, definition["scenes"], ""))
       for (const auto& [scene, figures] : rows->items()) scenes.push_back(scene);
-  } else {
-    for (const Record& record : records) add_new(scenes, record.scene.name);
-  }
+  // Where no scene of the paper's was recorded, its columns would be empty: the scenes that were take them.
+  const bool of_paper = std::any_of(records.begin(), records.end(), [&](const Record& record) {
+    return record.scene.path.empty() &&
+           std::find(scenes.begin(), scenes.end(), record.scene.name) != scenes.end();
+  });
+  if (!of_paper && !records.empty()) scenes = recorded;
   if (!only_scene.empty())
     std::erase_if(scenes, [&](const std::string& scene) { return scene != only_scene; });
   return scenes;
@@ -75,7 +79,9 @@ Cell fill(const ordered_json& column, const ordered_json& published, const std::
     cell.measured.reason = "no record of " + scene + " was given";
   else
     cell.measured = measure(column, *record);
-  if (column.contains("published"))
+  // A scene of the user's own is not the paper's, even if it has that name.
+  const bool own = record != records.end() && !record->scene.path.empty();
+  if (column.contains("published") && !own)
     if (const ordered_json* figure = find_published(published, column["published"], scene))
       cell.published = figure->get<double>();
   return cell;

@@ -8,6 +8,7 @@
 #include "bench/report_json.h"
 #include "bench/schema.h"
 #include "core/base/error.h"
+#include "scenes/catalog/plain_name.h"
 
 namespace cscd::bench {
 
@@ -171,19 +172,16 @@ ordered_json to_json(const Record& record) {
   ordered_json strategies = ordered_json::array();
   for (const StrategyRecord& strategy : record.strategies) strategies.push_back(to_json(strategy));
   const SceneRecord& scene = record.scene;
+  ordered_json scene_json = {{"name", scene.name},           {"story", scene.story},
+                             {"digest", scene.digest},       {"vertices", scene.vertices},
+                             {"triangles", scene.triangles}, {"bones", scene.bones},
+                             {"frames", scene.frames},       {"effects", std::move(effects)}};
+  if (!scene.path.empty()) scene_json["path"] = scene.path;
   return {{"schema", kRunSchema},
           {"environment", record.environment},
           {"command", record.command},
           {"seed", record.seed},
-          {"scene",
-           {{"name", scene.name},
-            {"story", scene.story},
-            {"digest", scene.digest},
-            {"vertices", scene.vertices},
-            {"triangles", scene.triangles},
-            {"bones", scene.bones},
-            {"frames", scene.frames},
-            {"effects", std::move(effects)}}},
+          {"scene", std::move(scene_json)},
           {"elementary", record.elementary},
           {"intervals", record.intervals},
           {"counted_intervals", record.counted_intervals},
@@ -208,6 +206,13 @@ Record parse_record(const std::string& text, const std::string& where) {
                  scene.at("triangles"), scene.at("bones"), scene.at("frames")};
     for (const ordered_json& effect : scene.at("effects"))
       out.scene.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
+    out.scene.path = scene.value("path", "");
+    // Older records have the path in place of the name.
+    if (out.scene.path.empty() && (out.scene.name.find('/') != std::string::npos ||
+                                   std::filesystem::path(out.scene.name).has_extension())) {
+      out.scene.path = out.scene.name;
+      out.scene.name = scenes::plain_name(out.scene.path);
+    }
     out.elementary = document.at("elementary");
     out.intervals = document.at("intervals");
     out.counted_intervals = document.at("counted_intervals").get<std::vector<std::size_t>>();

@@ -71,6 +71,7 @@ struct SceneRecord {
   std::string name, story, digest;
   std::size_t vertices = 0, triangles = 0, bones = 0, frames = 0;
   std::vector<scenes::EffectCost> effects = {};  // as its frames were generated; empty for files
+  std::string path = {};  // of what the user gave by its path: a cache, a model or a scene file of their own
 };
 
 struct Record {

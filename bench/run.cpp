@@ -14,9 +14,11 @@
 #include "bench/model_options.h"
 #include "bench/output.h"
 #include "bench/record.h"
+#include "bench/run_times.h"
 #include "bench/timing.h"
 #include "bench/verification.h"
 #include "core/base/error.h"
+#include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/digest.h"
 
@@ -65,8 +67,13 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
 
 SceneRecord describe(Input& input) {
   SceneRecord record;
+  const bool is_scene_file = scenes::is_scene_file(input.name);
+  const bool is_file = !is_scene_file && (input.import || std::filesystem::path(input.name).has_extension());
   record.name = input.name;
-  const bool is_file = input.import || std::filesystem::path(input.name).has_extension();
+  if (is_file || is_scene_file) {
+    record.name = scenes::plain_name(input.name);
+    record.path = input.name;
+  }
   if (!is_file) {
     const scenes::Scene scene = scenes::load_scene(input.name);
     record.story = scene.story;
@@ -127,6 +134,7 @@ bool run_one(RunOptions options, OutputFile& output) {
   const ElementaryTest& timed = elementary_test_named(options.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
   Input input = open_input(options.scene, options.model);
+  say_what_was_read(input, stdout);
   input.threads = options.threads;
   IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   if (options.smoke) {
@@ -171,20 +179,29 @@ bool run_one(RunOptions options, OutputFile& output) {
   print(verified.record, options.elementary);
   record.verification = std::move(verified.record);
   output.commit(json_text(to_json(record)));
+  std::printf("%s", run_times_text(record).c_str());
   return ok;
 }
 
 // Every scene that there is, each to its own record in the folder named as output.
 bool run_all(const RunOptions& options) {
   const std::filesystem::path folder = options.output;
+  if (is_standard_output(folder))
+    throw InputError("--json " + options.output +
+                     ": several records do not go to standard output; name a folder, or one scene");
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
     throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
                      "; choose another with --json");
+  const std::vector<scenes::SceneSummary> all = scenes::list_scenes();
+  for (const scenes::SceneSummary& scene : all)
+    if (!scene.fault.empty())
+      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
+                       "); mend or remove that file, or name the scenes one by one");
   std::vector<RunOptions> runs;
   std::deque<OutputFile> outputs;  // what stands in the way of any is found before the work
-  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+  for (const scenes::SceneSummary& scene : all) {
     runs.push_back(options);
     runs.back().scene = scene.name;
     outputs.emplace_back(folder / (scene.name + ".json"), options.force);
@@ -193,6 +210,7 @@ bool run_all(const RunOptions& options) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
     ok = run_one(runs[i], outputs[i]) && ok;
+    std::printf("record: %s\n", (folder / (runs[i].scene + ".json")).c_str());
   }
   return ok;
 }
@@ -206,7 +224,9 @@ void run(const RunOptions& options) {
     return;
   }
   OutputFile output(options.output, options.force);
-  if (!run_one(options, output)) throw kVerificationFailed;
+  const bool ok = run_one(options, output);
+  std::printf("record: %s\n", options.output.c_str());
+  if (!ok) throw kVerificationFailed;
 }
 
 }  // namespace
@@ -256,7 +276,7 @@ void add_run(CLI::App& app) {
                     "8 intervals in the middle, every 4th of them verified and timed twice");
   command
       ->add_option("--json", options->output,
-                   "where the record goes; with --scene all, the folder of the records")
+                   "where the record goes, - is standard output; with --scene all, the folder of the records")
       ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_threads_option(*command, options->threads);

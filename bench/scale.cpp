@@ -17,7 +17,7 @@
 #include "bench/scale_summary.h"
 #include "bench/schema.h"
 #include "core/base/error.h"
-#include "scenes/catalog/scene.h"
+#include "scenes/catalog/resized.h"
 
 // How cost grows: with triangles, with the length of the step, with bones, threads and contacts (schema
 // cscd.scale/1). What is run unless told otherwise is data, scale_plan.json.
@@ -181,7 +181,7 @@ double estimated_minutes(std::span<const ScaleSubject> all) {
   for (const ScaleSubject& subject : all) {
     const scenes::Scene scene = scenes::load_scene(subject.scene);
     const auto triangles =
-        static_cast<double>(subject.triangles > 0 ? subject.triangles : scene.expected.triangles);
+        static_cast<double>(subject.triangles > 0 ? subject.triangles : scenes::triangle_count(scene));
     const auto intervals = static_cast<double>(subject.steps.size() * subject.starts.size());
     seconds += kSecondsOnce + kMicrosecondsATriangle * 1e-6 * triangles * intervals;
   }

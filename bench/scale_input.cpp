@@ -82,7 +82,7 @@ ScaleInput scale_input(const ScaleSubject& subject) {
   const auto begin = std::chrono::steady_clock::now();
   const scenes::Scene scene = scenes::load_scene(subject.scene);
   scenes::Shape shape =
-      scenes::resized_shape(scene, subject.triangles > 0 ? subject.triangles : scene.expected.triangles);
+      scenes::resized_shape(scene, subject.triangles > 0 ? subject.triangles : scenes::triangle_count(scene));
   if (subject.bones > 0 && !is_chain(shape.rig))
     throw InputError("scene " + scene.name + ": its bones form no chain; vary the bones of another scene");
 

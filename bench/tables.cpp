@@ -49,9 +49,9 @@ void tables(const TableOptions& options) {
     return;
   }
   const std::filesystem::path folder(options.folder);
-  OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force),
-      csv(folder / "tables.csv", options.force), latex(folder / "tables.tex", options.force),
-      page(folder / "claims.md", options.force);
+  OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force, ".md"),
+      csv(folder / "tables.csv", options.force, ".csv"), latex(folder / "tables.tex", options.force, ".tex"),
+      page(folder / "claims.md", options.force, ".md");
   const std::vector<ClaimResult> claims = judge_claims(records);
   json.commit(json_text(tables_json(made, claims, records)));
   text.commit(markdown);

@@ -5,7 +5,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include "bench/output.h"
+#include "core/base/temporaries.h"
 
 namespace cscd::bench {
 namespace {
@@ -17,7 +17,7 @@ const std::string* last_words = nullptr;
 void give_up(int) {
   const ssize_t ignored = write(STDERR_FILENO, last_words->data(), last_words->size());
   static_cast<void>(ignored);
-  discard_pending_output();
+  remove_temporaries();
   _exit(kBadInput);
 }
 

@@ -52,22 +52,45 @@ struct Frame {
 
 }  // namespace
 
+bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair) {
+  const Frame frame{mesh, positions};
+  return frame.reaches(pair.first, pair.second) || frame.reaches(pair.second, pair.first);
+}
+
 EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference)
     : mesh_(mesh), tree_(build_tree(mesh, reference)), bounds_(mesh, tree_) {}
 
-std::optional<std::pair<TriangleId, TriangleId>> EmbeddingTest::find_intersection(
-    std::span<const Vec3> positions) {
+template <class Found>
+void EmbeddingTest::search(std::span<const Vec3> positions, const Found& found) {
   bounds_.refit(Motion(positions, positions));
-  const Frame frame{mesh_, positions};
-  std::optional<std::pair<TriangleId, TriangleId>> found;
+  bool done = false;
   const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-  const auto skip_once_found = [&](NodeIndex, NodeIndex) { return found.has_value(); };
+  const auto skip_once_done = [&](NodeIndex, NodeIndex) { return done; };
   const auto check = [&](NodeIndex a, NodeIndex b) {
     const TriangleId s = tree_.triangle(a), t = tree_.triangle(b);
-    if (frame.reaches(s, t) || frame.reaches(t, s)) found.emplace(std::min(s, t), std::max(s, t));
+    const CrossingPair pair(std::min(s, t), std::max(s, t));
+    if (triangles_meet(mesh_, positions, pair)) done = !found(pair);
   };
-  self_descent(tree_, bounds_, 0, is_leaf, skip_once_found, check);
-  return found;
+  self_descent(tree_, bounds_, 0, is_leaf, skip_once_done, check);
+}
+
+std::optional<CrossingPair> EmbeddingTest::find_intersection(std::span<const Vec3> positions) {
+  std::optional<CrossingPair> first;
+  search(positions, [&](const CrossingPair& pair) {
+    first = pair;
+    return false;
+  });
+  return first;
+}
+
+Crossings EmbeddingTest::find_all(std::span<const Vec3> positions, std::size_t most) {
+  Crossings all;
+  search(positions, [&](const CrossingPair& pair) {
+    if (all.total++ < most) all.pairs.push_back(pair);
+    return true;
+  });
+  std::sort(all.pairs.begin(), all.pairs.end());
+  return all;
 }
 
 }  // namespace cscd

@@ -10,10 +10,11 @@
 namespace cscd::scenes {
 namespace {
 
-void require_count(const Scene& scene, const std::string& what, std::size_t found, std::size_t expected) {
-  if (found != expected)
+void require_count(const Scene& scene, const std::string& what, std::size_t found,
+                   const std::optional<std::size_t>& expected) {
+  if (expected && found != *expected)
     throw InputError("scene " + scene.name + ": the shape has " + std::to_string(found) + " " + what +
-                     ", the scene file expects " + std::to_string(expected) + "; correct one of them");
+                     ", the scene file expects " + std::to_string(*expected) + "; correct one of them");
 }
 
 // Charges the time between two calls to the effect that was entered at the first.
@@ -67,10 +68,10 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
 }
 
 void require_expected_digest(const Scene& scene, const std::string& digest) {
-  if (digest != scene.expected.digest)
+  if (scene.expected.digest && digest != *scene.expected.digest)
     throw InputError("scene " + scene.name + ": the frames have digest " + digest +
-                     ", the scene file expects " + scene.expected.digest +
-                     "; after a wanted change look at the frames, then put the new digest there");
+                     ", the scene file expects " + *scene.expected.digest +
+                     "; after a wanted change look at the frames, then accept them with cscd scene accept");
 }
 
 Clip generate(const Scene& scene, const Progress& progress) {

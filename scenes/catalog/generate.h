@@ -36,7 +36,8 @@ using SeeState = std::function<void(const SceneState& state)>;
 Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress& progress = {},
                     const SeeState& see = {});
 
-// Throws InputError when the frames are not those that the scene file promises.
+// Throws InputError when the frames are not those that the scene file promises. A file without a digest
+// promises nothing.
 void require_expected_digest(const Scene& scene, const std::string& digest);
 
 // All frames in memory, verified.

@@ -40,8 +40,13 @@ Shape built(const Scene& scene, double factor) {
 
 }  // namespace
 
+std::size_t triangle_count(const Scene& scene) {
+  if (scene.expected.triangles) return *scene.expected.triangles;
+  return make_shape(scene.shape, scene.shape_parameters).triangles.size();
+}
+
 Shape resized_shape(const Scene& scene, std::size_t triangles) {
-  double share = static_cast<double>(triangles) / static_cast<double>(scene.expected.triangles);
+  double share = static_cast<double>(triangles) / static_cast<double>(triangle_count(scene));
   int steps = 0;
   if (shape_row(scene.shape, scene.shape_parameters).settles)
     for (; share > kOwn; share /= 4) ++steps;

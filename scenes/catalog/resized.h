@@ -18,6 +18,9 @@ struct Pose {
   std::vector<Eigen::Matrix3d> rotations;  // of each bone, from its reference pose
 };
 
+// How many triangles the scene's own shape has.
+std::size_t triangle_count(const Scene& scene);
+
 // The scene's shape with about so many triangles: built with other counts of cells, and for body and limbs
 // above the scene's own resolution by Loop's subdivision from there on. Throws InputError where the shape
 // cannot be built so coarse.

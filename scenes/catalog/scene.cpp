@@ -6,7 +6,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "scenes/catalog/plain_name.h"
 
 namespace cscd::scenes {
 namespace {
@@ -94,8 +96,11 @@ Parameters::Value to_value(const Json& json, const std::string& where) {
 
 std::string read_text(const fs::path& file) {
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  if (!fs::exists(file, error)) throw InputError(file.string() + ": no such file; check the name");
+  const std::uintmax_t bytes = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+  std::ifstream stream;
+  if (bytes > 0) stream.open(file, std::ios::binary);
+  if (bytes == 0) throw InputError(file.string() + ": is empty or not an ordinary file; give a scene file");
   if (error || !stream) throw InputError(file.string() + ": cannot be read; check its permissions");
   if (bytes > kMostBytes) throw InputError(file.string() + ": is larger than 16 MiB; this is no scene file");
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -112,17 +117,22 @@ Json parse_json(const std::string& text, const std::string& where) {
 // A scene with a base is that scene's file, changed first by its patch (RFC 6902, which reaches single items
 // of lists) and then by what else it says (RFC 7396: objects merge, anything else replaces). Story and digest
 // are each scene's own.
-Json with_base(Json json, const std::string& where) {
+Json with_base(Json json, const std::string& where, const fs::path& folder) {
   const auto named = json.is_object() ? json.find("base") : json.end();
   if (named == json.end()) return json;
   if (!named->is_string()) throw InputError(where + ": base must be a text");
-  const fs::path file = scenes_folder() / (named->get<std::string>() + ".json");
+  const std::string name = named->get<std::string>() + ".json";
+  std::error_code ignored;
+  const bool beside = !folder.empty() && fs::exists(folder / name, ignored);
+  const fs::path file = (beside ? folder : scenes_folder()) / name;
   json.erase(named);
   Json merged = parse_json(read_text(file), file.string());
+  if (!merged.is_object()) throw InputError(file.string() + ": must be an object");
   if (merged.contains("base"))
     throw InputError(where + ": its base " + file.string() + " has a base itself; name that");
   merged.erase("story");
-  if (merged.contains("expected")) merged["expected"].erase("digest");
+  if (merged.contains("expected") && merged["expected"].is_object()) merged["expected"].erase("digest");
+  const Json shape_of_base = merged.value("shape", Json());
   if (const auto patch = json.find("patch"); patch != json.end()) {
     try {
       merged.patch_inplace(*patch);
@@ -133,7 +143,23 @@ Json with_base(Json json, const std::string& where) {
     json.erase(patch);
   }
   merged.merge_patch(json);
+  if (merged.value("shape", Json()) != shape_of_base) {  // so the base's counts are of another shape
+    merged.erase("expected");
+    if (json.contains("expected")) merged["expected"] = json["expected"];
+  }
   return merged;
+}
+
+Expected read_expected(const Json& json, const std::string& where) {
+  constexpr std::size_t most = std::size_t{1} << 28;
+  const Reader reader(json, where);
+  reader.only({"vertices", "triangles", "bones", "digest"});
+  Expected expected;
+  if (json.contains("vertices")) expected.vertices = reader.count("vertices", 1, most);
+  if (json.contains("triangles")) expected.triangles = reader.count("triangles", 1, most);
+  if (json.contains("bones")) expected.bones = reader.count("bones", 0, most);
+  if (json.contains("digest")) expected.digest = reader.text("digest");
+  return expected;
 }
 
 std::vector<fs::path> scene_files(const fs::path& folder) {
@@ -172,8 +198,9 @@ fs::path scenes_folder() {
       "no folder scenes/ here or above; run inside the repository or let CSCD_SCENES name the folder");
 }
 
-Scene parse_scene(std::string_view name, const std::string& text, const std::string& where) {
-  Json json = with_base(parse_json(text, where), where);
+Scene parse_scene(std::string_view name, const std::string& text, const std::string& where,
+                  const fs::path& folder) {
+  Json json = with_base(parse_json(text, where), where, folder);
   const Reader reader(json, where);
   reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "expected"});
   if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");
@@ -195,13 +222,7 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
         {effect_name, to_parameters(effect.json(), where + ", effect " + effect_name, "name")});
   }
 
-  const Reader expected(reader.at("expected"), where + ", expected");
-  expected.only({"vertices", "triangles", "bones", "digest"});
-  constexpr std::size_t most = std::size_t{1} << 28;
-  scene.expected.vertices = expected.count("vertices", 1, most);
-  scene.expected.triangles = expected.count("triangles", 1, most);
-  scene.expected.bones = expected.count("bones", 0, most);
-  scene.expected.digest = expected.text("digest");
+  if (json.contains("expected")) scene.expected = read_expected(json["expected"], where + ", expected");
 
   json.erase("story");
   json.erase("expected");
@@ -209,24 +230,42 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
   return scene;
 }
 
+bool is_scene_file(const fs::path& name_or_path) {
+  return name_or_path.extension() == ".json";
+}
+
 Scene load_scene(std::string_view name) {
-  std::string known;
+  if (is_scene_file(name)) {
+    const fs::path file(name);
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    return parse_scene(plain_name(file), read_text(file), file.string(), folder);
+  }
+  std::vector<std::string> names;
   for (const fs::path& file : scene_files(scenes_folder())) {
     if (file.stem() == name) return parse_scene(name, read_text(file), file.string());
-    known += (known.empty() ? "" : ", ") + file.stem().string();
+    names.push_back(file.stem().string());
   }
-  throw InputError("unknown scene " + std::string(name) + "; known are: " + known);
+  std::string known;
+  for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  throw InputError("unknown scene " + std::string(name) + did_you_mean(name, views) +
+                   "; known are: " + known);
 }
 
 std::vector<SceneSummary> list_scenes() {
   std::vector<SceneSummary> summaries;
   for (const fs::path& file : scene_files(scenes_folder())) {
-    const Scene scene = parse_scene(file.stem().string(), read_text(file), file.string());
-    SceneSummary summary{
-        scene.name,           scene.story, scene.frames, scene.expected.vertices, scene.expected.triangles,
-        scene.expected.bones, {}};
-    for (const EffectCall& effect : scene.effects) summary.effects.push_back(effect.name);
-    summaries.push_back(std::move(summary));
+    SceneSummary& summary = summaries.emplace_back();
+    summary.name = file.stem().string();
+    try {
+      const Scene scene = parse_scene(summary.name, read_text(file), file.string());
+      summary.story = scene.story;
+      summary.frames = scene.frames;
+      summary.expected = scene.expected;
+      for (const EffectCall& effect : scene.effects) summary.effects.push_back(effect.name);
+    } catch (const InputError& error) {
+      summary.fault = error.what();
+    }
   }
   return summaries;
 }

@@ -3,12 +3,15 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/output_target.h"
+#include "scenes/catalog/expected_text.h"
 #include "scenes/clip/digest.h"
 
 namespace cscd::scenes {
@@ -34,11 +37,22 @@ fs::path costs_file(const Scene& scene) {
   return cache_file(scene).replace_extension(".effects.json");
 }
 
+// The digest of the cached frames, for a scene whose file has none.
+fs::path digest_file(const Scene& scene) {
+  return cache_file(scene).replace_extension(".digest");
+}
+
+void write_whole(const fs::path& path, const std::string& text) {
+  UnfinishedFile file(path, true);
+  file.write(text);
+  file.finish();
+}
+
 void write_costs(const Scene& scene, const Generated& generated) {
   auto effects = nlohmann::ordered_json::array();
   for (const EffectCost& effect : generated.effects)
     effects.push_back({{"name", effect.name}, {"evaluations", effect.evaluations}, {"ms", effect.ms}});
-  std::ofstream(costs_file(scene)) << effects.dump(1) << "\n";
+  write_whole(costs_file(scene), effects.dump(1) + "\n");
 }
 
 // Held while a cache is looked at and generated; the system lets go of it when the process ends.
@@ -60,7 +74,15 @@ class CacheLock {
 
 bool is_whole(const Scene& scene) {
   std::error_code error;
-  return digest_of(cache_file(scene)) == scene.expected.digest && fs::exists(costs_file(scene), error);
+  if (!fs::exists(costs_file(scene), error)) return false;
+  std::optional<std::string> right = scene.expected.digest;
+  if (!right) {
+    std::ifstream written(digest_file(scene));
+    std::string word;
+    if (!(written >> word)) return false;
+    right = word;
+  }
+  return digest_of(cache_file(scene)) == right;
 }
 
 void generate_to_cache(const Scene& scene, const Progress& progress) {
@@ -71,6 +93,7 @@ void generate_to_cache(const Scene& scene, const Progress& progress) {
       progress);
   require_expected_digest(scene, generated.digest);
   write_costs(scene, generated);
+  if (!scene.expected.digest) write_whole(digest_file(scene), generated.digest + "\n");
   writer->finish();
 }
 
@@ -78,7 +101,15 @@ void generate_to_cache(const Scene& scene, const Progress& progress) {
 
 fs::path cache_folder() {
   if (const char* named = std::getenv("CSCD_CACHE")) return named;
-  return scenes_folder().parent_path() / ".cache";
+  std::string no_scenes;
+  try {
+    return scenes_folder().parent_path() / ".cache";
+  } catch (const InputError& error) {  // a scene file may lie anywhere
+    no_scenes = error.what();
+  }
+  if (const char* caches = std::getenv("XDG_CACHE_HOME")) return fs::path(caches) / "cscd";
+  if (const char* home = std::getenv("HOME")) return fs::path(home) / ".cache" / "cscd";
+  throw InputError(no_scenes);
 }
 
 fs::path cache_file(const Scene& scene) {
@@ -98,6 +129,22 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
     if (!is_whole(scene)) generate_to_cache(scene, progress);  // no other has meanwhile
   }
   return std::make_unique<PointCacheReader>(file);
+}
+
+Expected accept_scene(const fs::path& file, const Progress& progress) {
+  Scene scene = load_scene(file.string());
+  const OutputTarget target = find_output_target(file, true);
+  scene.expected = {};
+  const std::unique_ptr<ClipSource> source = open_scene(scene, progress);
+  DigestSink digest;
+  copy_frames(*source, digest);
+  const ClipHeader& header = source->header();
+  const Expected found{header.vertex_count, header.triangles.size(), header.bone_parent.size(),
+                       digest.text()};
+  std::ifstream stream(target.path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  write_whole(target.path, with_expected(text, found, file.string()));
+  return found;
 }
 
 std::vector<EffectCost> effect_costs(const Scene& scene) {

@@ -1,21 +1,27 @@
 #include "scenes/character/report.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <string_view>
 
 #include "core/base/error.h"
 
 namespace cscd::scenes {
 namespace {
 
-constexpr char kSchema[] = "cscd.import/1";
+constexpr char kSchema[] = "cscd.import/2";
 
 std::string shown(double value) {
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 std::string shown(std::size_t value) {
+  return std::to_string(value);
+}
+std::string shown(std::int32_t value) {
   return std::to_string(value);
 }
 std::string shown(long value) {
@@ -72,16 +78,36 @@ std::vector<std::string> split(const std::string& line, char at) {
   return words;
 }
 
+// The length in bytes of the UTF-8 character at the start of a text; 0 where there is no whole character, or
+// one that controls a terminal or the direction of writing.
+std::size_t printable_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;
+  const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < length) return 0;
+  std::uint32_t code = byte(0) & (0xffu >> (length + 1));
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3f);
+  }
+  constexpr std::uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool valid = code >= least[length] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  const bool control = code < 0xa0 || code == 0xfeff || (code >= 0x200b && code <= 0x200f) ||
+                       (code >= 0x2028 && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f);
+  return valid && !control ? length : 0;
+}
+
 }  // namespace
 
 std::string printable(const std::string& text, std::size_t longest) {
   std::string out;
   bool replaced = false;
-  for (const char c : text) {
-    if (out.size() >= longest) break;
-    const bool good = c >= ' ' && c <= '~';
-    if (good || !replaced) out += good ? c : '?';
-    replaced = !good;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = printable_character(std::string_view(text).substr(at));
+    if (out.size() + std::max<std::size_t>(length, 1) > longest) break;
+    if (length > 0 || !replaced) out += length > 0 ? text.substr(at, length) : "?";
+    replaced = length == 0;
+    at += std::max<std::size_t>(length, 1);
   }
   return out;
 }
@@ -92,8 +118,12 @@ std::string to_text(const ImportReport& report) {
     out += std::string(key) + "\t" + shown(value) + "\n";
   });
   for (const ImportReport::Clip& clip : report.clips)
-    out += "clip\t" + shown(clip.name) + "\t" + shown(clip.seconds) + "\t" + shown(clip.ticks_per_second) +
-           "\t" + shown(clip.frames) + "\t" + shown(clip.driven) + "\n";
+    out += "clip\t" + shown(clip.name) + "\t" + shown(clip.start) + "\t" + shown(clip.seconds) + "\t" +
+           shown(clip.ticks_per_second) + "\t" + shown(clip.frames) + "\t" + shown(clip.driven) + "\n";
+  for (const ImportReport::Part& part : report.parts)
+    out += "part\t" + shown(part.name) + "\t" + shown(part.node) + "\t" + shown(part.mesh) + "\t" +
+           shown(part.primitive) + "\n";
+  for (const std::string& bone : report.bones) out += "bone\t" + shown(bone) + "\n";
   for (const std::size_t component : report.chosen_components) out += "chosen\t" + shown(component) + "\n";
   for (const std::size_t bones : report.component_bones) out += "bones\t" + shown(bones) + "\n";
   for (const std::string& note : report.notes) out += "note\t" + shown(note) + "\n";
@@ -116,13 +146,24 @@ ImportReport parse_report(const std::string& text) {
         throw InputError("import report: '" + printable(lines[i]) + "' is cut short");
     };
     if (words[0] == "clip") {
-      need(6);
+      need(7);
       ImportReport::Clip& clip = report.clips.emplace_back();
       read(words[1], clip.name);
-      read(words[2], clip.seconds);
-      read(words[3], clip.ticks_per_second);
-      read(words[4], clip.frames);
-      read(words[5], clip.driven);
+      read(words[2], clip.start);
+      read(words[3], clip.seconds);
+      read(words[4], clip.ticks_per_second);
+      read(words[5], clip.frames);
+      read(words[6], clip.driven);
+    } else if (words[0] == "part") {
+      need(5);
+      ImportReport::Part& part = report.parts.emplace_back();
+      read(words[1], part.name);
+      read(words[2], part.node);
+      read(words[3], part.mesh);
+      read(words[4], part.primitive);
+    } else if (words[0] == "bone") {
+      need(2);
+      read(words[1], report.bones.emplace_back());
     } else if (words[0] == "chosen") {
       need(2);
       read(words[1], report.chosen_components.emplace_back());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,23 @@ struct ImportReport {
 
   struct Clip {
     std::string name;
+    double start = 0;                          // seconds on the file's own time line
     double seconds = 0, ticks_per_second = 0;  // 0 ticks: the file does not say
     std::size_t frames = 0;                    // at the chosen rate
     std::size_t driven = 0;                    // of the joints, how many it moves
     bool operator==(const Clip&) const = default;
   };
   std::vector<Clip> clips;
-  long chosen_clip = -1;  // -1: none
+
+  // A primitive of a mesh as a node shows it.
+  struct Part {
+    std::string name, node;                  // of the mesh, of the node
+    std::int32_t mesh = -1, primitive = -1;  // their numbers in the file; -1 where the format counts none
+    bool operator==(const Part&) const = default;
+  };
+  std::vector<Part> parts;
+  std::vector<std::string> bones;  // names of the bones of the frames, in their order
+  long chosen_clip = -1;           // -1: none
   double fps = 0;
   std::size_t lead_in = 0;  // frames from the bind pose before the clip
 
@@ -45,7 +56,8 @@ std::string to_text(const ImportReport& report);
 // Throws InputError for a text that is not of that form.
 ImportReport parse_report(const std::string& text);
 
-// Printable ASCII stays; runs of anything else become one '?'. At most `longest` bytes.
+// Characters of valid UTF-8 stay, except those that control a terminal or the direction of writing; runs of
+// anything else become one '?'. At most `longest` bytes, cut between characters.
 std::string printable(const std::string& text, std::size_t longest = 200);
 
 }  // namespace cscd::scenes

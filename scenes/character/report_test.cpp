@@ -16,7 +16,9 @@ ImportReport some_report() {
   report.chosen_clip = 1;
   report.fps = 1.0 / 3;
   report.weld_spread = 1e-17;
-  report.clips = {{"walk", 1.5, 24, 46, 3}, {"", 0, 0, 1, 0}};
+  report.clips = {{"walk", 0.5, 1.5, 24, 46, 3}, {"", 0, 0, 0, 1, 0}};
+  report.parts = {{"body", "Body node", 3, 1}, {"", "eye", -1, -1}};
+  report.bones = {"hip", "\xe6\x89\x8b", "hip"};
   report.chosen_components = {0, 7};
   report.component_bones = {3, 0, 12};
   report.notes = {"2 things ignored"};
@@ -30,10 +32,33 @@ TEST(ImportReport, SurvivesItsText) {
 
 TEST(ImportReport, NamesFromFilesCannotForgeLinesOrTerminals) {
   ImportReport report;
-  report.clips = {{"a\nnote\tforged\x1b[31m\xff\xfe", 1, 1, 1, 1}};
+  report.clips = {{"a\nnote\tforged\x1b[31m\xff\xfe", 0, 1, 1, 1, 1}};
   const ImportReport back = parse_report(to_text(report));
   EXPECT_TRUE(back.notes.empty());
   EXPECT_EQ(back.clips[0].name, "a?note?forged?[31m?");
+}
+
+TEST(ImportReport, NamesOfAnyLanguageStayAndAreCutBetweenCharacters) {
+  const std::string hand = "\xe6\x89\x8b", knee = "K\xc3\xa9o", face = "\xf0\x9f\x99\x82";
+  EXPECT_EQ(printable(hand + knee + face), hand + knee + face);
+  EXPECT_EQ(printable(hand + hand, 5), hand);
+  EXPECT_EQ(printable("a\xc3"), "a?") << "cut short";
+  EXPECT_EQ(printable("a\xc0\xaf"
+                      "b"),
+            "a?b")
+      << "not the shortest form";
+  EXPECT_EQ(printable("a\xed\xa0\x80"
+                      "b"),
+            "a?b")
+      << "half of a pair";
+  EXPECT_EQ(printable("a\xe2\x80\xae"
+                      "b"),
+            "a?b")
+      << "turns the direction of writing";
+  EXPECT_EQ(printable("a\xc2\x9b"
+                      "b"),
+            "a?b")
+      << "controls terminals";
 }
 
 TEST(ImportReport, RefusesWhatIsNotWhole) {

@@ -100,7 +100,8 @@ double largest_spread(std::span<const std::int32_t> group, std::span<const Vec3>
 WeldedTriangles welded(std::span<const RawTriangle> triangles, std::span<const std::int32_t> group) {
   WeldedTriangles out;
   std::vector<std::pair<Triangle, std::size_t>> sorted;  // corners in order, where it stands
-  for (const RawTriangle& raw : triangles) {
+  for (std::size_t r = 0; r < triangles.size(); ++r) {
+    const RawTriangle& raw = triangles[r];
     Triangle corner;
     for (std::size_t k = 0; k < 3; ++k) corner[k] = VertexId{group[static_cast<std::size_t>(raw[k])]};
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
@@ -111,6 +112,7 @@ WeldedTriangles welded(std::span<const RawTriangle> triangles, std::span<const s
     std::sort(key.begin(), key.end());
     sorted.emplace_back(key, out.triangles.size());
     out.triangles.push_back(corner);
+    out.source.push_back(r);
   }
   std::sort(sorted.begin(), sorted.end());
   std::vector<bool> again(out.triangles.size(), false);
@@ -118,9 +120,13 @@ WeldedTriangles welded(std::span<const RawTriangle> triangles, std::span<const s
     if (sorted[i].first == sorted[i - 1].first) again[sorted[i].second] = true;
   std::size_t kept = 0;
   for (std::size_t t = 0; t < out.triangles.size(); ++t)
-    if (!again[t]) out.triangles[kept++] = out.triangles[t];
+    if (!again[t]) {
+      out.triangles[kept] = out.triangles[t];
+      out.source[kept++] = out.source[t];
+    }
   out.duplicate = out.triangles.size() - kept;
   out.triangles.resize(kept);
+  out.source.resize(kept);
   return out;
 }
 

@@ -28,6 +28,7 @@ using RawTriangle = std::array<std::int32_t, 3>;
 // Triangles between groups.
 struct WeldedTriangles {
   std::vector<Triangle> triangles;  // corners are smallest points of groups
+  std::vector<std::size_t> source;  // of each triangle, which of the given ones it is
   std::size_t collapsed = 0;        // left out: two corners in one group
   std::size_t duplicate = 0;        // left out: the same three corners again
 };

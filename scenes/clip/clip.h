@@ -19,6 +19,9 @@ struct ClipHeader {
   std::size_t vertex_count = 0;
   std::vector<BoneId> bone_parent;  // empty without bones
   bool predicted = false;           // intervals end where a simulator predicted, not at the next frame
+  // Positions [vertices] in the pose at rest: what crosses in it is how the surface is made, and no
+  // collision. Empty where that is frame 0.
+  std::vector<Vec3> rest = {};
 };
 
 // One moment: positions [vertices] and bones [bones].

@@ -10,6 +10,7 @@ namespace cscd::scenes {
 // Point caches: HDF5 files of
 //   /positions            float64 [frames, vertices, 3], frame 0 the reference pose
 //   /triangles            int32   [triangles, 3], counter-clockwise seen from outside
+//   /rest                 float64 [vertices, 3]: the pose at rest, frame 0 without it (optional)
 //   /bones/parent         int32   [bones], -1 for a root                            (optional)
 //   /bones/head, tail     float64 [frames, bones, 3]                                 (with parent)
 //   /predicted            float64 [frames - 1, vertices, 3]: ends of the intervals   (optional)

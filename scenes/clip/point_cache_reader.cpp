@@ -156,6 +156,7 @@ struct PointCacheReader::File {
     read_triangles();
     if (has(file.get(), "/bones")) open_bones();
     if (has(file.get(), "/predicted")) open_predictions();
+    if (has(file.get(), "/rest")) read_rest();
     if (!header.bone_parent.empty()) check_rig();
   }
 
@@ -235,6 +236,16 @@ struct PointCacheReader::File {
     const std::string why = "/predicted and /bones/parent";
     predictions->head = open_frames("/bones/predicted_head", frames - 1, header.bone_parent.size(), why);
     predictions->tail = open_frames("/bones/predicted_tail", frames - 1, header.bone_parent.size(), why);
+  }
+
+  void read_rest() {
+    const Dataset rest = open_dataset(file.get(), path, "/rest", H5T_FLOAT, 2);
+    require_shape(rest, {header.vertex_count, 3}, "/positions");
+    require_stored(rest, header.vertex_count * 3);
+    header.rest.resize(header.vertex_count);
+    if (H5Dread(rest.id.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
+      throw InputError(rest.where + ": cannot be read; the file may be damaged, write it again");
+    require_finite(header.rest, rest.where);
   }
 
   void check_rig() {

@@ -253,6 +253,32 @@ TEST_F(PointCache, RefusesIndicesOutOfRange) {
   EXPECT_EQ(refusal(), "clip.h5, /bones: rig: bone 0 is its own ancestor; parents must form a tree");
 }
 
+TEST_F(PointCache, KeepsThePoseAtRest) {
+  const Clip plain = small_clip({.frames = 3});
+  ClipHeader header = plain.header();
+  for (std::size_t v = 0; v < header.vertex_count; ++v) header.rest.push_back(frame_position(7, v));
+  Clip clip(header);
+  for (std::size_t i = 0; i < 3; ++i) clip.append(plain.frame(i));
+  write(clip, file);
+  EXPECT_EQ(PointCacheReader(file).header().rest, header.rest);
+  write({.frames = 3});
+  EXPECT_TRUE(PointCacheReader(file).header().rest.empty());
+
+  const auto refusal = [&](const std::vector<hsize_t>& shape, const std::vector<double>& data) {
+    write({.frames = 3});
+    replace("/rest", H5T_IEEE_F64LE, shape, data);
+    try {
+      PointCacheReader reader(file);
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(refusal({4, 3}, std::vector<double>(12, 1)), "");
+  EXPECT_NE(refusal({3, 3}, std::vector<double>(9, 1)).find("/rest"), std::string::npos);
+  EXPECT_NE(refusal({4, 3}, std::vector<double>(12, std::nan(""))).find("/rest"), std::string::npos);
+}
+
 TEST_F(PointCache, NamesFrameAndVertexThatAreNotFinite) {
   write({.frames = 3, .bones = 1});
   std::vector<double> positions(36, 0.5);
@@ -318,7 +344,7 @@ std::string write_refusal(const fs::path& path, bool force) {
 
 TEST_F(PointCache, OverwritesOnlyWhenAsked) {
   std::ofstream(file) << "precious";
-  EXPECT_NE(write_refusal(file, false).find("exists already"), std::string::npos);
+  EXPECT_NE(write_refusal(file, false).find("exists; choose another name"), std::string::npos);
   EXPECT_EQ(bytes(file), "precious");
   EXPECT_EQ(write_refusal(file, true), "");
   EXPECT_EQ(refusal(), "");
@@ -352,9 +378,9 @@ TEST_F(PointCache, AppearsWholeOrNotAtAll) {
 }
 
 TEST_F(PointCache, SaysWhereItCannotWrite) {
-  EXPECT_NE(write_refusal(folder / "no" / "such.h5", false).find("cannot be written"), std::string::npos);
+  EXPECT_NE(write_refusal(folder / "no" / "such.h5", false).find("cannot be created"), std::string::npos);
   EXPECT_NE(write_refusal(folder, true).find("is a folder"), std::string::npos);
-  EXPECT_NE(write_refusal("/proc/clip.h5", false).find("cannot be written"), std::string::npos);
+  EXPECT_NE(write_refusal("/proc/clip.h5", false).find("cannot be created"), std::string::npos);
   EXPECT_TRUE(files().empty());
 }
 

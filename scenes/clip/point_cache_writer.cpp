@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <atomic>
+#include <optional>
 #include <string>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/point_cache.h"
 
@@ -22,9 +22,10 @@ struct Growing {
 }  // namespace
 
 struct PointCacheWriter::File {
-  std::filesystem::path path, temporary;
+  std::filesystem::path path;
   ClipHeader header;
   bool force;
+  std::optional<UnfinishedFile> unfinished;
   Hdf5Handle file;
   Growing positions, head, tail, predicted, predicted_head, predicted_tail;
   std::vector<Vec3> scratch;
@@ -32,12 +33,12 @@ struct PointCacheWriter::File {
   File(std::filesystem::path name, ClipHeader shared, bool overwrite)
       : path(std::move(name)), header(std::move(shared)), force(overwrite) {
     silence_hdf5();
-    refuse_existing();
-    static std::atomic<unsigned> serial{0};
-    temporary = path;
-    temporary += ".partial-" + std::to_string(getpid()) + "-" + std::to_string(serial++);
-    file = Hdf5Handle(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) fail("its folder is missing or not writable");
+    const OutputTarget target = find_output_target(path, force);
+    if (target.is_stream) fail("it is a device or a pipe, and HDF5 writes to ordinary files alone");
+    unfinished.emplace(target.path, force);
+    file =
+        Hdf5Handle(H5Fcreate(unfinished->path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) fail("HDF5 made no file");
     try {
       create();
     } catch (...) {
@@ -50,16 +51,7 @@ struct PointCacheWriter::File {
   File& operator=(const File&) = delete;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(path.string() + ": cannot be written: " + what + "; choose another place");
-  }
-
-  void refuse_existing() const {
-    std::error_code error;
-    if (!force && std::filesystem::exists(std::filesystem::symlink_status(path, error)))
-      throw InputError(path.string() +
-                       ": exists already; choose another name, or ask to overwrite with --force");
-    if (std::filesystem::is_directory(path, error))
-      throw InputError(path.string() + ": is a folder; give the name of a file");
+    throw InputError("output " + path.string() + ": cannot be written: " + what + "; choose another place");
   }
 
   void close_datasets() {
@@ -70,8 +62,7 @@ struct PointCacheWriter::File {
   void discard() {
     close_datasets();
     file = Hdf5Handle();
-    std::error_code ignored;
-    if (!temporary.empty()) std::filesystem::remove(temporary, ignored);
+    unfinished.reset();
   }
 
   void create() {
@@ -81,6 +72,7 @@ struct PointCacheWriter::File {
       for (const VertexId corner : triangle) corners.push_back(static_cast<std::int32_t>(corner));
     write_integers("/triangles", {header.triangles.size(), 3}, corners);
     positions = create_growing("/positions", header.vertex_count);
+    if (!header.rest.empty()) write_rest();
     if (header.predicted) predicted = create_growing("/predicted", header.vertex_count);
     if (header.bone_parent.empty()) return;
     const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
@@ -114,6 +106,21 @@ struct PointCacheWriter::File {
         H5Dclose);
     if (H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
+  }
+
+  void write_rest() {
+    if (header.rest.size() != header.vertex_count)
+      throw InputError(path.string() + ", pose at rest: has " + std::to_string(header.rest.size()) +
+                       " vertices; the frames have " + std::to_string(header.vertex_count));
+    require_finite(header.rest, path.string() + ", pose at rest");
+    const hsize_t shape[2] = {header.vertex_count, 3};
+    const Hdf5Handle creation = timeless_dataset();
+    const Hdf5Handle space(H5Screate_simple(2, shape, nullptr), H5Sclose);
+    const Hdf5Handle dataset(H5Dcreate2(file.get(), "/rest", H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
+                                        creation.get(), H5P_DEFAULT),
+                             H5Dclose);
+    if (H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
+      fail("HDF5 did not take /rest (is the disk full?)");
   }
 
   Growing create_growing(const char* name, std::size_t points) {
@@ -181,11 +188,7 @@ void PointCacheWriter::finish() {
                      " frames; a point cache needs at least 2");
   file.close_datasets();
   if (!file.file.close()) file.fail("the last data did not reach the disk");
-  file.refuse_existing();
-  std::error_code error;
-  std::filesystem::rename(file.temporary, file.path, error);
-  if (error) file.fail(error.message());
-  file.temporary.clear();
+  file.unfinished->finish();
 }
 
 }  // namespace cscd::scenes

@@ -26,7 +26,11 @@ class Convert : public testing::Test {
                  const CharacterLimits& limits = {}) {
     validate(character, limits);
     const std::filesystem::path file = root / (std::to_string(serial_++) + ".h5");
-    report = convert(character, options, limits, file);
+    const std::filesystem::path sources = file.string() + ".sources";
+    report = convert(character, options, limits, file, sources);
+    const Clip clip = read_clip(file);
+    map = read_source_map(sources, {clip.header().triangles.size(), clip.header().vertex_count,
+                                    report.parts.size(), report.bones.size()});
     return read_clip(file);
   }
   std::string refusal(const Character& character, const ImportOptions& options = {},
@@ -42,6 +46,7 @@ class Convert : public testing::Test {
   const std::filesystem::path root =
       std::filesystem::temp_directory_path() / ("cscd-convert-" + std::to_string(getpid()));
   ImportReport report;
+  SourceMap map;
 
  private:
   int serial_ = 0;
@@ -141,6 +146,7 @@ TEST_F(Convert, BeginsInTheBindPose) {
   tube.animations[0].channels[0].rotations.erase(tube.animations[0].channels[0].rotations.begin());
   tube.animations[0].channels[0].moves = {{0, Vec3(1, 0, 0)}, {1, Vec3(1, 0, 0)}};
   ImportOptions options;
+  options.clip = "bend";
   options.fps = 20;
   EXPECT_EQ(converted(tube, options).frame_count(), 21u);
   options.from_bind_pose = true;
@@ -178,6 +184,118 @@ TEST_F(Convert, ChoosesClipsByNameNumberOrLength) {
   EXPECT_NE(refusal(tube, options).find("0 'pose', 1 'bend', 2 ''"), std::string::npos);
   tube.animations.clear();
   EXPECT_NE(refusal(tube).find("no clip"), std::string::npos);
+}
+
+TEST_F(Convert, EndsWhereTheClipEnds) {
+  Character tube = bending_tube();
+  Animation& bend = tube.animations[0];
+  bend.seconds = 10.0 / 24;
+  bend.channels[0].rotations[1].time = bend.seconds;
+  const Clip clip = converted(tube);
+  // 12 whole frames of a thirtieth, and half a frame more.
+  ASSERT_EQ(clip.frame_count(), 14u);
+  EXPECT_EQ(report.clips[0].frames, 14u);
+  std::vector<Vec3> end;
+  skin(tube, pose_at(tube, bend, bend.seconds), end);
+  EXPECT_TRUE(std::equal(end.begin(), end.end(), clip.frame(13).positions.begin()));
+  // A length that is a whole number of frames but for the rounding of a float.
+  bend.seconds = static_cast<double>(static_cast<float>(0.7));
+  EXPECT_EQ(converted(tube).frame_count(), 22u);
+  bend.seconds = 0.7;
+  EXPECT_EQ(converted(tube).frame_count(), 22u);
+}
+
+TEST_F(Convert, TakesTheFirstClipThatMovesTheSurface) {
+  Character tube = bending_tube();
+  const Animation bend = tube.animations[0];
+  Animation camera = bend, still = bend;
+  tube.nodes.push_back({"camera", 0, Transform()});
+  camera.channels[0].node = 5;
+  still.channels[0].rotations[1].value = still.channels[0].rotations[0].value;
+  tube.animations = {camera, still, bend};
+  converted(tube);
+  EXPECT_EQ(report.chosen_clip, 2);
+  tube.animations = {camera, still};
+  EXPECT_NE(refusal(tube).find("none of its clips moves the surface"), std::string::npos);
+  ImportOptions options;
+  options.clip = "1";
+  EXPECT_EQ(converted(tube, options).frame_count(), 31u) << "whoever names it gets it";
+
+  // Morph targets alone move it, too.
+  Animation smile{"smile", 0, 1, 0, {}};
+  smile.morphs = {{0, {Curve{{0, 0.0}, {1, 1.0}}}}};
+  tube.parts[0].targets = {{"wide", std::vector<Vec3>(tube.parts[0].positions.size(), Vec3(0, 0.5, 0)), 0}};
+  tube.animations = {camera, smile};
+  const Clip clip = converted(tube);
+  EXPECT_EQ(report.chosen_clip, 1);
+  EXPECT_LT((clip.frame(30).positions[9] - clip.frame(0).positions[9] - Vec3(0, 0.5, 0)).norm(), 1e-12);
+}
+
+TEST_F(Convert, ComparesNamesOfClipsWithoutCaseWhereThatIsUnique) {
+  Character tube = bending_tube();
+  const Animation bend = tube.animations[0];
+  tube.animations = {bend, bend, bend, bend};
+  tube.animations[1].name = "Walk";
+  tube.animations[2].name = "walk";
+  tube.animations[3].name = "RUN";
+  ImportOptions options;
+  const auto chosen = [&](const std::string& name) {
+    options.clip = name;
+    converted(tube, options);
+    return report.chosen_clip;
+  };
+  EXPECT_EQ(chosen("walk"), 2);
+  EXPECT_EQ(chosen("run"), 3);
+  options.clip = "WALK";
+  EXPECT_NE(refusal(tube, options).find("2 clips have this name"), std::string::npos);
+  tube.animations[2].name = "Walk";
+  options.clip = "Walk";
+  EXPECT_NE(refusal(tube, options).find("choose by number: 0 'bend', 1 'Walk', 2 'Walk'"), std::string::npos);
+}
+
+// What an answer needs to speak of the file: the pose at rest, and where triangles and vertices come from.
+TEST_F(Convert, TellsWhereTheSurfaceComesFrom) {
+  Character tube = torn_tube();
+  tube.parts[1].mesh = 3;
+  tube.parts[1].primitive = 2;
+  tube.animations[0].channels[0].rotations[0].value = tube.animations[0].channels[0].rotations[1].value;
+  ImportOptions options;
+  options.clip = "bend";
+  const Clip clip = converted(tube, options);
+  std::vector<Vec3> bound;
+  skin(tube, bind_pose(tube), bound);
+  ASSERT_EQ(clip.header().rest.size(), clip.header().vertex_count);
+  ASSERT_EQ(report.parts.size(), 2u);
+  EXPECT_EQ(report.parts[1].mesh, 3);
+  EXPECT_EQ(report.parts[1].primitive, 2);
+  EXPECT_EQ(report.bones, (std::vector<std::string>{"lower", "upper"}));
+  for (std::size_t t = 0; t < clip.header().triangles.size(); ++t) {
+    const SourceMap::Corners& from = map.triangle[t];
+    ASSERT_GE(from.part, 0);
+    const std::size_t offset = from.part == 0 ? 0 : tube.parts[0].positions.size();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId v = clip.header().triangles[t][k];
+      EXPECT_LT((clip.header().rest[+v] - bound[offset + static_cast<std::size_t>(from.vertex[k])]).norm(),
+                1e-9);
+    }
+  }
+  for (std::size_t v = 0; v < clip.header().vertex_count; ++v) {
+    const double x = clip.header().rest[v].x();
+    if (std::abs(x - 2) < 0.01) continue;
+    EXPECT_EQ(map.bone[v], x < 2 ? 0 : 1) << x;
+  }
+}
+
+TEST_F(Convert, RefusesASourceMapThatDoesNotFit) {
+  converted(bending_tube());
+  const std::filesystem::path file = root / "0.h5.sources";
+  const SourceMapSizes right{map.triangle.size(), map.bone.size(), 1, 2};
+  EXPECT_EQ(read_source_map(file, right), map);
+  for (const SourceMapSizes& wrong : {SourceMapSizes{right.triangles + 1, right.vertices, 1, 2},
+                                      {right.triangles, right.vertices, 0, 2},
+                                      {right.triangles, right.vertices, 1, 1}})
+    EXPECT_THROW(read_source_map(file, wrong), InputError);
+  EXPECT_THROW(read_source_map(root / "none", right), InputError);
 }
 
 TEST_F(Convert, MovesToTheRestWhereThereIsNoClip) {

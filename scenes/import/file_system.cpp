@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <cstring>
-#include <fcntl.h>
 #include <memory>
-#include <string>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <optional>
 #include <vector>
 
 namespace cscd::scenes {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A file that has been read whole; writing fails.
 class MemoryStream final : public Assimp::IOStream {
@@ -46,48 +41,10 @@ class MemoryStream final : public Assimp::IOStream {
 
 }  // namespace
 
-FolderFiles::FolderFiles(const fs::path& model, std::size_t most_bytes) : bytes_left_(most_bytes) {
-  std::error_code ignored;
-  folder_ = fs::canonical(model, ignored).parent_path();
-}
-
-fs::path FolderFiles::inside(const char* name) const {
-  std::error_code error;
-  fs::path path(name);
-  if (path.is_relative()) path = folder_ / path;
-  path = fs::canonical(path, error);
-  if (error || !fs::is_regular_file(path, error)) return {};
-  const auto [end, ignored] = std::mismatch(folder_.begin(), folder_.end(), path.begin(), path.end());
-  return end == folder_.end() ? path : fs::path();
-}
-
-bool FolderFiles::Exists(const char* name) const {
-  return !inside(name).empty();
-}
-
 Assimp::IOStream* FolderFiles::Open(const char* name, const char* mode) {
-  const fs::path path = inside(name);
-  if (path.empty() || std::strchr(mode, 'r') == nullptr || std::strchr(mode, '+') != nullptr) return nullptr;
-  // What has become a pipe since then must not block.
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return nullptr;
-  std::vector<char> bytes;
-  struct stat facts {};
-  bool good = fstat(file, &facts) == 0 && S_ISREG(facts.st_mode) &&
-              static_cast<std::size_t>(facts.st_size) <= bytes_left_;
-  if (good) {
-    bytes.resize(static_cast<std::size_t>(facts.st_size));
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t got = read(file, bytes.data() + done, bytes.size() - done);
-      if (got <= 0) break;
-      done += static_cast<std::size_t>(got);
-    }
-    bytes.resize(done);
-    bytes_left_ -= done;
-  }
-  close(file);
-  return good ? std::make_unique<MemoryStream>(std::move(bytes)).release() : nullptr;
+  if (std::strchr(mode, 'r') == nullptr || std::strchr(mode, '+') != nullptr) return nullptr;
+  std::optional<std::vector<char>> bytes = folder_.read(name);
+  return bytes ? std::make_unique<MemoryStream>(std::move(*bytes)).release() : nullptr;
 }
 
 void FolderFiles::Close(Assimp::IOStream* file) {

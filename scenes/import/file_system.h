@@ -3,24 +3,21 @@
 #include <assimp/IOSystem.hpp>
 #include <filesystem>
 
+#include "scenes/sandbox/own_folder.h"
+
 namespace cscd::scenes {
 
-// What assimp may read: regular files in the model's own folder or below it, each up to a size and all of
-// them together too. Names that lead out of the folder, by "..", by a link or from the root, do not exist.
+// What assimp may read: the files of the model's own folder (scenes/sandbox/own_folder.h).
 class FolderFiles final : public Assimp::IOSystem {
  public:
-  FolderFiles(const std::filesystem::path& model, std::size_t most_bytes);
-  bool Exists(const char* name) const override;
+  FolderFiles(const std::filesystem::path& model, std::size_t most_bytes) : folder_(model, most_bytes) {}
+  bool Exists(const char* name) const override { return folder_.holds(name); }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* name, const char* mode) override;
   void Close(Assimp::IOStream* file) override;
 
  private:
-  // Empty where the name leads out of the folder or to what is no regular file.
-  std::filesystem::path inside(const char* name) const;
-
-  std::filesystem::path folder_;
-  std::size_t bytes_left_;
+  OwnFolder folder_;
 };
 
 }  // namespace cscd::scenes

@@ -1,4 +1,5 @@
-// cscd-import MODEL CACHE.h5 REPORT [options]: turns a model file into a point cache and a report. `cscd`
+// cscd-import MODEL CACHE.h5 REPORT SOURCES [options]: turns a model file into a point cache, a report and a
+// source map. `cscd`
 // runs it under limits (bench/import.h), so that assimp never reads a file in the program that answers.
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 #include "scenes/character/report.h"
 #include "scenes/import/convert.h"
 #include "scenes/import/read_model.h"
@@ -34,13 +36,15 @@ int complain(const std::string& what) {
 int main(int argc, char** argv) {
   using namespace cscd::scenes;
   std::set_new_handler(end_without_memory);
+  cscd::remove_temporaries_at_signals();
   const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() < 3) return complain("usage: cscd-import MODEL CACHE.h5 REPORT [options]; run by cscd");
+  if (words.size() < 4)
+    return complain("usage: cscd-import MODEL CACHE.h5 REPORT SOURCES [options]; run by cscd");
   try {
     const CharacterLimits limits;
-    const ImportOptions options = parse_arguments(std::span(words).subspan(3));
+    const ImportOptions options = parse_arguments(std::span(words).subspan(4));
     const Character character = read_model(words[0], limits);
-    const ImportReport report = convert(character, options, limits, words[1]);
+    const ImportReport report = convert(character, options, limits, words[1], words[3]);
     std::ofstream out(words[2], std::ios::binary);
     out << to_text(report);
     out.close();

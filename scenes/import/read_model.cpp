@@ -18,18 +18,22 @@
 
 #include "core/base/error.h"
 #include "scenes/import/file_system.h"
+#include "scenes/import/gltf/read_gltf.h"
 
 namespace cscd::scenes {
 namespace {
 
-// Importers by name: two claim glTF's extensions.
+// Importers of assimp by name; a file of glTF is read without it.
 struct Format {
   std::string_view extension, importer, name;
 };
 constexpr std::array kFormats = {
-    Format{".glb", "glTF2 Importer", "glTF 2"},           Format{".gltf", "glTF2 Importer", "glTF 2"},
-    Format{".fbx", "Autodesk FBX Importer", "FBX"},       Format{".dae", "Collada Importer", "Collada"},
-    Format{".x", "Direct3D XFile Importer", "DirectX X"}, Format{".bvh", "BVH Importer (MoCap)", "BVH"},
+    Format{".glb", "", "glTF 2"},
+    Format{".gltf", "", "glTF 2"},
+    Format{".fbx", "Autodesk FBX Importer", "FBX"},
+    Format{".dae", "Collada Importer", "Collada"},
+    Format{".x", "Direct3D XFile Importer", "DirectX X"},
+    Format{".bvh", "BVH Importer (MoCap)", "BVH"},
 };
 
 // What assimp means by 0 ticks a second is "the file does not say"; its own viewer takes 25.
@@ -265,6 +269,11 @@ class Reader {
 
 Character read_model(const std::filesystem::path& path, const CharacterLimits& limits) {
   const Format& format = format_of(path);
+  if (format.name == "glTF 2") {
+    Character character = read_gltf(path, limits);
+    validate(character, limits);
+    return character;
+  }
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it
@@ -283,7 +292,7 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
                      " importer refuses it: " + std::string(error) + "; export it again");
   Character character = Reader(*scene, limits).read();
   character.format = format.name;
-  if (format.name == "Collada" || format.name == "glTF 2") character.centimetres_per_unit = 0;
+  if (format.name == "Collada") character.centimetres_per_unit = 0;
   validate(character, limits);
   return character;
 }

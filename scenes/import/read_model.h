@@ -6,9 +6,9 @@
 
 namespace cscd::scenes {
 
-// Reads a model file with assimp. To be called in a process that may be lost: assimp 5.2.5 crashes on some
-// damaged files. Throws InputError for formats outside the short list below, files that assimp refuses, and
-// what validate() refuses.
+// Reads a model file: glTF by gltf/read_gltf.h, other formats with assimp. To be called in a process that may
+// be lost: assimp 5.2.5 crashes on some damaged files. Throws InputError for formats outside the short list
+// below, files that assimp refuses, and what validate() refuses.
 //
 // Where an FBX file has curves for some components of a channel only, assimp 5.2.5 takes the others as 0.
 //

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <optional>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/temporaries.h"
 
 namespace cscd::scenes {
 namespace {
@@ -128,6 +130,8 @@ Outcome run_limited(const std::filesystem::path& program, std::span<const std::s
   Outcome outcome{Outcome::End::exited, 0, {}, 0, 0};
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - started).count(); };
   bool ended = false, talks = true, too_late = false;
+  std::optional<TemporaryHelper> helper;
+  helper.emplace(child);
   while (!ended && !too_late) {
     pollfd waits[2] = {{handle.id, POLLIN, 0}, {talks ? from.id : -1, POLLIN, 0}};
     const double left = limits.seconds - elapsed();
@@ -139,6 +143,7 @@ Outcome run_limited(const std::filesystem::path& program, std::span<const std::s
     too_late = !ended && elapsed() >= limits.seconds;
   }
   if (too_late) kill(child, SIGKILL);
+  helper.reset();  // before its number may be given to another process
   int status = 0;
   rusage usage{};
   while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {

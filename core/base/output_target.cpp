@@ -1,0 +1,125 @@
+#include "core/base/output_target.h"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+namespace cscd {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostLinks = 40;  // as the system's own limit
+
+fs::path follow_links(const fs::path& named) {
+  fs::path path = named;
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+    const fs::path to = fs::read_symlink(path, error);
+    if (error)
+      throw InputError("output " + named.string() + ": its link cannot be read; choose another name");
+    path = to.is_absolute() ? to : path.parent_path() / to;
+  }
+  throw InputError("output " + named.string() + ": its links lead in a circle; choose another name");
+}
+
+// Renames, but never replaces. Where a file system cannot do that in one step, two names of one file do.
+bool rename_to_new(const char* from, const char* to) {
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  return link(from, to) == 0 && unlink(from) == 0;
+}
+
+}  // namespace
+
+OutputTarget find_output_target(const fs::path& path, bool force) {
+  const std::string name = "output " + path.string();
+  if (path.empty()) throw InputError("output: its name is empty; give one");
+  std::error_code ignored;
+  switch (fs::status(path, ignored).type()) {
+    case fs::file_type::character:
+    case fs::file_type::fifo:
+      return {path, true};
+    case fs::file_type::directory:
+      throw InputError(name + ": is a folder; name a file in it");
+    case fs::file_type::socket:
+      throw InputError(name + ": is a socket; choose a file, a pipe or a device");
+    case fs::file_type::block:
+      throw InputError(name + ": is a disk; choose a file, a pipe or a device");
+    case fs::file_type::regular:
+      if (!force) throw InputError(name + ": exists; choose another name or pass --force to replace it");
+      break;
+    default:
+      if (!path.has_filename()) throw InputError(name + ": names a folder; name a file in it");
+  }
+  return {follow_links(path), false};
+}
+
+UnfinishedFile::UnfinishedFile(fs::path target, bool force) : target_(std::move(target)), force_(force) {
+  try {
+    make();
+  } catch (...) {
+    if (file_ >= 0) close(file_);
+    throw;
+  }
+}
+
+void UnfinishedFile::make() {
+  // A short name of its own: the target's name may already be as long as the file system allows.
+  static std::atomic<unsigned> serial{0};
+  path_ = target_.parent_path() /
+          (".cscd-unfinished-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
+  registered_.emplace(path_);  // first, so that no signal comes in between
+  file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file_ < 0) fail("created");
+  struct stat present {};
+  if (force_ && stat(target_.c_str(), &present) == 0) fchmod(file_, present.st_mode & 0777);
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (file_ < 0) return;
+  close(file_);
+  unlink(path_.c_str());
+}
+
+void UnfinishedFile::write(std::string_view content) {
+  if (!write_all(file_, content)) fail("written");
+}
+
+void UnfinishedFile::finish() {
+  if (fsync(file_) != 0) fail("written");
+  const bool named =
+      force_ ? rename(path_.c_str(), target_.c_str()) == 0 : rename_to_new(path_.c_str(), target_.c_str());
+  if (!named) fail("named");
+  registered_.reset();
+  close(file_);
+  file_ = -1;
+}
+
+void UnfinishedFile::fail(const char* what) const {
+  const int reason = errno;
+  const bool full = reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+  throw InputError(
+      "output " + target_.string() + ": cannot be " + what + " (" + std::strerror(reason) + "); " +
+      (full ? "make room or choose another disk" : "choose a folder that exists and can be written to"));
+}
+
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace cscd

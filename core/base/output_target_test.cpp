@@ -1,0 +1,217 @@
+#include "core/base/output_target.h"
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/base/error.h"
+
+namespace cscd {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Output : public testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("cscd-output-target-" + std::to_string(getpid()));
+  void SetUp() override {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+void put(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+std::string refusal(const fs::path& path, bool force = false) {
+  try {
+    const OutputTarget target = find_output_target(path, force);
+    UnfinishedFile file(target.path, force);
+    file.write("new");
+    file.finish();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Output, AppearsWholeOrNotAtAll) {
+  {
+    UnfinishedFile file(folder / "a", false);
+    file.write("half");
+    EXPECT_FALSE(fs::exists(folder / "a"));
+    EXPECT_EQ(files(), 1u);
+  }
+  EXPECT_EQ(files(), 0u);
+  EXPECT_EQ(refusal(folder / "a"), "");
+  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Output, ReplacesOnlyWhenForcedAndKeepsPermissions) {
+  put(folder / "a", "old");
+  fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_NE(refusal(folder / "a").find("--force"), std::string::npos);
+  EXPECT_EQ(text_of(folder / "a"), "old");
+  EXPECT_EQ(refusal(folder / "a", true), "");
+  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(Output, DoesNotReplaceWhatCameInBetween) {
+  UnfinishedFile file(folder / "a", false);
+  put(folder / "a", "came first");
+  EXPECT_THROW(file.finish(), InputError);
+  EXPECT_EQ(text_of(folder / "a"), "came first");
+}
+
+TEST_F(Output, FollowsLinksAndLeavesThem) {
+  put(folder / "a", "old");
+  fs::create_symlink("a", folder / "link");
+  fs::create_symlink("link", folder / "link2");
+  EXPECT_NE(refusal(folder / "link2"), "");
+  EXPECT_EQ(refusal(folder / "link2", true), "");
+  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link2"));
+}
+
+TEST_F(Output, MakesTheTargetOfADanglingLink) {
+  fs::create_symlink("there", folder / "link");
+  EXPECT_EQ(refusal(folder / "link"), "");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_FALSE(fs::is_symlink(folder / "there"));
+  EXPECT_EQ(text_of(folder / "there"), "new");
+}
+
+TEST_F(Output, RefusesLinksInACircleFoldersAndSockets) {
+  fs::create_symlink("b", folder / "a");
+  fs::create_symlink("a", folder / "b");
+  EXPECT_NE(refusal(folder / "a").find("circle"), std::string::npos);
+  EXPECT_NE(refusal(folder, true).find("is a folder"), std::string::npos);
+  EXPECT_NE(refusal(folder / "no" / "such").find("cannot be created"), std::string::npos);
+  EXPECT_NE(refusal(folder / "new/").find("names a folder"), std::string::npos);
+  EXPECT_NE(refusal("", true).find("empty"), std::string::npos);
+
+  const int handle = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  (folder / "socket").string().copy(name.sun_path, sizeof name.sun_path - 1);
+  ASSERT_EQ(bind(handle, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
+  EXPECT_NE(refusal(folder / "socket", true).find("is a socket"), std::string::npos);
+  close(handle);
+}
+
+TEST_F(Output, KnowsDevicesAndPipes) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(find_output_target(folder / "pipe", false).is_stream);
+  EXPECT_TRUE(find_output_target("/dev/null", true).is_stream);
+  fs::create_symlink("/dev/null", folder / "link");
+  EXPECT_TRUE(find_output_target(folder / "link", true).is_stream);
+  if (mknod((folder / "disk").c_str(), S_IFBLK | 0600, makedev(259, 200)) != 0)
+    GTEST_SKIP() << "may not make a device";
+  EXPECT_NE(refusal(folder / "disk", true).find("is a disk"), std::string::npos);
+}
+
+TEST_F(Output, TakesTheLongestNameThatThereIs) {
+  EXPECT_EQ(refusal(folder / std::string(255, 'n')), "");
+  EXPECT_NE(refusal(folder / std::string(256, 'n')), "");
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Output, SaysThatAFolderIsReadOnly) {
+  if (geteuid() != 0 || seteuid(65534) != 0) GTEST_SKIP() << "needs root, to become another user";
+  const std::string text = refusal(folder / "a");
+  ASSERT_EQ(seteuid(0), 0);
+  EXPECT_NE(text.find("Permission denied"), std::string::npos) << text;
+}
+
+// What the child leaves in the folder that is ended by a signal in the middle.
+int end_child_by(int signal_number, const std::function<void()>& begin) {
+  const pid_t child = fork();
+  if (child == 0) {
+    remove_temporaries_at_signals();
+    begin();
+    raise(signal_number);
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : -1;
+}
+
+TEST_F(Output, VanishesAtSignalsThatEndTheProcess) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    const int end = end_child_by(number, [&] {
+      static std::optional<UnfinishedFile> several[3];
+      for (int i = 0; i < 3; ++i) several[i].emplace(folder / std::to_string(i), false);
+      several[1].reset();
+      fs::create_directory(folder / "work");
+      put(folder / "work" / "frames", "some");
+      static const Temporary work(folder / "work");
+      if (files() != 3) _exit(1);
+    });
+    EXPECT_EQ(end, number);
+    EXPECT_EQ(files(), 0u);
+  }
+}
+
+TEST_F(Output, EndsTheHelperThatWritesIntoAFolder) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const int end = end_child_by(SIGTERM, [&] {
+    fs::create_directory(folder / "work");
+    static const Temporary work(folder / "work");
+    const pid_t process = fork();
+    if (process == 0) {  // writes on and on, as long as it lives
+      close(ends[0]);
+      for (int i = 0;; ++i) put(folder / "work" / std::to_string(i), "frame");
+    }
+    static const TemporaryHelper helper(process);
+    usleep(20'000);
+  });
+  EXPECT_EQ(end, SIGTERM);
+  EXPECT_EQ(files(), 0u);
+  close(ends[1]);
+  char byte;
+  EXPECT_EQ(read(ends[0], &byte, 1), 0) << "nobody holds the other end: the helper is gone";
+  close(ends[0]);
+}
+
+TEST_F(Output, LeavesFinishedFilesAndThoseOfTheParentAlone) {
+  UnfinishedFile of_parent(folder / "parent", false);
+  EXPECT_EQ(end_child_by(SIGINT,
+                         [&] {
+                           UnfinishedFile file(folder / "child", false);
+                           file.write("whole");
+                           file.finish();
+                         }),
+            SIGINT);
+  EXPECT_EQ(text_of(folder / "child"), "whole");
+  EXPECT_NO_THROW(of_parent.finish());
+}
+
+TEST_F(Output, LetsAnIgnoredSignalBeIgnored) {
+  EXPECT_EQ(end_child_by(SIGHUP, [] {}), SIGHUP);
+  const auto before = signal(SIGHUP, SIG_IGN);
+  EXPECT_EQ(end_child_by(SIGHUP, [] {}), -1);
+  signal(SIGHUP, before);
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,139 @@
+#include "scenes/import/clip_frames.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+// A clip whose length is this near to a whole number of frames (times in files are single precision) ends
+// with a whole frame.
+constexpr double kNearFrame = 1e-3;
+// So many poses of a clip are looked at to see whether it moves anything.
+constexpr std::size_t kMostLooks = 4096;
+// What moves less than this share of the diagonal is rounding.
+constexpr double kMoves = 1e-9;
+
+Moment moment_at(const Character& character, const Animation& animation, double seconds) {
+  const double time = animation.start + seconds;
+  return {pose_at(character, animation, time), weights_at(character, animation, time)};
+}
+
+std::string listed_clips(const Character& character) {
+  std::string known;
+  for (std::size_t i = 0; i < character.animations.size(); ++i)
+    known += (i ? ", " : "") + std::to_string(i) + " '" + character.animations[i].name + "'";
+  return known;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// Does the clip move a used vertex between two of its frames?
+bool moves_surface(const Character& character, const Animation& animation, const std::vector<bool>& used,
+                   double diagonal, double fps) {
+  if (animation.channels.empty() && animation.morphs.empty()) return false;
+  const std::size_t frames = std::min(frames_of(animation.seconds, fps), kMostLooks);
+  std::vector<Vec3> first, now;
+  for (std::size_t i = 0; i < frames; ++i) {
+    const double share = frames < 2 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
+    const Moment moment = moment_at(character, animation, share * animation.seconds);
+    skin(character, moment.pose, moment.weights, i == 0 ? first : now);
+    for (std::size_t v = 0; i > 0 && v < first.size(); ++v)
+      if (used[v] && (now[v] - first[v]).cwiseAbs().maxCoeff() > kMoves * diagonal) return true;
+  }
+  return false;
+}
+
+std::size_t clip_named(const Character& character, const std::string& wanted) {
+  const auto& all = character.animations;
+  const auto one_of = [&](const auto& same) -> std::optional<std::size_t> {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (same(all[i].name)) found.push_back(i);
+    if (found.size() > 1)
+      throw InputError("--clip " + wanted + ": " + std::to_string(found.size()) +
+                       " clips have this name; choose by number: " + listed_clips(character));
+    return found.empty() ? std::nullopt : std::optional(found.front());
+  };
+  if (const auto exact = one_of([&](const std::string& name) { return name == wanted; })) return *exact;
+  std::size_t number = 0;
+  const char* end = wanted.data() + wanted.size();
+  const auto [stop, error] = std::from_chars(wanted.data(), end, number);
+  if (error == std::errc{} && stop == end && number < all.size()) return number;
+  if (const auto alike = one_of([&](const std::string& name) { return lower(name) == lower(wanted); }))
+    return *alike;
+  throw InputError("--clip " + wanted + ": there is no such clip; choose one of " + listed_clips(character));
+}
+
+std::size_t choose_clip(const Character& character, const std::vector<bool>& used, double diagonal,
+                        const ImportOptions& options) {
+  const auto& all = character.animations;
+  if (all.empty())
+    throw InputError(
+        "has a bind pose but no clip, so nothing moves (" + std::to_string(character.nodes.size()) +
+        " nodes, " + std::to_string(moving_nodes(character).size()) +
+        " bones); export it with an animation, or pass --from-bind-pose to move to the pose at rest");
+  if (!options.clip.empty()) return clip_named(character, options.clip);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (moves_surface(character, all[i], used, diagonal, options.fps)) return i;
+  if (options.from_bind_pose) return 0;
+  throw InputError(
+      "none of its clips moves the surface: " + listed_clips(character) +
+      "; pass --from-bind-pose to move from the bind pose to one of them, or name one with --clip");
+}
+
+Frames survey(const Character& character, const Pose& bound) {
+  const auto start_of_clip = [&character, &bound](std::size_t frame) -> Moment {
+    if (frame == 0 || frame > character.animations.size()) return {bound, rest_weights(character)};
+    return moment_at(character, character.animations[frame - 1], 0);
+  };
+  return {std::max<std::size_t>(2, character.animations.size() + 1), start_of_clip};  // a cache has two
+}
+
+}  // namespace
+
+std::size_t frames_of(double seconds, double fps) {
+  const double frames = seconds * fps;
+  const double whole = std::round(frames);
+  return static_cast<std::size_t>(std::abs(frames - whole) <= kNearFrame ? whole : std::ceil(frames)) + 1;
+}
+
+double second_of_frame(std::size_t frame, double seconds, double fps) {
+  return frame + 1 >= frames_of(seconds, fps) ? seconds : static_cast<double>(frame) / fps;
+}
+
+Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,
+                   double diagonal, const ImportOptions& options, ImportReport& report) {
+  if (options.survey) return survey(character, bound);
+  const bool to_rest = character.animations.empty() && options.from_bind_pose;
+  if (to_rest) report.notes.push_back("has no clip; moves from the bind pose to the pose at rest");
+  const long chosen = to_rest ? -1 : static_cast<long>(choose_clip(character, used, diagonal, options));
+  const Animation animation = to_rest ? Animation{} : character.animations[static_cast<std::size_t>(chosen)];
+  const std::size_t frames = frames_of(animation.seconds, options.fps);
+  const std::size_t lead_in =
+      options.from_bind_pose
+          ? std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kLeadInSeconds * options.fps)))
+          : 0;
+  report.chosen_clip = chosen;
+  report.lead_in = lead_in;
+  if (frames + lead_in < 2)
+    throw InputError("--clip " + options.clip + ": is one pose; pass --from-bind-pose to move to it");
+  const auto moment = [&character, &bound, animation, fps = options.fps, lead_in](std::size_t frame) {
+    if (frame >= lead_in)
+      return moment_at(character, animation, second_of_frame(frame - lead_in, animation.seconds, fps));
+    const Moment start = moment_at(character, animation, 0);
+    const double share = static_cast<double>(frame) / static_cast<double>(lead_in);
+    return Moment{blend(character, bound, start.pose, share),
+                  blend(rest_weights(character), start.weights, share)};
+  };
+  return {frames + lead_in, moment};
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "scenes/character/character.h"
+#include "scenes/import/gltf/accessor.h"
+#include "scenes/import/gltf/tree.h"
+
+namespace cscd::scenes::gltf {
+
+// Makes clips of a file's animations, and counts what it leaves out.
+class Clips {
+ public:
+  Clips(const Document& document, Accessors& accessors, const CharacterLimits& limits)
+      : document_(document), accessors_(accessors), limits_(limits) {}
+
+  // `parts` stand in the order of their nodes.
+  Animation read(const tinygltf::Animation& source, const Tree& tree, const std::vector<Part>& parts);
+
+  std::vector<std::string> notes() const;
+
+ private:
+  struct Sampled;
+  Sampled sampled(const tinygltf::Animation& source, int sampler, const std::string& path,
+                  std::size_t targets);
+  void read_weights(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, int node,
+                    const std::vector<Part>& parts, std::map<int, MorphChannel>& by_part);
+  void read_node(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, Channel& to);
+  template <class Value, class Convert>
+  std::vector<Key<Value>> keys(const Sampled& from, const Convert& convert);
+
+  const Document& document_;
+  Accessors& accessors_;
+  const CharacterLimits& limits_;
+  // Of all clips so far.
+  std::size_t keys_ = 0, unordered_ = 0, twice_ = 0, no_targets_ = 0;
+};
+
+}  // namespace cscd::scenes::gltf

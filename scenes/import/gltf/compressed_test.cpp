@@ -1,0 +1,145 @@
+#include "scenes/import/gltf/test_compressed.h"
+
+// Compressed files, compressed here by the libraries' own encoders.
+namespace cscd::scenes::gltf {
+namespace {
+
+TEST(GltfCompressed, MeshoptAttributesAndTriangles) {
+  const TubeFile file = with_meshopt();
+  const std::vector<std::uint16_t>& corners = file.numbers.corners;
+  const Character character = read(file);
+  expect_same_motion(character, bending_tube());
+  ASSERT_EQ(character.parts[0].triangles.size(), bending_tube().parts[0].triangles.size());
+  // The codec may turn a triangle to another first corner.
+  for (std::size_t t = 0; t < corners.size() / 3; ++t) {
+    auto got = character.parts[0].triangles[t], wanted = bending_tube().parts[0].triangles[t];
+    std::rotate(got.begin(), std::min_element(got.begin(), got.end()), got.end());
+    std::rotate(wanted.begin(), std::min_element(wanted.begin(), wanted.end()), wanted.end());
+    EXPECT_EQ(got, wanted);
+  }
+}
+
+TEST(GltfCompressed, MeshoptIndexSequences) {
+  TubeFile file;
+  const std::vector<unsigned> corners(file.numbers.corners.begin(), file.numbers.corners.end());
+  std::vector<unsigned char> packed(meshopt_encodeIndexSequenceBound(corners.size(), 1000));
+  packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), corners.data(), corners.size()));
+  compress(file, TubeFile::kCorners, packed, corners.size(), 2, "INDICES");
+  EXPECT_EQ(read(file).parts[0].triangles, bending_tube().parts[0].triangles);
+}
+
+TEST(GltfCompressed, MeshoptExponentialFilter) {
+  TubeFile file;
+  const std::size_t vertices = file.character.parts[0].positions.size();
+  std::vector<float> filtered(file.numbers.positions.size());
+  meshopt_encodeFilterExp(filtered.data(), vertices, 12, 24, file.numbers.positions.data());
+  compress(file, TubeFile::kPositions, packed_vertices(filtered.data(), vertices, 12), vertices, 12,
+           "ATTRIBUTES", "EXPONENTIAL");
+  expect_same_motion(read(file), bending_tube(), 1e-5);
+}
+
+TEST(GltfCompressed, MeshoptQuaternionFilter) {
+  TubeFile file;
+  const float turns[8] = {0, 0, 0, 1, 0, 0, file.half, file.half};
+  std::int16_t filtered[8];
+  meshopt_encodeFilterQuat(filtered, 2, 8, 16, turns);
+  const int output = file.accessor(std::vector<std::int16_t>(8), "VEC4", true);
+  compress(file, output, packed_vertices(filtered, 2, 8), 2, 8, "ATTRIBUTES", "QUATERNION");
+  file.root["animations"][0]["samplers"][0]["output"] = output;
+  expect_same_motion(read(file), bending_tube(), 2e-4);
+}
+
+// Octahedral directions are for normals, but a morph target may be written so.
+TEST(GltfCompressed, MeshoptOctahedralFilter) {
+  TubeFile file;
+  const std::size_t vertices = file.character.parts[0].positions.size();
+  std::vector<float> up(4 * vertices, 0);
+  for (std::size_t v = 0; v < vertices; ++v) up[4 * v + 2] = 1;
+  std::vector<std::int8_t> filtered(4 * vertices);
+  meshopt_encodeFilterOct(filtered.data(), vertices, 4, 8, up.data());
+  const int target = file.accessor(std::vector<std::int8_t>(3 * vertices), "VEC3", true);
+  compress(file, target, packed_vertices(filtered.data(), vertices, 4), vertices, 4, "ATTRIBUTES",
+           "OCTAHEDRAL");
+  file.primitive()["targets"] = {{{"POSITION", target}}};
+  file.root["meshes"][0]["weights"] = {1};
+  EXPECT_LT((positions_at(read(file), 0)[5] - positions_at(bending_tube(), 0)[5] - Vec3(0, 0, 1)).norm(),
+            1e-2);
+}
+
+TEST(GltfCompressed, MeshoptDataThatDoNotFitAreRefused) {
+  TubeFile file = with_meshopt();
+  const auto view = file.root["accessors"][TubeFile::kPositions]["bufferView"].get<std::size_t>();
+  struct Case {
+    const char *member, *value, *words;
+  };
+  for (const auto& [member, value, words] : {
+           Case{"mode", "\"TREES\"", "unknown mode 'TREES'"},
+           Case{"mode", "\"TRIANGLES\"", "does not fit its mode"},
+           Case{"mode", "4", "mode is not a text"},
+           Case{"filter", "\"SHARP\"", "unknown filter 'SHARP'"},
+           Case{"filter", "\"QUATERNION\"", "does not fit its mode and filter"},
+           Case{"byteStride", "16", "as many bytes as its buffer view"},
+           Case{"byteStride", "0", "does not fit its mode"},
+           Case{"count", "2147483647", "as many bytes as its buffer view"},
+           Case{"byteLength", "100", "is damaged"},
+           Case{"byteLength", "1", "fewer elements than it says"},
+           Case{"byteOffset", "2147483647", "beyond its buffer"},
+           Case{"buffer", "1", "holds nothing"},
+       }) {
+    TubeFile spoiled = file;
+    spoiled.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"][member] = json::parse(value);
+    const std::string told = refusal(spoiled);
+    EXPECT_NE(told.find(words), std::string::npos) << member << " = " << value << ": " << told;
+  }
+  file.root["bufferViews"][view].erase("extensions");
+  EXPECT_NE(refusal(file).find("a buffer that holds nothing"), std::string::npos);
+}
+
+TEST(GltfCompressed, DracoMeshes) {
+  const Character got = read(with_draco()), wanted = bending_tube();
+  ASSERT_EQ(got.parts[0].positions.size(), wanted.parts[0].positions.size());
+  ASSERT_EQ(got.parts[0].triangles.size(), wanted.parts[0].triangles.size());
+  // Draco numbers vertices anew, so they are told by where they are at rest.
+  for (const double seconds : {0.0, 0.5, 1.0}) {
+    const std::vector<Vec3> found = positions_at(got, seconds), expected = positions_at(wanted, seconds);
+    for (std::size_t v = 0; v < found.size(); ++v) {
+      std::size_t same = 0;
+      while (same < expected.size() &&
+             (wanted.parts[0].positions[same] - got.parts[0].positions[v]).norm() > 1e-6)
+        ++same;
+      ASSERT_LT(same, expected.size());
+      EXPECT_LT((found[v] - expected[same]).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(GltfCompressed, DracoDataThatDoNotFitAreRefused) {
+  struct Case {
+    const char *where, *value, *words;
+  };
+  for (const auto& [where, value, words] : {
+           Case{"/bufferView", "0", "Draco data are damaged"},
+           Case{"/bufferView", "1000", "buffer view 1000"},
+           Case{"/attributes/POSITION", "77", "no attribute 77"},
+           Case{"/attributes/POSITION", "1", "differ in size"},
+           Case{"/attributes", "{}", "names no data"},
+       }) {
+    TubeFile file = with_draco();
+    file.primitive()["extensions"]["KHR_draco_mesh_compression"][json::json_pointer(where)] =
+        json::parse(value);
+    const std::string told = refusal(file);
+    EXPECT_NE(told.find(words), std::string::npos) << where << " = " << value << ": " << told;
+  }
+  TubeFile file = with_draco();
+  file.root["accessors"][0]["type"] = "VEC4";
+  EXPECT_NE(refusal(file).find("wrong type"), std::string::npos);
+  CharacterLimits few;
+  few.vertices = 100;
+  TubeFile counted_before = with_draco();
+  counted_before.root["accessors"][0]["count"] = 1;
+  EXPECT_EQ(refusal(counted_before), "");
+  EXPECT_NE(refusal(counted_before, few).find("more than 100 vertices"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cscd::scenes::gltf

@@ -1,0 +1,143 @@
+#include <chrono>
+#include <cstdlib>
+#include <new>
+#include <random>
+
+#include "scenes/import/gltf/test_compressed.h"
+
+// Files of every kind with a few members or bytes changed at random: each is read to finite positions, or
+// refused, in time.
+namespace cscd::scenes::gltf {
+namespace {
+
+using Random = std::mt19937_64;
+
+// Sparse positions, a strip, a cubic, weights of morph targets, a matrix, two sets of joints.
+TubeFile with_everything() {
+  TubeFile file;
+  const std::vector<std::uint16_t> where = {1, 5};
+  file.root["accessors"][0]["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", file.view(where)}, {"componentType", 5123}, {"byteOffset", 0}}},
+      {"values", {{"bufferView", file.view(std::vector<float>(6, 1))}, {"byteOffset", 0}}}};
+  json& primitive = file.primitive();
+  primitive["mode"] = 5;
+  primitive["attributes"]["JOINTS_1"] = TubeFile::kJoints;
+  primitive["attributes"]["WEIGHTS_1"] = TubeFile::kWeights;
+  primitive["targets"] = {{{"POSITION", 0}}};
+  file.root["nodes"][1]["weights"] = {0.5};
+  file.root["nodes"][3] = {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1}}, {"children", {4}}};
+  file.root["nodes"].push_back({{"mesh", 0}});
+  file.root["scenes"].push_back({{"nodes", {0, 5}}});
+  file.root["scene"] = 1;
+  const int cubic = file.accessor(std::vector<float>(18, 0.25f), "VEC3");
+  file.animate(2, "translation", {0, 2}, cubic, "CUBICSPLINE");
+  file.animate(1, "weights", {0, 1}, file.accessor(std::vector<float>{0, 1}, "SCALAR"), "STEP");
+  file.root["accessors"][1]["byteOffset"] = 0;
+  file.root["bufferViews"][2]["byteStride"] = 16;
+  return file;
+}
+
+void collect(json& value, std::vector<json*>& out) {
+  for (auto& item : value) {
+    out.push_back(&item);
+    if (item.is_structured()) collect(item, out);
+  }
+}
+
+void spoil_member(json& root, Random& random) {
+  std::vector<json*> members;
+  collect(root, members);
+  json& member = *members[random() % members.size()];
+  static const json kValues = {-1,
+                               0,
+                               1,
+                               2,
+                               5,
+                               0.5,
+                               1e300,
+                               1e-300,
+                               -1e18,
+                               255,
+                               65536,
+                               5121,
+                               5126,
+                               "x",
+                               nullptr,
+                               true,
+                               json::array(),
+                               json::object(),
+                               "VEC3",
+                               "MAT4",
+                               2147483647,
+                               4294967296,
+                               1000000,
+                               18446744073709551615u};
+  if (random() % 8 == 0 && member.is_structured() && !member.empty()) {
+    if (member.is_object())
+      member.erase(std::next(member.begin(), static_cast<std::ptrdiff_t>(random() % member.size())).key());
+    else
+      member.erase(random() % member.size());
+  } else if (random() % 4 == 0 && member.is_number_integer()) {
+    member = member.get<std::int64_t>() + static_cast<std::int64_t>(random() % 5) - 2;
+  } else {
+    member = kValues[random() % kValues.size()];
+  }
+}
+
+void spoil_bytes(std::string& bytes, Random& random) {
+  const std::size_t first = random() % bytes.size(),
+                    count = std::min<std::size_t>(1 + random() % 16, bytes.size() - first);
+  const bool same = random() % 2;
+  for (std::size_t i = first; i < first + count; ++i) bytes[i] = same ? '\xff' : static_cast<char>(random());
+}
+
+// Returns whether the file was accepted.
+bool survives(const std::string& bytes) {
+  try {
+    const Character character = read_bytes(bytes);
+    for (const Animation& clip : character.animations) {
+      std::vector<Vec3> positions;
+      skin(character, pose_at(character, clip, clip.start), weights_at(character, clip, clip.start),
+           positions);
+    }
+    return true;
+  } catch (const InputError&) {
+  } catch (const std::bad_alloc&) {  // which the importer reports as a lack of memory
+  }
+  return false;
+}
+
+TEST(GltfDamage, DamagedFilesAreReadOrRefused) {
+  const char* asked = std::getenv("CSCD_HOSTILE");
+  const int copies = asked ? 20 * std::atoi(asked) : 300;
+  Random random(2014);
+  std::size_t accepted = 0, runs = 0;
+  for (const TubeFile& whole : {TubeFile(), with_everything(), with_meshopt(), with_draco()}) {
+    ASSERT_TRUE(survives(whole.glb()));
+    for (int i = 0; i < copies; ++i) {
+      TubeFile file = whole;
+      const std::size_t changes = 1 + random() % 3;
+      for (std::size_t c = 0; c < changes; ++c)
+        if (i % 2 == 0)
+          spoil_member(file.root, random);
+        else
+          spoil_bytes(file.bytes, random);
+      const auto start = std::chrono::steady_clock::now();
+      std::string bytes;
+      try {
+        bytes = file.glb();
+      } catch (const json::exception&) {  // where the buffers have become something else
+        bytes = file.root.dump();
+      }
+      accepted += survives(bytes);
+      ++runs;
+      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << file.root.dump();
+    }
+  }
+  EXPECT_GT(accepted, runs / 20);
+  EXPECT_LT(accepted, runs);
+}
+
+}  // namespace
+}  // namespace cscd::scenes::gltf

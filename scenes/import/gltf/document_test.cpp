@@ -1,0 +1,193 @@
+#include "scenes/import/gltf/test_files.h"
+
+// Containers, buffers and what a file says of itself.
+namespace cscd::scenes::gltf {
+namespace {
+
+std::string told(const TestFolder& folder, const std::string& name, const std::string& contents) {
+  try {
+    Character character = read_gltf(folder.write(name, contents), {});
+    validate(character, {});
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// The tube with its buffer elsewhere.
+std::string with_uri(const std::string& uri, std::size_t extra_length = 0) {
+  TubeFile file;
+  file.root["buffers"] = {{{"byteLength", file.bytes.size() + extra_length}, {"uri", uri}}};
+  return file.root.dump();
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : kDigits[(word >> (18 - 6 * k)) & 63];
+  }
+  return out;
+}
+
+TEST(GltfDocument, BuffersMayLieInTheTextOrBesideTheFile) {
+  const TestFolder folder;
+  const std::string bytes = TubeFile().bytes;
+  folder.write("tube 1+2%.bin", bytes + "more than the file says");
+  std::filesystem::create_directories(folder.path / "data");
+  folder.write("data/tube.bin", bytes);
+  for (const std::string& uri :
+       {std::string("tube%201+2%25.bin"), std::string("./data/../tube 1+2%.bin"),
+        std::string("data/tube.bin"), "data:application/octet-stream;base64," + base64(bytes),
+        "data:;base64," + base64(bytes), "data:application/gltf-buffer;charset=x;base64," + base64(bytes)})
+    EXPECT_EQ(told(folder, "test.gltf", with_uri(uri)), "") << uri.substr(0, 50);
+  std::string encoded = "data:application/octet-stream,";
+  for (const char c : bytes) {
+    char digits[4];
+    std::snprintf(digits, sizeof digits, "%%%02X", static_cast<unsigned char>(c));
+    encoded += digits;
+  }
+  EXPECT_EQ(told(folder, "test.gltf", with_uri(encoded)), "");
+  // A .glb file under the other name, and the other way round.
+  EXPECT_EQ(told(folder, "test.gltf", TubeFile().glb()), "");
+  EXPECT_EQ(told(folder, "test.glb", with_uri("data/tube.bin")), "");
+}
+
+TEST(GltfDocument, OnlyFilesOfTheModelsOwnFolderAreRead) {
+  const TestFolder folder;
+  std::filesystem::create_directories(folder.path / "inner");
+  folder.write("secret.bin", TubeFile().bytes);
+  std::filesystem::create_symlink("../secret.bin", folder.path / "inner" / "link.bin");
+  for (const std::string uri :
+       {"../secret.bin", "%2e%2e/secret.bin", "link.bin", "none.bin", "/dev/zero", "."})
+    EXPECT_NE(told(folder, "inner/test.gltf", with_uri(uri)).find("there is no file"), std::string::npos)
+        << uri;
+  EXPECT_NE(told(folder, "test.gltf", with_uri("https://example.org/a.bin")).find("only files beside"),
+            std::string::npos);
+  EXPECT_NE(told(folder, "test.gltf", with_uri("file:///etc/passwd")).find("only files beside"),
+            std::string::npos);
+}
+
+TEST(GltfDocument, BuffersThatHoldTooLittleAreRefused) {
+  const TestFolder folder;
+  const std::string bytes = TubeFile().bytes;
+  folder.write("tube.bin", bytes);
+  const std::string digits = base64(bytes);
+  for (const std::string& text :
+       {with_uri("tube.bin", 1), with_uri("data:;base64," + digits, 4),
+        with_uri("data:;base64," + digits.substr(0, 400) + "?" + digits.substr(401)),
+        with_uri("data:;base64,"), with_uri("data:;base64,====")})
+    EXPECT_NE(told(folder, "test.gltf", text).find("bytes, but has"), std::string::npos)
+        << text.substr(0, 90);
+  EXPECT_NE(told(folder, "test.gltf", with_uri("data:;base64")).find("has no comma"), std::string::npos);
+  TubeFile none;
+  none.root["buffers"] = {{{"byteLength", 10}}};
+  EXPECT_NE(told(folder, "test.gltf", none.root.dump()).find("neither a uri nor"), std::string::npos);
+}
+
+TEST(GltfDocument, OtherVersionsAreRefusedAsSuch) {
+  TubeFile one, later, unsaid;
+  one.root["asset"]["version"] = "1.0";
+  EXPECT_NE(refusal(one).find("is a file of glTF 1.0; only glTF 2 is read"), std::string::npos);
+  later.root["asset"]["minVersion"] = "2.1";
+  EXPECT_NE(refusal(later).find("needs a reader of glTF 2.1"), std::string::npos);
+  unsaid.root.erase("asset");
+  EXPECT_NE(refusal(unsaid).find("names no version"), std::string::npos);
+  std::string binary = TubeFile().glb();
+  binary[4] = 1;
+  EXPECT_NE(told(TestFolder(), "test.glb", binary).find("is a file of glTF 1; only"), std::string::npos);
+}
+
+TEST(GltfDocument, EveryTruncationOfABinaryFileIsRefused) {
+  const TestFolder folder;
+  const std::string whole = TubeFile().glb();
+  ASSERT_EQ(told(folder, "test.glb", whole), "");
+  for (std::size_t size = 0; size < whole.size(); size += size < 64 ? 1 : 97)
+    EXPECT_NE(told(folder, "test.glb", whole.substr(0, size)), "") << size;
+}
+
+TEST(GltfDocument, ChunksMustFitTheFile) {
+  const TestFolder folder;
+  const std::string whole = TubeFile().glb();
+  const auto spoiled = [&](std::size_t at, std::uint32_t value) {
+    std::string file = whole;
+    std::memcpy(file.data() + at, &value, sizeof value);
+    return told(folder, "test.glb", file);
+  };
+  EXPECT_NE(spoiled(8, 0xffffffff).find("says that it has 4294967295 bytes"), std::string::npos);
+  EXPECT_NE(spoiled(8, 4).find("says that it has 4 bytes"), std::string::npos);
+  EXPECT_NE(spoiled(12, 0xfffffff0).find("longer than the file"), std::string::npos);
+  EXPECT_NE(spoiled(16, 0x004E4942).find("does not begin with"), std::string::npos);
+  // Zeros instead of spaces after the JSON text are forgiven.
+  std::string zeros = whole;
+  const std::size_t end = 20 + static_cast<std::size_t>(static_cast<unsigned char>(whole[12])) +
+                          256 * static_cast<std::size_t>(static_cast<unsigned char>(whole[13]));
+  for (std::size_t i = end; zeros[i - 1] == ' '; --i) zeros[i - 1] = '\0';
+  EXPECT_EQ(told(folder, "test.glb", zeros), "");
+}
+
+TEST(GltfDocument, TextThatIsNoGltfIsRefused) {
+  const TestFolder folder;
+  std::string deep = R"({"asset":{"version":"2.0","extras":)";
+  for (int i = 0; i < 100'000; ++i) deep += '[';
+  EXPECT_NE(told(folder, "test.gltf", deep).find("nests deeper"), std::string::npos);
+  EXPECT_NE(told(folder, "test.gltf", "").find("JSON is damaged"), std::string::npos);
+  EXPECT_NE(told(folder, "test.gltf", "[]").find("is no object"), std::string::npos);
+  EXPECT_NE(told(folder, "test.gltf", R"({"asset":{"version":"2.0"},"scene":1e999})").find("damaged"),
+            std::string::npos);
+  // A byte order mark is forgiven.
+  EXPECT_EQ(told(folder, "test.gltf", "\xEF\xBB\xBF" + with_uri("data:;base64," + base64(TubeFile().bytes))),
+            "");
+  // Brackets within texts are not nested.
+  TubeFile file;
+  file.root["nodes"][0]["name"] = std::string(200, '[') + "\"" + std::string(200, '{');
+  EXPECT_EQ(refusal(file), "");
+}
+
+// A list of many objects must not take a time that grows with its square.
+TEST(GltfDocument, LongListsAreReadInTime) {
+  TubeFile file;
+  for (int i = 0; i < 200'000; ++i) file.root["materials"].push_back({{"name", "m"}});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(refusal(file), "");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+TEST(GltfDocument, RequiredExtensionsAreReadHarmlessOrRefusedByName) {
+  TubeFile file;
+  file.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_materials_unlit", "KHR_texture_basisu"};
+  EXPECT_EQ(refusal(file), "");
+  file.root["extensionsRequired"].push_back("VENDOR_bent_space");
+  EXPECT_NE(refusal(file).find("'VENDOR_bent_space'"), std::string::npos);
+  file.root["extensionsRequired"] = {7};
+  EXPECT_NE(refusal(file).find("extensionsRequired"), std::string::npos);
+}
+
+TEST(GltfDocument, OptionalExtensionsThatMayMoveVerticesAreNoted) {
+  TubeFile file;
+  file.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_clearcoat"};
+  // One that the file does not list.
+  file.root["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  const Character character = read(file);
+  EXPECT_TRUE(has_note(character, "'EXT_mesh_gpu_instancing' is not read"));
+  EXPECT_TRUE(has_note(character, "'KHR_node_visibility' is not read"));
+  EXPECT_EQ(character.notes.size(), 2u);
+  file.root["extensionsUsed"].clear();
+  for (int i = 0; i < 100; ++i) file.root["extensionsUsed"].push_back("VENDOR_" + std::to_string(i));
+  EXPECT_TRUE(has_note(read(file), "81 more optional glTF extensions"));
+}
+
+// Damaged images, huge textures and the like are nobody's business here.
+TEST(GltfDocument, TexturesAreNotLookedAt) {
+  TubeFile file;
+  file.root["images"] = {{{"uri", "../../none.png"}}, {{"bufferView", 999}, {"mimeType", "image/png"}}, 7};
+  file.root["textures"] = "none";
+  EXPECT_EQ(refusal(file), "");
+}
+
+}  // namespace
+}  // namespace cscd::scenes::gltf

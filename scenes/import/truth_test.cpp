@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+
+#include "scenes/character/pose.h"
+#include "scenes/clip/test_truth.h"
+#include "scenes/import/read_model.h"
+
+// Model files with one unusual feature each, against positions that an independent program posed by the
+// formats' specifications ($CSCD_IMPORT, else ../shared/import beside the repository; not part of it).
+namespace cscd::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFramesPerSecond = 30;
+
+fs::path import_folder() {
+  if (const char* named = std::getenv("CSCD_IMPORT")) return named;
+  for (fs::path folder = fs::current_path(); folder.has_relative_path(); folder = folder.parent_path())
+    if (fs::is_directory(folder / "shared" / "import")) return folder / "shared" / "import";
+  return {};
+}
+
+std::vector<fs::path> samples(const std::string& extension) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(import_folder(), ignored)) {
+    const fs::path& file = entry.path();
+    if (file.extension() == extension && fs::exists(fs::path(file).replace_extension(".truth.h5")))
+      files.push_back(file);
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(Truth, GltfIsPosedAsTheSpecificationSays) {
+  const std::vector<fs::path> files = samples(".glb");
+  if (files.empty()) GTEST_SKIP() << "no samples";
+  for (const fs::path& file : files) {
+    SCOPED_TRACE(file.filename());
+    const Character character = read_model(file, {});
+    const auto truth = read_truth(fs::path(file).replace_extension(".truth.h5"));
+    ASSERT_FALSE(truth.empty());
+    const Animation& clip = character.animations.at(0);
+    for (std::size_t f = 0; f < truth.size(); ++f) {
+      const double seconds = clip.start + static_cast<double>(f) / kFramesPerSecond;
+      std::vector<Vec3> positions;
+      skin(character, pose_at(character, clip, seconds), weights_at(character, clip, seconds), positions);
+      ASSERT_EQ(positions.size(), truth[f].size());
+      for (std::size_t v = 0; v < positions.size(); ++v)
+        ASSERT_LT((positions[v] - truth[f][v]).norm(), 1e-6) << "frame " << f << ", vertex " << v;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cscd::scenes
