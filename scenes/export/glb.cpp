@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -53,7 +52,7 @@ void append(std::vector<float>& out, const Quaternion& q) {
 class Buffer {
  public:
   // The number of the accessor of these values, `width` of them an element. Every accessor has a view of its
-  // own, which begins at a multiple of four bytes (3.6.2.4).
+  // own, which begins at a multiple of four bytes (3.6.2.4), because all elements written take one.
   template <class Value>
   std::size_t add(const std::vector<Value>& values, std::size_t width, const char* type,
                   Target target = Target::none) {
@@ -65,9 +64,7 @@ class Buffer {
                           {"componentType", kComponent<Value>},
                           {"count", values.size() / width},
                           {"type", type}});
-    const std::size_t start = bytes_.size();
-    bytes_.resize(start + (bytes + 3) / 4 * 4);
-    std::memcpy(bytes_.data() + start, values.data(), bytes);
+    bytes_.append(reinterpret_cast<const char*>(values.data()), bytes);
     return accessors_.size() - 1;
   }
 
