@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <assimp/BaseImporter.h>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -17,6 +18,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "scenes/import/fbx/read_fbx.h"
 #include "scenes/import/file_system.h"
 
 namespace cscd::scenes {
@@ -261,10 +263,27 @@ class Reader {
   std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
 };
 
+std::string bytes_of(const std::filesystem::path& path, const CharacterLimits& limits) {
+  FolderFiles files(path, limits.file_bytes);
+  Assimp::IOStream* file = files.Open(path.c_str(), "rb");
+  if (file == nullptr)
+    throw InputError("cannot be read as a file of at most " + std::to_string(limits.file_bytes >> 20) +
+                     " MiB; check its name and its size");
+  std::string bytes(file->FileSize(), '\0');
+  bytes.resize(file->Read(bytes.data(), 1, bytes.size()));
+  files.Close(file);
+  return bytes;
+}
+
 }  // namespace
 
 Character read_model(const std::filesystem::path& path, const CharacterLimits& limits) {
   const Format& format = format_of(path);
+  if (format.name == "FBX") {
+    Character character = read_fbx(bytes_of(path, limits), limits);
+    validate(character, limits);
+    return character;
+  }
   Assimp::Importer importer;
   keep_only(importer, format.importer);
   importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it

@@ -1,0 +1,69 @@
+#include "scenes/import/fbx/morphs.h"
+
+#include "core/base/error.h"
+#include "scenes/import/fbx/mesh.h"
+
+namespace cscd::scenes::fbx {
+namespace {
+
+constexpr double kFullPercent = 100;
+
+double full_weight(const Object& channel, const std::string& what) {
+  const Element* element = channel.element->child("FullWeights");
+  if (element == nullptr) return kFullPercent;
+  const std::vector<double> weights = reals(*element, 1000, what);
+  if (weights.empty()) return kFullPercent;
+  if (!(weights[0] > 0)) throw InputError(what + ": its full weight is not positive; repair it");
+  return weights[0];
+}
+
+std::vector<Vec3> displacements_of(const Object& shape, std::size_t vertices, const std::string& what) {
+  std::vector<Vec3> displacements(vertices, Vec3::Zero());
+  const Element *indexes = shape.element->child("Indexes"), *points = shape.element->child("Vertices");
+  if (indexes == nullptr || points == nullptr) return displacements;
+  const std::vector<std::int64_t> index = integers(*indexes, vertices, what);
+  const std::vector<Vec3> moved = read_points(*points, vertices, what);
+  if (index.size() != moved.size())
+    throw InputError(what + ": has " + std::to_string(index.size()) + " vertices and " +
+                     std::to_string(moved.size()) + " displacements; repair it");
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    if (index[i] < 0 || index[i] >= static_cast<std::int64_t>(vertices))
+      throw InputError(what + ": moves vertex " + std::to_string(index[i]) + " of " +
+                       std::to_string(vertices) + "; repair it");
+    displacements[static_cast<std::size_t>(index[i])] += moved[i];
+  }
+  return displacements;
+}
+
+double percent_of(const Object& channel) {
+  if (has_property(channel, "DeformPercent")) return number(channel, "DeformPercent", 0);
+  const Element* element = channel.element->child("DeformPercent");
+  return element == nullptr || element->values.empty() ? 0 : element->values[0].real;
+}
+
+}  // namespace
+
+std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geometry,
+                                      const CharacterLimits& limits, Part& part) {
+  std::vector<ShapeChannel> channels;
+  for (const Object* deformer : objects.sources(geometry, "Deformer")) {
+    if (deformer->subtype != "BlendShape") continue;
+    for (const Object* channel : objects.sources(*deformer, "Deformer")) {
+      if (channel->subtype != "BlendShapeChannel") continue;
+      const std::vector<const Object*> shapes = objects.sources(*channel, "Geometry");
+      const std::string what = told("mesh", geometry) + ", " + told("blend shape", *channel);
+      if (shapes.empty()) continue;
+      if (shapes.size() > 1) throw InputError(what + ": has shapes in between; export one shape a channel");
+      if ((part.targets.size() + 1) * part.positions.size() > limits.displacements)
+        throw InputError(what + ": is more than the " + std::to_string(limits.displacements) +
+                         " displacements that are supported; simplify the model");
+      const double per_percent = 1 / full_weight(*channel, what);
+      part.targets.push_back({channel->name, displacements_of(*shapes[0], part.positions.size(), what),
+                              per_percent * percent_of(*channel)});
+      channels.push_back({channel, per_percent});
+    }
+  }
+  return channels;
+}
+
+}  // namespace cscd::scenes::fbx

@@ -1,0 +1,75 @@
+#include "scenes/import/fbx/polygons.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/utility.h>
+#include <algorithm>
+#include <iterator>
+
+namespace cscd::scenes::fbx {
+namespace {
+
+// Where the diagonals' lengths are equal up to rounding, the one from the first corner is taken, as most
+// programs do.
+constexpr double kEqualLengths = 1e-9;
+
+void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> positions,
+                       std::vector<std::array<std::int32_t, 3>>& triangles) {
+  const auto at = [&](std::size_t k) -> const Vec3& { return positions[static_cast<std::size_t>(c[k % 4])]; };
+  const Vec3 first = at(2) - at(0), second = at(3) - at(1), normal = first.cross(second);
+  // The diagonal from corner k lies inside where both triangles beside it turn as the whole does.
+  const auto inside = [&](std::size_t k) {
+    const Vec3 one = (at(k + 1) - at(k)).cross(at(k + 2) - at(k)),
+               other = (at(k + 2) - at(k)).cross(at(k + 3) - at(k));
+    return one.dot(normal) > 0 && other.dot(normal) > 0;
+  };
+  const bool first_inside = inside(0), second_inside = inside(1);
+  const bool first_shorter = first.squaredNorm() <= second.squaredNorm() * (1 + kEqualLengths);
+  if (first_inside == second_inside ? first_shorter : first_inside) {
+    triangles.push_back({c[0], c[1], c[2]});
+    triangles.push_back({c[0], c[2], c[3]});
+  } else {
+    triangles.push_back({c[0], c[1], c[3]});
+    triangles.push_back({c[1], c[2], c[3]});
+  }
+}
+
+bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
+                 std::vector<std::array<std::int32_t, 3>>& triangles) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<Kernel::Point_3> polyline;
+  for (const std::int32_t corner : corners) {
+    const Vec3& x = positions[static_cast<std::size_t>(corner)];
+    if (!x.allFinite()) return false;
+    polyline.emplace_back(x.x(), x.y(), x.z());
+  }
+  std::vector<CGAL::Triple<int, int, int>> patch;
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
+      polyline, std::back_inserter(patch),
+      CGAL::parameters::use_2d_constrained_delaunay_triangulation(true).geom_traits(Kernel()));
+  if (patch.size() + 2 != corners.size()) return false;
+  for (const auto& t : patch) {
+    std::array<int, 3> k{t.first, t.second, t.third};
+    std::sort(k.begin(), k.end());  // along the polygon, hence turned as it is
+    triangles.push_back({corners[static_cast<std::size_t>(k[0])], corners[static_cast<std::size_t>(k[1])],
+                         corners[static_cast<std::size_t>(k[2])]});
+  }
+  return true;
+}
+
+}  // namespace
+
+bool triangulate(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
+                 std::vector<std::array<std::int32_t, 3>>& triangles) {
+  if (corners.size() == 3) {
+    triangles.push_back({corners[0], corners[1], corners[2]});
+    return true;
+  }
+  if (corners.size() == 4) {
+    cut_quadrilateral(corners, positions, triangles);
+    return true;
+  }
+  return corners.size() <= kMostCorners && cut_polygon(corners, positions, triangles);
+}
+
+}  // namespace cscd::scenes::fbx
