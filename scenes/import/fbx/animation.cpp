@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "scenes/import/fbx/curve.h"
+#include "scenes/import/fbx/curve_sum.h"
 #include "scenes/import/fbx/layers.h"
 
 namespace cscd::scenes::fbx {
@@ -24,7 +25,10 @@ constexpr std::array<std::string_view, 13> kStill = {
 class ClipReader {
  public:
   ClipReader(const Objects& objects, const CharacterLimits& limits, LeftOut& left_out)
-      : objects_(objects), limits_(limits), left_out_(left_out) {}
+      : objects_(objects),
+        limits_(limits),
+        left_out_(left_out),
+        ticks_per_second_(objects.ticks_per_second()) {}
 
   Clip read(const Object& stack) {
     clip_ = {};
@@ -49,7 +53,7 @@ class ClipReader {
 
  private:
   void read_layer(const Object& layer, bool base) {
-    const Blending blending = read_blending(objects_, layer, base);
+    const Blending blending = read_blending(layer, weight_of(layer), base);
     for (const Object* node : objects_.sources(layer, "AnimationCurveNode"))
       for (const Connection& connection : objects_.out_of(*node)) {
         if (connection.destination == nullptr || connection.property.empty()) continue;
@@ -57,16 +61,34 @@ class ClipReader {
       }
   }
 
+  // The layer's weight in per cent, or nothing where it changes.
+  std::optional<double> weight_of(const Object& layer) const {
+    double weight = number(layer, "Weight", 100);
+    for (const Connection& connection : objects_.into(layer)) {
+      if (connection.property != "Weight" || connection.source->type != "AnimationCurveNode") continue;
+      weight = number(*connection.source, "d|Weight", weight);
+      for (const Connection& inner : objects_.into(*connection.source)) {
+        if (inner.source->type != "AnimationCurve") continue;
+        const Curve keys = read_curve(*inner.source, ticks_per_second_, limits_.keys).keys;
+        if (!is_level(keys)) return std::nullopt;
+        if (!keys.empty()) weight = keys.front().value;
+      }
+    }
+    return weight;
+  }
+
   void read_property(const Object& node, const Object& target, std::string_view property,
                      const Blending& blending) {
-    if (target.type == "Deformer" && property == "DeformPercent") {
-      const Components values =
-          read_components(node, {"d|DeformPercent", "d|", "d|"}, Vec3(number(target, property, 0), 0, 0));
+    if (weighs_shape(target, property)) {
+      const std::string name = "d|" + std::string(property);
+      const double rest = number(target, property, 0);
+      const Components values = read_components(node, {name, "", ""}, Vec3(rest, 0, 0));
+      Curve& curve = clip_.shapes[{&target, std::string(property)}];
       Components base;
-      base.axis[0] = clip_.shapes[&target];
-      base.rest[0] = number(target, property, 0);
+      base.axis[0] = curve;
+      base.rest[0] = rest;
       combine(base, values, Combined::shape, blending);
-      clip_.shapes[&target] = base.axis[0];
+      curve = base.axis[0];
       return;
     }
     if (target.type != "Model") return;
@@ -82,6 +104,14 @@ class ClipReader {
       read_motion(node, target, property, Vec3::Zero(), &Motion::turns, Combined::turn, blending);
     if (property == "Lcl Scaling")
       read_motion(node, target, property, Vec3::Ones(), &Motion::scales, Combined::scale, blending);
+  }
+
+  static bool weighs_shape(const Object& target, std::string_view property) {
+    if (target.type == "Deformer") return property == "DeformPercent";
+    if (target.type != "Geometry") return false;
+    for (const Element& child : target.element->children)
+      if (child.name == "Shape" && child.text(0) == property) return true;
+    return false;
   }
 
   void read_motion(const Object& node, const Object& model, std::string_view property, const Vec3& otherwise,
@@ -117,7 +147,7 @@ class ClipReader {
   }
 
   Curve read_keys(const Object& curve) {
-    ReadCurve read = read_curve(curve, limits_.keys);
+    ReadCurve read = read_curve(curve, ticks_per_second_, limits_.keys);
     keys_ += read.keys.size();
     if (keys_ > limits_.keys)
       throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
@@ -136,7 +166,7 @@ class ClipReader {
   bool moves(const Object& node) const {
     for (const Connection& connection : objects_.into(node)) {
       if (connection.source->type != "AnimationCurve") continue;
-      const Curve keys = read_curve(*connection.source, limits_.keys).keys;
+      const Curve keys = read_curve(*connection.source, ticks_per_second_, limits_.keys).keys;
       for (const Key<double>& key : keys)
         if (key.value != keys.front().value) return true;
     }
@@ -157,8 +187,8 @@ class ClipReader {
   void set_range(const Object& stack) {
     const double start = number(stack, "LocalStart", 0), stop = number(stack, "LocalStop", 0);
     if (stop > start && std::abs(start) < kMostTicks && std::abs(stop) < kMostTicks) {
-      clip_.start = start / kTicksPerSecond;
-      clip_.seconds = (stop - start) / kTicksPerSecond;
+      clip_.start = start / ticks_per_second_;
+      clip_.seconds = (stop - start) / ticks_per_second_;
     } else if (first_ <= last_) {
       clip_.start = first_;
       clip_.seconds = last_ - first_;
@@ -181,6 +211,7 @@ class ClipReader {
   const Objects& objects_;
   const CharacterLimits& limits_;
   LeftOut& left_out_;
+  double ticks_per_second_;
   Clip clip_;
   double first_ = 0, last_ = 0;  // of all keys of the clip
   std::vector<GoesOn> curves_;

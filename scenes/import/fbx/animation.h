@@ -19,7 +19,8 @@ struct Clip {
   std::string name;
   double start = 0, seconds = 0;
   std::map<const Object*, Motion> models;
-  std::map<const Object*, Curve> shapes;  // DeformPercent of blend shape channels
+  // Percentages of blend shapes, by the object and its property.
+  std::map<std::pair<const Object*, std::string>, Curve> shapes;
 };
 
 // Counts of what was left out, for notes.

@@ -59,14 +59,13 @@ class BinaryParser {
   // Returns false at the record that ends a list.
   bool read_element(std::vector<Element>& siblings, std::size_t limit, int depth) {
     if (depth > kDeepest) throw InputError("its FBX elements are nested too deeply; export it again");
-    const std::uint64_t end = size(), values = size(), value_bytes = size();
+    const std::uint64_t said_end = size(), values = size(), value_bytes = size();
     const std::size_t name_length = number<std::uint8_t>();
-    if (end == 0) {
-      if (values != 0 || value_bytes != 0 || name_length != 0) refuse();
-      return false;
-    }
+    if (said_end == 0 && values == 0 && value_bytes == 0 && name_length == 0) return false;
     Element& element = siblings.emplace_back();
     element.name = take(name_length);
+    // Some writers leave out the end of an element without children.
+    const std::uint64_t end = said_end == 0 ? at_ + value_bytes : said_end;
     if (end > limit || end < at_ || value_bytes > end - at_ || values > value_bytes) refuse();
     const std::size_t values_end = at_ + static_cast<std::size_t>(value_bytes);
     for (std::uint64_t i = 0; i < values; ++i) element.values.push_back(read_value());
@@ -85,6 +84,7 @@ class BinaryParser {
     switch (type) {
       case 'C':
       case 'B':
+      case 'Z':
         return integer(number<std::uint8_t>());
       case 'Y':
         return integer(number<std::int16_t>());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 
@@ -23,6 +24,11 @@ constexpr double kWeightUnit = 1e-4;
 // by the fourth power of a share.
 constexpr int kPieces = 48;
 
+// Clamped keys are flat where a neighbour's value is this near.
+constexpr double kFlatStep = 1e-4;
+// By this share a stored number may part from a computed slope and still be that slope.
+constexpr double kStoredSlope = 1e-3;
+
 // What KeyAttrFlags and KeyAttrDataFloat say of a key and of the way to the next one.
 struct Attributes {
   std::int64_t flags = 0;
@@ -37,7 +43,7 @@ struct RawKey {
   Attributes attributes;
   double arriving = 0, leaving = 0;                           // slopes a second
   double weight_before_next = kThird, weight_after = kThird;  // shares of the way to the next key
-  double seconds() const { return static_cast<double>(ticks) / kTicksPerSecond; }
+  double seconds = 0;
   bool is(std::int64_t bit) const { return (attributes.flags & bit) != 0; }
 };
 
@@ -52,8 +58,11 @@ float float_of(const WrittenNumber& n, bool packed) {
 
 class CurveReader {
  public:
-  CurveReader(const Object& curve, std::size_t most)
-      : element_(*curve.element), most_(most), where_("animation curve " + std::to_string(curve.id)) {}
+  CurveReader(const Object& curve, double ticks_per_second, std::size_t most)
+      : element_(*curve.element),
+        ticks_per_second_(ticks_per_second),
+        most_(most),
+        where_("animation curve " + std::to_string(curve.id)) {}
 
   ReadCurve read() {
     ReadCurve result;
@@ -83,6 +92,7 @@ class CurveReader {
       }
       RawKey& key = keys.emplace_back();
       key.ticks = ticks[i];
+      key.seconds = static_cast<double>(ticks[i]) / ticks_per_second_;
       key.value = numbers[i];
       key.attributes = attributes[i];
     }
@@ -117,33 +127,31 @@ class CurveReader {
     return attributes;
   }
 
-  void find_slopes(std::vector<RawKey>& keys) const {
-    // Stored slopes. Automatic keys store a bias there, which nearly always is nil; where it is not, the
-    // numbers are taken for slopes.
-    bool stored = false;
+  static void find_slopes(std::vector<RawKey>& keys) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
       RawKey& key = keys[i];
-      if (!key.is(kCubic)) continue;
-      if (!key.is(kTcb)) {
-        key.leaving = key.attributes.data[0];
-        if (i + 1 < keys.size()) keys[i + 1].arriving = key.attributes.data[1];
-        stored = stored || key.leaving != 0 || key.attributes.data[1] != 0;
-      }
+      if (!key.is(kCubic) || key.is(kTcb)) continue;
+      key.leaving = key.attributes.data[0];
+      if (i + 1 < keys.size()) keys[i + 1].arriving = key.attributes.data[1];
       const auto packed = std::bit_cast<std::uint32_t>(key.attributes.packed_weights);
       if (key.is(kWeightedRight)) key.weight_after = kWeightUnit * (packed & 0xffff);
       if (key.is(kWeightedNextLeft)) key.weight_before_next = kWeightUnit * (packed >> 16);
     }
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      if (!keys[i].is(kCubic)) continue;
-      if (keys[i].is(kTcb))
+      RawKey& key = keys[i];
+      if (!key.is(kCubic)) continue;
+      if (key.is(kTcb)) {
         turn_by_tcb(keys, i);
-      else if (keys[i].is(kAuto) && !keys[i].is(kUser) && !stored)
-        keys[i].arriving = keys[i].leaving = automatic_slope(keys, i);
+      } else if (key.is(kAuto) && !key.is(kUser)) {
+        // What an automatic key stores in the place of its slopes is a bias towards a neighbour.
+        key.leaving = automatic_slope(keys, i, key.leaving);
+        key.arriving = automatic_slope(keys, i, -key.arriving);
+      }
     }
   }
 
   static double rise(const RawKey& a, const RawKey& b) {
-    return (b.value - a.value) / (b.seconds() - a.seconds());
+    return (b.value - a.value) / (b.seconds - a.seconds);
   }
 
   // Tension, continuity and bias (Kochanek and Bartels, SIGGRAPH 1984).
@@ -158,32 +166,40 @@ class CurveReader {
     key.leaving = share * ((1 + bias) * (1 + continuity) * before + (1 - bias) * (1 - continuity) * after);
   }
 
-  // The slope of an automatic key, as the FBX SDK and ufbx find it from the neighbours.
-  static double automatic_slope(const std::vector<RawKey>& keys, std::size_t i) {
+  // The slope of an automatic key, found from its neighbours as ufbx found that the FBX SDK does it. The bias
+  // is in per cent, towards the next key where it is positive.
+  static double automatic_slope(const std::vector<RawKey>& keys, std::size_t i, double bias) {
     const RawKey& key = keys[i];
     if (keys.size() == 1) return 0;
     const bool first = i == 0, last = i + 1 == keys.size();
-    const double left = first ? 0 : key.value - keys[i - 1].value,
-                 right = last ? 0 : keys[i + 1].value - key.value;
-    if (key.is(kClamp)) {
-      const double nearest = first  ? std::abs(right)
-                             : last ? std::abs(left)
-                                    : std::min(std::abs(left), std::abs(right));
-      if (nearest == 0) return 0;
-    }
+    const double left = first ? 0 : std::abs(key.value - keys[i - 1].value),
+                 right = last ? 0 : std::abs(keys[i + 1].value - key.value);
+    if (key.is(kClamp) && (first ? right : last ? left : std::min(left, right)) <= kFlatStep) return 0;
+    // A bias above 500 also adds to the slope.
+    const double above = std::max(0.0, std::abs(bias) / 100 - 5), extra = 40 * above * above;
+    const bool biased = !key.is(kTimeIndependent);
     if (first || last) {
       if (key.is(kClampProgressive)) return 0;
-      return first ? rise(key, keys[i + 1]) : rise(keys[i - 1], key);
+      const double slope = first ? rise(key, keys[i + 1]) : rise(keys[i - 1], key);
+      return biased ? slope + std::copysign(extra, bias) : slope;
     }
-    const double before = rise(keys[i - 1], key), after = rise(key, keys[i + 1]);
-    double slope = rise(keys[i - 1], keys[i + 1]);
-    const double share =
-        (key.seconds() - keys[i - 1].seconds()) / (keys[i + 1].seconds() - keys[i - 1].seconds());
-    if (!key.is(kTimeIndependent)) slope = 0.5 * slope + 0.5 * ((1 - share) * before + share * after);
+    const RawKey &previous = keys[i - 1], &next = keys[i + 1];
+    const double before = rise(previous, key), after = rise(key, next);
+    double slope = rise(previous, next);
+    if (biased) {
+      const double share = (key.seconds - previous.seconds) / (next.seconds - previous.seconds);
+      slope = 0.5 * slope + 0.5 * ((1 - share) * before + share * after);
+      // Files that store the slope itself where a bias belongs mean that slope.
+      if (std::abs(std::abs(bias) - std::abs(slope)) > kStoredSlope * std::abs(slope)) {
+        const double strength = std::abs(bias) / 100, target = bias > 0 ? after : before;
+        const double way = std::abs(target - slope) > 1e-5 ? target - slope : bias;
+        slope = (1 - strength) * slope + strength * target + std::copysign(extra, way);
+      }
+    }
     if (key.is(kClampProgressive)) {
       // No further than to the neighbours' values at the ends of the tangents.
       const double sign = slope >= 0 ? 1 : -1;
-      const double most_left = std::max(0.0, sign * before / keys[i - 1].weight_before_next),
+      const double most_left = std::max(0.0, sign * before / previous.weight_before_next),
                    most_right = std::max(0.0, sign * after / key.weight_after);
       slope = sign * std::min({sign * slope, most_left, most_right});
     }
@@ -199,14 +215,15 @@ class CurveReader {
       // The SDK counts time in whole ticks. A step half a tick early is taken at its own key, however the
       // time of a frame was rounded.
       const double time =
-          steps_here ? (static_cast<double>(key.ticks) - 0.5) / kTicksPerSecond : key.seconds();
+          steps_here ? (static_cast<double>(key.ticks) - 0.5) / ticks_per_second_ : key.seconds;
       curve.push_back({time, key.value, Between::line, key.arriving, key.leaving});
       if (i + 1 == raw.size()) break;
       if (key.is(kConstant)) {
         curve.back().next = Between::constant;
         if (key.is(kConstantNext))
-          curve.push_back({(static_cast<double>(key.ticks) + 0.5) / kTicksPerSecond, raw[i + 1].value,
-                           Between::constant, 0, 0});
+          curve.push_back({std::max((static_cast<double>(key.ticks) + 0.5) / ticks_per_second_,
+                                    std::nextafter(time, std::numeric_limits<double>::infinity())),
+                           raw[i + 1].value, Between::constant, 0, 0});
       } else if (key.is(kCubic)) {
         curve.back().next = Between::cubic;
         const bool weighted = key.weight_after != kThird || key.weight_before_next != kThird;
@@ -222,7 +239,7 @@ class CurveReader {
 
   // A weighted segment is a Bezier curve in the plane of time and value. It becomes cubics over its parts.
   void add_weighted(const RawKey& a, const RawKey& b, Curve& curve) const {
-    const double length = b.seconds() - a.seconds(), w = a.weight_after, v = a.weight_before_next;
+    const double length = b.seconds - a.seconds, w = a.weight_after, v = a.weight_before_next;
     if (!(w >= 0 && w <= 1 && v >= 0 && v <= 1))
       throw InputError(where_ + ": a tangent's weight is not between 0 and 1; resample the animation");
     const auto bezier = [](const double(&p)[4], double s) {
@@ -240,28 +257,29 @@ class CurveReader {
     curve.back().leaving = w > 0 ? a.leaving : slope(y, 1e-6) / slope(x, 1e-6);
     for (int i = 1; i < kPieces; ++i) {
       const double s = static_cast<double>(i) / kPieces, rise = slope(y, s) / slope(x, s);
-      if (!std::isfinite(rise) || !(a.seconds() + bezier(x, s) > curve.back().time)) continue;
-      curve.push_back({a.seconds() + bezier(x, s), bezier(y, s), Between::cubic, rise, rise});
+      if (!std::isfinite(rise) || !(a.seconds + bezier(x, s) > curve.back().time)) continue;
+      curve.push_back({a.seconds + bezier(x, s), bezier(y, s), Between::cubic, rise, rise});
     }
-    if (!(curve.back().time < b.seconds())) curve.pop_back();
+    if (!(curve.back().time < b.seconds)) curve.pop_back();
   }
 
   bool goes_on(std::string_view name) const {
     const Element* extrapolation = element_.child(name);
     const Element* type = extrapolation == nullptr ? nullptr : extrapolation->child("Type");
     if (type == nullptr || type->values.empty()) return false;
-    return type->text(0) != "C" && type->integer(0, 'C') != 'C';
+    return type->values[0].kind == Value::Kind::text ? type->text(0) != "C" : type->integer(0) != 'C';
   }
 
   const Element& element_;
+  double ticks_per_second_;
   std::size_t most_;
   std::string where_;
 };
 
 }  // namespace
 
-ReadCurve read_curve(const Object& curve, std::size_t most) {
-  return CurveReader(curve, most).read();
+ReadCurve read_curve(const Object& curve, double ticks_per_second, std::size_t most) {
+  return CurveReader(curve, ticks_per_second, most).read();
 }
 
 }  // namespace cscd::scenes::fbx

@@ -8,9 +8,6 @@
 // One AnimationCurve: a number over time.
 namespace cscd::scenes::fbx {
 
-// So many of FBX's units of time are a second.
-constexpr double kTicksPerSecond = 46186158000.0;
-
 struct ReadCurve {
   Curve keys;
   std::size_t dropped = 0;                             // keys out of order or not finite
@@ -18,6 +15,6 @@ struct ReadCurve {
 };
 
 // Throws InputError where the arrays of the curve do not fit together. `most` bounds the number of keys.
-ReadCurve read_curve(const Object& curve, std::size_t most);
+ReadCurve read_curve(const Object& curve, double ticks_per_second, std::size_t most);
 
 }  // namespace cscd::scenes::fbx

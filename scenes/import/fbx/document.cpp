@@ -98,7 +98,11 @@ void visit_text(std::string_view text, std::size_t most, const std::string& what
     const std::size_t start = text.find_first_not_of(" \t\r\n,");
     if (start == text.npos) break;
     text.remove_prefix(start);
-    const std::size_t end = std::min(text.find_first_of(" \t\r\n,"), text.size());
+    if (text.front() == ';') {  // a comment
+      text.remove_prefix(std::min(text.find('\n'), text.size()));
+      continue;
+    }
+    const std::size_t end = std::min(text.find_first_of(" \t\r\n,;"), text.size());
     WrittenNumber number{};
     if (!read_number(text.substr(0, end), number)) refuse_damage(what);
     text.remove_prefix(end);

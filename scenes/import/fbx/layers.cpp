@@ -53,12 +53,12 @@ void multiply(Components& base, const Components& layer) {
 
 }  // namespace
 
-Blending read_blending(const Objects& objects, const Object& layer, bool base) {
+Blending read_blending(const Object& layer, std::optional<double> percent, bool base) {
   Blending blending;
   if (base) return blending;
   constexpr std::int64_t kAdditive = 0, kOverride = 1, kPassThrough = 2;
   const std::int64_t mode = integer(layer, "BlendMode", kAdditive);
-  const double weight = number(layer, "Weight", 100) / 100;
+  const double weight = percent.value_or(100) / 100;
   blending.weight = weight >= kWhole ? 1 : weight;
   blending.keep = mode == kAdditive ? 1 : 1 - blending.weight;
   blending.by_channel = integer(layer, "RotationAccumulationMode", 0) != 0;
@@ -68,8 +68,7 @@ Blending read_blending(const Objects& objects, const Object& layer, bool base) {
     blending.refusal = "layer '" + layer.name + "' " + why + kBake;
     return blending;
   };
-  for (const Connection& connection : objects.into(layer))
-    if (connection.property == "Weight") return refuse("has a weight that changes");
+  if (!percent) return refuse("has a weight that changes");
   if (mode != kAdditive && mode != kOverride && mode != kPassThrough)
     return refuse("has an unknown blend mode");
   if (!(weight >= 0)) return refuse("has no weight between 0 and 100");

@@ -16,8 +16,8 @@ struct Blending {
   std::string refusal;          // why the layer cannot be taken, where it cannot
 };
 
-// Of the base layer nothing matters but its values.
-Blending read_blending(const Objects& objects, const Object& layer, bool base);
+// `weight` is in per cent, or nothing where it changes. Of the base layer nothing matters but its values.
+Blending read_blending(const Object& layer, std::optional<double> weight, bool base);
 
 enum class Combined { move, turn, scale, shape };
 

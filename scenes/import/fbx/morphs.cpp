@@ -8,18 +8,17 @@ namespace {
 
 constexpr double kFullPercent = 100;
 
-double full_weight(const Object& channel, const std::string& what) {
+double full_weight(const Object& channel, std::size_t most, const std::string& what) {
   const Element* element = channel.element->child("FullWeights");
   if (element == nullptr) return kFullPercent;
-  const std::vector<double> weights = reals(*element, 1000, what);
-  if (weights.empty()) return kFullPercent;
-  if (!(weights[0] > 0)) throw InputError(what + ": its full weight is not positive; repair it");
-  return weights[0];
+  // Blender writes weights of vertices here, which are not meant to act again.
+  const std::vector<double> weights = reals(*element, most, what);
+  return weights.size() == 1 && weights[0] > 0 ? weights[0] : kFullPercent;
 }
 
-std::vector<Vec3> displacements_of(const Object& shape, std::size_t vertices, const std::string& what) {
+std::vector<Vec3> displacements_of(const Element& shape, std::size_t vertices, const std::string& what) {
   std::vector<Vec3> displacements(vertices, Vec3::Zero());
-  const Element *indexes = shape.element->child("Indexes"), *points = shape.element->child("Vertices");
+  const Element *indexes = shape.child("Indexes"), *points = shape.child("Vertices");
   if (indexes == nullptr || points == nullptr) return displacements;
   const std::vector<std::int64_t> index = integers(*indexes, vertices, what);
   const std::vector<Vec3> moved = read_points(*points, vertices, what);
@@ -46,6 +45,23 @@ double percent_of(const Object& channel) {
 std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geometry,
                                       const CharacterLimits& limits, Part& part) {
   std::vector<ShapeChannel> channels;
+  const std::size_t vertices = part.positions.size();
+  const auto add = [&](const ShapeChannel& channel, const Element& shape, const std::string& name,
+                       double percent) {
+    const std::string what = told("mesh", geometry) + ", blend shape '" + name + "'";
+    if ((part.targets.size() + 1) * vertices > limits.displacements)
+      throw InputError(what + ": is more than the " + std::to_string(limits.displacements) +
+                       " displacements that are supported; simplify the model");
+    part.targets.push_back(
+        {name, displacements_of(shape, vertices, what), channel.weight_per_percent * percent});
+    channels.push_back(channel);
+  };
+  // FBX 2011 writes shapes into the mesh, weighed by a property of their name.
+  for (const Element& shape : geometry.element->children) {
+    if (shape.name != "Shape") continue;
+    const std::string name(shape.text(0));
+    add({&geometry, name, 1 / kFullPercent}, shape, name, number(geometry, name, 0));
+  }
   for (const Object* deformer : objects.sources(geometry, "Deformer")) {
     if (deformer->subtype != "BlendShape") continue;
     for (const Object* channel : objects.sources(*deformer, "Deformer")) {
@@ -54,13 +70,8 @@ std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geom
       const std::string what = told("mesh", geometry) + ", " + told("blend shape", *channel);
       if (shapes.empty()) continue;
       if (shapes.size() > 1) throw InputError(what + ": has shapes in between; export one shape a channel");
-      if ((part.targets.size() + 1) * part.positions.size() > limits.displacements)
-        throw InputError(what + ": is more than the " + std::to_string(limits.displacements) +
-                         " displacements that are supported; simplify the model");
-      const double per_percent = 1 / full_weight(*channel, what);
-      part.targets.push_back({channel->name, displacements_of(*shapes[0], part.positions.size(), what),
-                              per_percent * percent_of(*channel)});
-      channels.push_back({channel, per_percent});
+      add({channel, "DeformPercent", 1 / full_weight(*channel, limits.vertices, what)}, *shapes[0]->element,
+          channel->name, percent_of(*channel));
     }
   }
   return channels;

@@ -5,9 +5,10 @@
 
 namespace cscd::scenes::fbx {
 
-// One blend shape channel: a target of the part, and what makes a weight of a percentage.
+// What moves one target of a part: a property that holds a percentage.
 struct ShapeChannel {
-  const Object* channel;
+  const Object* owner;
+  std::string property;
   double weight_per_percent;
 };
 

@@ -12,8 +12,10 @@ constexpr std::size_t kFirstPropertyValue = 4;
 
 const Element* property_in(const Element* properties, std::string_view name) {
   if (properties == nullptr) return nullptr;
-  for (const Element& property : properties->children)
-    if (property.name == "P" && property.text(0) == name) return &property;
+  // Of equal properties the last one holds.
+  for (std::size_t i = properties->children.size(); i-- > 0;)
+    if (const Element& property = properties->children[i]; property.name == "P" && property.text(0) == name)
+      return &property;
   return nullptr;
 }
 
@@ -128,6 +130,19 @@ std::optional<double> Objects::setting(std::string_view name) const {
   const Element* settings = document_.root.child("GlobalSettings");
   return settings == nullptr ? std::nullopt
                              : number_in(property_in(settings->child("Properties70"), name), 0);
+}
+
+double Objects::ticks_per_second() const {
+  // Newer files may say by TCDefinition that they count time in other ticks; 127 stands for the old ones.
+  constexpr double kOld = 46186158000.0, kNew = 141120000.0;
+  constexpr std::int64_t kOldDefinition = 127, kFirstHeader = 1004;
+  const Element* header = document_.root.child("FBXHeaderExtension");
+  const Element* version = header == nullptr ? nullptr : header->child("FBXHeaderVersion");
+  const Element* flags = header == nullptr ? nullptr : header->child("OtherFlags");
+  const Element* definition = flags == nullptr ? nullptr : flags->child("TCDefinition");
+  if (version == nullptr || version->integer(0) < kFirstHeader || definition == nullptr)
+    return document_.version < 8000 ? kOld : kNew;
+  return definition->integer(0, kOldDefinition) == kOldDefinition ? kOld : kNew;
 }
 
 bool has_property(const Object& object, std::string_view name) {

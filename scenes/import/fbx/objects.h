@@ -46,6 +46,8 @@ class Objects {
 
   // The first number of a property of the scene's settings.
   std::optional<double> setting(std::string_view name) const;
+  // So many of the file's units of time are a second.
+  double ticks_per_second() const;
 
  private:
   const Document& document_;

@@ -34,6 +34,34 @@ void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> po
   }
 }
 
+// Larger polygons are triangulated only by ways that take less than the cube of their corners.
+constexpr std::size_t kMostCornersCubed = 256;
+
+// Cuts off corners that lie where the corner before them lies, by triangles without extent. Such corners make
+// two edges of one that a polygon runs along twice.
+std::vector<std::int32_t> without_repeats(std::span<const std::int32_t> corners,
+                                          std::span<const Vec3> positions,
+                                          std::vector<std::array<std::int32_t, 3>>& triangles) {
+  const auto same = [&](std::int32_t a, std::int32_t b) {
+    return positions[static_cast<std::size_t>(a)] == positions[static_cast<std::size_t>(b)];
+  };
+  std::vector<std::int32_t> kept{corners.front()};
+  std::size_t left = corners.size();
+  for (std::size_t k = 1; k < corners.size(); ++k) {
+    if (left > 3 && same(kept.back(), corners[k])) {
+      triangles.push_back({kept.back(), corners[k], k + 1 < corners.size() ? corners[k + 1] : kept.front()});
+      --left;
+    } else {
+      kept.push_back(corners[k]);
+    }
+  }
+  while (kept.size() > 3 && same(kept.back(), kept.front())) {
+    triangles.push_back({kept[kept.size() - 2], kept.back(), kept.front()});
+    kept.pop_back();
+  }
+  return kept;
+}
+
 bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
                  std::vector<std::array<std::int32_t, 3>>& triangles) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -46,7 +74,9 @@ bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> po
   std::vector<CGAL::Triple<int, int, int>> patch;
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
       polyline, std::back_inserter(patch),
-      CGAL::parameters::use_2d_constrained_delaunay_triangulation(true).geom_traits(Kernel()));
+      CGAL::parameters::use_2d_constrained_delaunay_triangulation(true)
+          .do_not_use_cubic_algorithm(corners.size() > kMostCornersCubed)
+          .geom_traits(Kernel()));
   if (patch.size() + 2 != corners.size()) return false;
   for (const auto& t : patch) {
     std::array<int, 3> k{t.first, t.second, t.third};
@@ -69,7 +99,9 @@ bool triangulate(std::span<const std::int32_t> corners, std::span<const Vec3> po
     cut_quadrilateral(corners, positions, triangles);
     return true;
   }
-  return corners.size() <= kMostCorners && cut_polygon(corners, positions, triangles);
+  const std::vector<std::int32_t> kept = without_repeats(corners, positions, triangles);
+  if (kept.size() < corners.size()) return triangulate(kept, positions, triangles);
+  return cut_polygon(corners, positions, triangles);
 }
 
 }  // namespace cscd::scenes::fbx

@@ -9,9 +9,6 @@
 
 namespace cscd::scenes::fbx {
 
-// Polygons with more corners are refused: triangulating them well takes the cube of that.
-constexpr std::size_t kMostCorners = 512;
-
 // Adds the triangles of a polygon, which may be concave and need not be flat. A quadrilateral is cut along
 // the shorter one of the diagonals that lie inside. Returns false where there is no good way to cut it.
 bool triangulate(std::span<const std::int32_t> corners, std::span<const Vec3> positions,

@@ -31,7 +31,7 @@ double frames_per_second(const Objects& objects) {
   if (mode >= 0 && mode < static_cast<double>(std::size(kRates)))
     rate = kRates[static_cast<std::size_t>(mode)];
   // Times are written in ticks of FBX's own in any case.
-  return std::isfinite(rate) && rate > 0 ? rate : kTicksPerSecond;
+  return std::isfinite(rate) && rate > 0 ? rate : objects.ticks_per_second();
 }
 
 class Builder {
@@ -248,7 +248,7 @@ class Builder {
       MorphChannel morph{static_cast<int>(p), std::vector<Curve>(shapes_[p].size())};
       bool any = false;
       for (std::size_t t = 0; t < shapes_[p].size(); ++t) {
-        const auto found = clip.shapes.find(shapes_[p][t].channel);
+        const auto found = clip.shapes.find({shapes_[p][t].owner, shapes_[p][t].property});
         if (found == clip.shapes.end()) continue;
         morph.weights[t] = scaled(found->second, shapes_[p][t].weight_per_percent, 0);
         any = true;
