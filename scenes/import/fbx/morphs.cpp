@@ -11,9 +11,13 @@ constexpr double kFullPercent = 100;
 double full_weight(const Object& channel, std::size_t most, const std::string& what) {
   const Element* element = channel.element->child("FullWeights");
   if (element == nullptr) return kFullPercent;
-  // Blender writes weights of vertices here, which are not meant to act again.
   const std::vector<double> weights = reals(*element, most, what);
-  return weights.size() == 1 && weights[0] > 0 ? weights[0] : kFullPercent;
+  if (weights.size() == 1 && weights[0] > 0) return weights[0];
+  // Blender writes a number for each vertex, which tells a group of vertices where it is not 100.
+  for (const double weight : weights)
+    if (weight != kFullPercent)
+      throw InputError(what + ": its full weights are not 100; apply vertex groups before the export");
+  return kFullPercent;
 }
 
 std::vector<Vec3> displacements_of(const Element& shape, std::size_t vertices, const std::string& what) {

@@ -62,6 +62,21 @@ std::vector<std::int32_t> without_repeats(std::span<const std::int32_t> corners,
   return kept;
 }
 
+// Whether a polygon encloses nothing, so that one way to cut it is as good as another.
+bool has_no_area(std::span<const std::int32_t> corners, std::span<const Vec3> positions) {
+  constexpr double kNothing = 1e-14;
+  const Vec3& start = positions[static_cast<std::size_t>(corners.front())];
+  Vec3 doubled = Vec3::Zero();
+  double length = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec3& a = positions[static_cast<std::size_t>(corners[k])];
+    const Vec3& b = positions[static_cast<std::size_t>(corners[(k + 1) % corners.size()])];
+    doubled += (a - start).cross(b - start);
+    length += (b - a).norm();
+  }
+  return doubled.norm() <= kNothing * length * length;
+}
+
 bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
                  std::vector<std::array<std::int32_t, 3>>& triangles) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -101,6 +116,11 @@ bool triangulate(std::span<const std::int32_t> corners, std::span<const Vec3> po
   }
   const std::vector<std::int32_t> kept = without_repeats(corners, positions, triangles);
   if (kept.size() < corners.size()) return triangulate(kept, positions, triangles);
+  if (has_no_area(corners, positions)) {
+    for (std::size_t k = 2; k < corners.size(); ++k)
+      triangles.push_back({corners[0], corners[k - 1], corners[k]});
+    return true;
+  }
   return cut_polygon(corners, positions, triangles);
 }
 
