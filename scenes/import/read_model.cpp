@@ -15,9 +15,11 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <set>
 #include <string_view>
 
 #include "core/base/error.h"
+#include "scenes/import/collada.h"
 #include "scenes/import/fbx/read_fbx.h"
 #include "scenes/import/file_system.h"
 
@@ -106,9 +108,15 @@ class Reader {
       const int index = static_cast<int>(source_.size());
       character_.nodes.push_back({text(node->mName), parent, transform(node->mTransformation)});
       source_.push_back(node);
-      by_name_.try_emplace(text(node->mName), index);
+      if (!by_name_.try_emplace(text(node->mName), index).second) twice_.insert(text(node->mName));
       for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], index);
     }
+  }
+
+  // assimp knows nodes by name alone, so of two that have one name neither can be told.
+  void require_one(const std::string& name, const char* what) const {
+    if (twice_.contains(name))
+      throw InputError(std::string(what) + " '" + name + "': two nodes have this name; rename one of them");
   }
 
   void read_part(int node, unsigned mesh_index) {
@@ -156,6 +164,7 @@ class Reader {
     std::vector<Entry> entries;
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const aiBone& bone = *mesh.mBones[b];
+      require_one(text(bone.mName), "bone");
       const auto found = by_name_.find(text(bone.mName));
       if (found == by_name_.end()) {
         many_ += bone.mNumWeights;
@@ -206,6 +215,7 @@ class Reader {
     double first = std::numeric_limits<double>::infinity(), last = -first;
     for (unsigned c = 0; c < source.mNumChannels; ++c) {
       const aiNodeAnim& channel = *source.mChannels[c];
+      require_one(text(channel.mNodeName), "animated node");
       const auto found = by_name_.find(text(channel.mNodeName));
       if (found == by_name_.end()) {
         ++strangers_;
@@ -258,6 +268,7 @@ class Reader {
   Character character_;
   std::vector<const aiNode*> source_;    // by node
   std::map<std::string, int> by_name_;   // the first of equal names
+  std::set<std::string> twice_;          // names that two nodes have
   std::map<unsigned, int> skinned_;      // meshes with joints that are already in
   std::size_t vertices_ = 0, keys_ = 0;  // so far
   std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
@@ -302,6 +313,9 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
                      " importer refuses it: " + std::string(error) + "; export it again");
   Character character = Reader(*scene, limits).read();
   character.format = format.name;
+  if (format.name == "Collada")
+    for (std::string& note : notes_on_collada(bytes_of(path, limits)))
+      character.notes.push_back(std::move(note));
   if (format.name == "Collada" || format.name == "glTF 2") character.centimetres_per_unit = 0;
   validate(character, limits);
   return character;

@@ -307,6 +307,44 @@ TEST_F(Model, ReadsSkinsOfCollada) {
   }
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST_F(Model, NamesThatTwoNodesHaveAreRefused) {
+  const std::string frame = " Frame Upper { }\n Mesh Flag {";
+  EXPECT_NE(refusal(write("twin.x", replaced(kXFile, " Mesh Flag {", frame)))
+                .find("'Upper': two nodes have this name"),
+            std::string::npos);
+  // A joint is named by its scoped id, which another branch may use again.
+  const std::string twin = R"(<node id="other" sid="j2" name="other"/><node id="mesh")";
+  std::string dae = replaced(kColladaFile, "low high", "low j2");
+  dae = replaced(dae, R"(sid="high" name="high")", R"(sid="j2" name="second")");
+  EXPECT_EQ(refusal(write("scoped.dae", dae)), "");
+  EXPECT_NE(
+      refusal(write("twin.dae", replaced(dae, R"(<node id="mesh")", twin))).find("bone 'j2': several nodes"),
+      std::string::npos);
+}
+
+TEST_F(Model, KeysOfColladaThatAreNotJoinedByLinesAreRefusedUnlessDense) {
+  for (const std::string kind : {"STEP", "BEZIER", "HERMITE", "CARDINAL"}) {
+    const std::string bent = replaced(kColladaFile, "LINEAR LINEAR", kind + " LINEAR");
+    EXPECT_NE(
+        refusal(write("bent.dae", bent)).find("channel 'high/transform': its keys are joined by " + kind),
+        std::string::npos);
+    const Character dense = read_model(write("dense.dae", replaced(bent, ">0 0.5<", ">0 0.016<")), {});
+    ASSERT_EQ(dense.notes.size(), 1u);
+    EXPECT_NE(dense.notes[0].find("1 animation channels of keys joined by curves"), std::string::npos);
+  }
+  // The last key joins nothing, and what does not change is straight however it is joined.
+  EXPECT_EQ(refusal(write("last.dae", replaced(kColladaFile, "LINEAR LINEAR", "LINEAR STEP"))), "");
+  const std::string still =
+      replaced(kColladaFile, "1 0 0 0 0 1 0 3 0 0 1 0 0 0 0 1", "1 0 0 0 0 1 0 2 0 0 1 0 0 0 0 1");
+  EXPECT_EQ(refusal(write("still.dae", replaced(still, "LINEAR LINEAR", "STEP STEP"))), "");
+}
+
 TEST_F(Model, RefusesOtherKindsAndDamage) {
   EXPECT_NE(refusal(write("a.obj", "v 0 0 0\n")).find("'.obj' are not read"), std::string::npos);
   EXPECT_NE(refusal(write("a", "xof")).find("are not read"), std::string::npos);
