@@ -96,6 +96,16 @@ TEST_F(Convert, WritesFramesAtTheRateWithBones) {
   EXPECT_EQ(report.welded_vertices, 0u);
 }
 
+TEST_F(Convert, ABoneIsDrivenByTheNodesBetweenItAndTheBoneAbove) {
+  Character tube = bending_tube();
+  tube.animations[0].channels[0].node = 3;  // between both bones
+  converted(tube);
+  EXPECT_EQ(report.clips[0].driven, 1u);
+  tube.animations[0].channels[0].node = 1;  // of the mesh, which follows the bones
+  converted(tube);
+  EXPECT_EQ(report.clips[0].driven, 0u);
+}
+
 TEST_F(Convert, WeldsAcrossTrianglesPartsAndMaterials) {
   const Clip whole = converted(bending_tube()), torn = converted(torn_tube());
   EXPECT_EQ(torn.header().vertex_count, whole.header().vertex_count);

@@ -154,6 +154,8 @@ class Builder {
   void add_part(const Object& model, const Object& geometry) {
     const Object* skin = skin_of(objects_, geometry);
     const Mesh& mesh = mesh_of(geometry);
+    for (const Object* deformer : objects_.sources(geometry, "Deformer"))
+      other_deformers_ += deformer->subtype != "Skin" && deformer->subtype != "BlendShape";
     if (character_.parts.size() >= limits_.parts || vertices_ + mesh.positions.size() > limits_.vertices ||
         triangles_ + mesh.triangles.size() > limits_.triangles)
       throw InputError(told("mesh", geometry) + ": is more than the " + std::to_string(limits_.parts) +
@@ -264,7 +266,9 @@ class Builder {
     note(lines_, "points and lines left out");
     note(other_surfaces_, "curves, patches and other surfaces that are no polygons left out");
     note(again_, "meshes that several nodes share taken once, as their joints place them");
+    note(other_deformers_, "deformers that are neither skins nor blend shapes not applied");
     note(empty_clips_, "clips that animate nothing left out");
+    note(objects_.all("Constraint").size(), "constraints not applied");
     note(clip_left_out_.keys, "keys out of order or not finite ignored");
     note(clip_left_out_.layers, "muted animation layers ignored");
     note(skin_left_out_.weights, "weights not positive or without a bone ignored");
@@ -285,7 +289,7 @@ class Builder {
   std::size_t vertices_ = 0, triangles_ = 0;       // so far
   LeftOut clip_left_out_;
   SkinLeftOut skin_left_out_;
-  std::size_t lines_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0;
+  std::size_t lines_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;
 };
 
 }  // namespace
