@@ -72,7 +72,8 @@ std::vector<std::vector<Vec3>> probes(const Character& character) {
     const Animation& animation = character.animations[c];
     for (std::size_t i = 0; i < each; ++i) {
       const double share = each == 1 ? 0.5 : static_cast<double>(i) / static_cast<double>(each - 1);
-      skin(character, pose_at(character, animation, animation.start + share * animation.seconds),
+      const double seconds = animation.start + share * animation.seconds;
+      skin(character, pose_at(character, animation, seconds), weights_at(character, animation, seconds),
            positions.emplace_back());
     }
   }
@@ -238,19 +239,29 @@ std::size_t choose_clip(const Character& character, const ImportOptions& options
   return number;
 }
 
-// The poses to be written, one after the other.
+// Where nodes stand and how far morph targets are blended.
+struct Moment {
+  Pose pose;
+  MorphWeights weights;
+};
+
+Moment moment_at(const Character& character, const Animation& animation, double seconds) {
+  return {pose_at(character, animation, seconds), weights_at(character, animation, seconds)};
+}
+
+// The moments to be written, one after the other.
 struct Frames {
   std::size_t count = 0;
-  std::function<Pose(std::size_t)> pose;
+  std::function<Moment(std::size_t)> moment;
 };
 
 Frames plan(const Character& character, const Pose& bound, const ImportOptions& options,
             ImportReport& report) {
   if (options.survey) {
-    const auto start_of_clip = [&character, &bound](std::size_t frame) {
-      if (frame == 0 || frame > character.animations.size()) return bound;
+    const auto start_of_clip = [&character, &bound](std::size_t frame) -> Moment {
+      if (frame == 0 || frame > character.animations.size()) return {bound, rest_weights(character)};
       const Animation& animation = character.animations[frame - 1];
-      return pose_at(character, animation, animation.start);
+      return moment_at(character, animation, animation.start);
     };
     return {std::max<std::size_t>(2, character.animations.size() + 1), start_of_clip};  // a cache has two
   }
@@ -268,13 +279,15 @@ Frames plan(const Character& character, const Pose& bound, const ImportOptions& 
   report.lead_in = lead_in;
   if (frames + lead_in < 2)
     throw InputError("--clip " + options.clip + ": is one frame; pass --from-bind-pose to move to it");
-  const auto pose = [&character, &bound, animation, fps = options.fps, lead_in](std::size_t frame) {
-    if (frame < lead_in)
-      return blend(character, bound, pose_at(character, animation, animation.start),
-                   static_cast<double>(frame) / static_cast<double>(lead_in));
-    return pose_at(character, animation, animation.start + static_cast<double>(frame - lead_in) / fps);
+  const auto moment = [&character, &bound, animation, fps = options.fps,
+                       lead_in](std::size_t frame) -> Moment {
+    if (frame >= lead_in)
+      return moment_at(character, animation, animation.start + static_cast<double>(frame - lead_in) / fps);
+    const Moment start = moment_at(character, animation, animation.start);
+    const double share = static_cast<double>(frame) / static_cast<double>(lead_in);
+    return {blend(character, bound, start.pose, share), blend(rest_weights(character), start.weights, share)};
   };
-  return {frames + lead_in, pose};
+  return {frames + lead_in, moment};
 }
 
 }  // namespace
@@ -327,12 +340,12 @@ ImportReport convert(const Character& character, const ImportOptions& options, c
   std::vector<Vec3> all, positions;
   std::vector<Bone> bones;
   for (std::size_t frame = 0; frame < frames.count; ++frame) {
-    const Pose pose = frames.pose(frame);
-    skin(character, pose, all);
+    const Moment moment = frames.moment(frame);
+    skin(character, moment.pose, moment.weights, all);
     report.weld_spread = std::max(report.weld_spread, largest_spread(surface.group, all) / raw.diagonal);
     positions.clear();
     for (const std::int32_t v : chosen.raw_vertex) positions.push_back(all[static_cast<std::size_t>(v)]);
-    bones_at(skeleton, pose, bones);
+    bones_at(skeleton, moment.pose, bones);
     writer.append({positions, bones});
   }
   writer.finish();
