@@ -3,8 +3,8 @@
 # Each package has its line of reason in README.md.
 
 packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
-                libgmp-dev libtbb-dev libassimp-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev
-                libcgal-dev libgtest-dev python3)
+                libgmp-dev libtbb-dev libassimp-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev
+                libpugixml-dev libcgal-dev libgtest-dev python3)
 packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_kernels=(libbenchmark-dev)

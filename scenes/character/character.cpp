@@ -174,6 +174,8 @@ void validate(const Character& character, const CharacterLimits& limits) {
     if (node.written &&
         !(usable(node.written->move) && usable(node.written->rotation) && usable(node.written->scale)))
       refuse("node '" + node.name + "': its transform is not finite, or beyond 1e15; repair it");
+    if (node.follows && (node.follows->node < 0 || node.follows->node >= static_cast<int>(n)))
+      refuse("node '" + node.name + "': follows the scale of no node above it; repair it");
   }
   for (const Part& part : character.parts) check_part(character, part);
   std::vector<int> joints;

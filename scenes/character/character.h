@@ -20,11 +20,18 @@ struct ScaleTurnMove {
   Vec3 scale = Vec3::Ones();
 };
 
+// A node that scales as another one above it does at the same time, or undoes what that one does.
+struct FollowedScale {
+  int node;  // above
+  bool inverse;
+};
+
 struct Node {
   std::string name;
   int parent;                              // smaller than the node's own index; -1 for the root
   Transform local;                         // to the parent, at rest
   std::optional<ScaleTurnMove> written{};  // the same, where the file gives it in parts
+  std::optional<FollowedScale> follows{};  // where animations move it with another node's scale
 };
 
 // A node that moves vertices of a part, and the map from the part's coordinates to the node's when both were

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace cscd::scenes {
 namespace {
@@ -120,6 +122,7 @@ Pose bind_pose(const Character& character) {
 Pose pose_at(const Character& character, const Animation& animation, double seconds) {
   std::vector<Transform> local;
   for (const Node& node : character.nodes) local.push_back(node.local);
+  std::map<int, Vec3> scales;  // of the nodes that the clip drives
   for (const Channel& channel : animation.channels) {
     const ScaleTurnMove rest = parts_at_rest(character.nodes[at(channel.node)]);
     Vec3 move = rest.move, scale = rest.scale;
@@ -131,6 +134,17 @@ Pose pose_at(const Character& character, const Animation& animation, double seco
     if (!channel.scales.empty()) scale = sample(channel.scales, seconds);
     if (!channel.scale_components.empty()) scale = sample(channel.scale_components, seconds);
     local[at(channel.node)] = from_parts(move, rotation, scale);
+    scales[channel.node] = scale;
+  }
+  for (std::size_t n = 0; n < local.size(); ++n) {
+    const std::optional<FollowedScale>& follows = character.nodes[n].follows;
+    if (!follows) continue;
+    const auto driven = scales.find(follows->node);
+    if (driven == scales.end()) continue;
+    Vec3 scale = driven->second;
+    // Below a node of no extent nothing has a size of its own.
+    for (int k = 0; k < 3 && follows->inverse; ++k) scale[k] = scale[k] == 0 ? 0 : 1 / scale[k];
+    local[n] = from_parts(Vec3::Zero(), {}, scale);
   }
   return world_of(character, local);
 }

@@ -148,6 +148,29 @@ TEST(Pose, VerticesWithoutWeightsFollowTheirNode) {
 }
 
 // Files whose nodes rest in the first pose of a clip: the offsets still know how the skin was bound.
+TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
+  Character tree;
+  const ScaleTurnMove twice{Vec3::Zero(), {}, {2, 1, 1}}, half{Vec3::Zero(), {}, {0.5, 1, 1}};
+  tree.nodes = {{"root", -1, {}},
+                {"scaled", 0, from_parts(Vec3::Zero(), {}, twice.scale), twice},
+                {"undone", 1, from_parts(Vec3::Zero(), {}, half.scale), half, FollowedScale{1, true}},
+                {"again", 2, from_parts(Vec3::Zero(), {}, twice.scale), twice, FollowedScale{1, false}}};
+  Animation grow;
+  Channel channel;
+  channel.node = 1;
+  channel.scales = {{0, {2, 1, 1}}, {1, {6, 1, 1}}};
+  grow.channels = {channel};
+  for (const double time : {0.0, 0.5, 1.0}) {
+    const Pose pose = pose_at(tree, grow, time);
+    EXPECT_EQ(pose[1].column[0].x(), 2 + 4 * time);
+    EXPECT_NEAR(pose[2].column[0].x(), 1, 1e-15);
+    EXPECT_NEAR(pose[3].column[0].x(), 2 + 4 * time, 1e-15);
+  }
+  EXPECT_EQ(rest_pose(tree)[2].column[0].x(), 1);
+  tree.nodes[2].follows = FollowedScale{2, true};
+  EXPECT_THROW(validate(tree, {}), InputError);
+}
+
 TEST(BindPose, ComesFromTheOffsetsAndNotFromTheRest) {
   Character tube = bending_tube();
   const Pose bound = bind_pose(tube);

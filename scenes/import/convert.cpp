@@ -16,6 +16,24 @@ namespace {
 // Debris of many thousand pieces is not told bone by bone.
 constexpr std::size_t kMostPiecesWithBones = 1000;
 
+// The bones that a clip moves against the bone above: by a channel of their own, or by one of the nodes
+// between, which are no bones.
+std::size_t driven_bones(const Character& character, const Animation& animation,
+                         const std::vector<int>& bones) {
+  std::vector<bool> channel(character.nodes.size(), false), bone(channel);
+  for (const Channel& c : animation.channels) channel[static_cast<std::size_t>(c.node)] = true;
+  for (const int b : bones) bone[static_cast<std::size_t>(b)] = true;
+  return static_cast<std::size_t>(std::count_if(bones.begin(), bones.end(), [&](int b) {
+    auto node = static_cast<std::size_t>(b);
+    while (!channel[node]) {
+      const int above = character.nodes[node].parent;
+      if (above < 0 || bone[static_cast<std::size_t>(above)]) return false;
+      node = static_cast<std::size_t>(above);
+    }
+    return true;
+  }));
+}
+
 void describe(const Character& character, const ImportOptions& options, ImportReport& report) {
   report.format = character.format;
   report.centimetres_per_unit = character.centimetres_per_unit;
@@ -34,13 +52,9 @@ void describe(const Character& character, const ImportOptions& options, ImportRe
   const std::vector<int> moving = moving_nodes(character);
   report.joints = moving.size();
   for (const Animation& animation : character.animations) {
-    std::vector<int> driven;
-    for (const Channel& channel : animation.channels)
-      if (std::binary_search(moving.begin(), moving.end(), channel.node)) driven.push_back(channel.node);
-    std::sort(driven.begin(), driven.end());
-    driven.erase(std::unique(driven.begin(), driven.end()), driven.end());
     report.clips.push_back({animation.name, animation.start, animation.seconds, animation.ticks_per_second,
-                            frames_of(animation.seconds, options.fps), driven.size()});
+                            frames_of(animation.seconds, options.fps),
+                            driven_bones(character, animation, moving)});
   }
 }
 

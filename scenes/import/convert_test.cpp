@@ -101,6 +101,30 @@ TEST_F(Convert, WritesFramesAtTheRateWithBones) {
   EXPECT_EQ(report.welded_vertices, 0u);
 }
 
+TEST_F(Convert, ClipsBlendMorphTargets) {
+  Character tube = bending_tube();
+  Part& part = tube.parts[0];
+  part.targets = {{"up", std::vector<Vec3>(part.positions.size(), Vec3(0, 0, 2)), 0.5}};
+  tube.animations[0].channels.clear();
+  tube.animations[0].morphs = {{0, {Curve{{0, 0.0}, {1, 1.0}}}}};
+  ImportOptions options;
+  options.fps = 10;
+  const Clip clip = converted(tube, options);
+  ASSERT_EQ(clip.frame_count(), 11u);
+  for (std::size_t v = 0; v < clip.header().vertex_count; ++v)
+    EXPECT_NEAR(clip.frame(7).positions[v].z() - clip.frame(0).positions[v].z(), 0.7 * 2, 1e-9);
+}
+
+TEST_F(Convert, ABoneIsDrivenByTheNodesBetweenItAndTheBoneAbove) {
+  Character tube = bending_tube();
+  tube.animations[0].channels[0].node = 3;  // between both bones
+  converted(tube);
+  EXPECT_EQ(report.clips[0].driven, 1u);
+  tube.animations[0].channels[0].node = 1;  // of the mesh, which follows the bones
+  converted(tube);
+  EXPECT_EQ(report.clips[0].driven, 0u);
+}
+
 TEST_F(Convert, WeldsAcrossTrianglesPartsAndMaterials) {
   const Clip whole = converted(bending_tube()), torn = converted(torn_tube());
   EXPECT_EQ(torn.header().vertex_count, whole.header().vertex_count);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <assimp/BaseImporter.h>
+#include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
@@ -14,23 +15,26 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <set>
 #include <string_view>
 
 #include "core/base/error.h"
+#include "scenes/import/collada.h"
+#include "scenes/import/fbx/read_fbx.h"
 #include "scenes/import/file_system.h"
 #include "scenes/import/gltf/read_gltf.h"
 
 namespace cscd::scenes {
 namespace {
 
-// Importers of assimp by name; a file of glTF is read without it.
+// Importers of assimp by name; glTF and FBX are read without it.
 struct Format {
   std::string_view extension, importer, name;
 };
 constexpr std::array kFormats = {
     Format{".glb", "", "glTF 2"},
     Format{".gltf", "", "glTF 2"},
-    Format{".fbx", "Autodesk FBX Importer", "FBX"},
+    Format{".fbx", "", "FBX"},
     Format{".dae", "Collada Importer", "Collada"},
     Format{".x", "Direct3D XFile Importer", "DirectX X"},
     Format{".bvh", "BVH Importer (MoCap)", "BVH"},
@@ -82,7 +86,6 @@ class Reader {
       for (unsigned i = 0; i < source_[n]->mNumMeshes; ++i)
         read_part(static_cast<int>(n), source_[n]->mMeshes[i]);
     for (unsigned i = 0; i < scene_.mNumAnimations; ++i) read_animation(*scene_.mAnimations[i]);
-    read_unit();
     note(lines_, "points and lines left out");
     note(morphs_, "blend shapes not applied");
     note(again_, "meshes that several nodes share taken once, as their joints place them");
@@ -108,9 +111,15 @@ class Reader {
       const int index = static_cast<int>(source_.size());
       character_.nodes.push_back({text(node->mName), parent, transform(node->mTransformation)});
       source_.push_back(node);
-      by_name_.try_emplace(text(node->mName), index);
+      if (!by_name_.try_emplace(text(node->mName), index).second) twice_.insert(text(node->mName));
       for (unsigned i = node->mNumChildren; i-- > 0;) open.emplace_back(node->mChildren[i], index);
     }
+  }
+
+  // assimp knows nodes by name alone, so of two that have one name neither can be told.
+  void require_one(const std::string& name, const char* what) const {
+    if (twice_.contains(name))
+      throw InputError(std::string(what) + " '" + name + "': two nodes have this name; rename one of them");
   }
 
   void read_part(int node, unsigned mesh_index) {
@@ -158,6 +167,7 @@ class Reader {
     std::vector<Entry> entries;
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const aiBone& bone = *mesh.mBones[b];
+      require_one(text(bone.mName), "bone");
       const auto found = by_name_.find(text(bone.mName));
       if (found == by_name_.end()) {
         many_ += bone.mNumWeights;
@@ -208,6 +218,7 @@ class Reader {
     double first = std::numeric_limits<double>::infinity(), last = -first;
     for (unsigned c = 0; c < source.mNumChannels; ++c) {
       const aiNodeAnim& channel = *source.mChannels[c];
+      require_one(text(channel.mNodeName), "animated node");
       const auto found = by_name_.find(text(channel.mNodeName));
       if (found == by_name_.end()) {
         ++strangers_;
@@ -239,38 +250,36 @@ class Reader {
     character_.animations.push_back(std::move(animation));
   }
 
-  void read_unit() {
-    if (scene_.mMetaData == nullptr) return;
-    for (unsigned i = 0; i < scene_.mMetaData->mNumProperties; ++i) {
-      const aiMetadataEntry& entry = scene_.mMetaData->mValues[i];
-      if (text(scene_.mMetaData->mKeys[i]) != "UnitScaleFactor" || entry.mData == nullptr) continue;
-      double value = 0;
-      if (entry.mType == AI_DOUBLE) std::memcpy(&value, entry.mData, sizeof value);
-      if (entry.mType == AI_FLOAT) {
-        float single = 0;
-        std::memcpy(&single, entry.mData, sizeof single);
-        value = static_cast<double>(single);
-      }
-      if (std::isfinite(value) && value > 0) character_.centimetres_per_unit = value;
-    }
-  }
-
   const aiScene& scene_;
   const CharacterLimits& limits_;
   Character character_;
   std::vector<const aiNode*> source_;    // by node
   std::map<std::string, int> by_name_;   // the first of equal names
+  std::set<std::string> twice_;          // names that two nodes have
   std::map<unsigned, int> skinned_;      // meshes with joints that are already in
   std::size_t vertices_ = 0, keys_ = 0;  // so far
   std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
 };
 
+std::string bytes_of(const std::filesystem::path& path, const CharacterLimits& limits) {
+  FolderFiles files(path, limits.file_bytes);
+  Assimp::IOStream* file = files.Open(path.c_str(), "rb");
+  if (file == nullptr)
+    throw InputError("cannot be read as a file of at most " + std::to_string(limits.file_bytes >> 20) +
+                     " MiB; check its name and its size");
+  std::string bytes(file->FileSize(), '\0');
+  bytes.resize(file->Read(bytes.data(), 1, bytes.size()));
+  files.Close(file);
+  return bytes;
+}
+
 }  // namespace
 
 Character read_model(const std::filesystem::path& path, const CharacterLimits& limits) {
   const Format& format = format_of(path);
-  if (format.name == "glTF 2") {
-    Character character = read_gltf(path, limits);
+  if (format.importer.empty()) {
+    Character character =
+        format.name == "FBX" ? read_fbx(bytes_of(path, limits), limits) : read_gltf(path, limits);
     validate(character, limits);
     return character;
   }
@@ -278,10 +287,6 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
   keep_only(importer, format.importer);
   importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
   // Nothing else: what to weld is decided by position (assimp's own step keeps seams of normals and textures
   // open), weights are not cut to four, and the checks are ours.
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
@@ -292,7 +297,9 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
                      " importer refuses it: " + std::string(error) + "; export it again");
   Character character = Reader(*scene, limits).read();
   character.format = format.name;
-  if (format.name == "Collada") character.centimetres_per_unit = 0;
+  if (format.name == "Collada")
+    for (std::string& note : notes_on_collada(bytes_of(path, limits)))
+      character.notes.push_back(std::move(note));
   validate(character, limits);
   return character;
 }

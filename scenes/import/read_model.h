@@ -6,11 +6,10 @@
 
 namespace cscd::scenes {
 
-// Reads a model file: glTF by gltf/read_gltf.h, other formats with assimp. To be called in a process that may
-// be lost: assimp 5.2.5 crashes on some damaged files. Throws InputError for formats outside the short list
-// below, files that assimp refuses, and what validate() refuses.
-//
-// Where an FBX file has curves for some components of a channel only, assimp 5.2.5 takes the others as 0.
+// Reads a model file: glTF with tinygltf (gltf/read_gltf.h), FBX with a reader of this project's own
+// (fbx/read_fbx.h), the other formats with assimp. To be called in a process that may be lost: readers of
+// untrusted bytes crash now and then. Throws InputError for formats outside the short list below, files that
+// their reader refuses, and what validate() refuses.
 //
 // The list: glTF 2, FBX, Collada, DirectX X, and BVH (which holds no surface and is read to say so). Other
 // formats of assimp can hold skinned characters too, but each importer is one more reader of untrusted bytes.

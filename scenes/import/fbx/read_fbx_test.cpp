@@ -1,0 +1,318 @@
+#include "scenes/import/fbx/read_fbx.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "scenes/import/fbx/test_fbx.h"
+
+namespace cscd::scenes {
+namespace {
+
+void expect_at(const Vec3& was, const Vec3& expected) {
+  EXPECT_LT((was - expected).norm(), 1e-9) << was.transpose() << " instead of " << expected.transpose();
+}
+
+const Vec3 kPoints[3] = {{1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}};
+
+// Two bones and the mesh have one name. Vertex 0 follows one bone, vertex 1 both, vertex 2 none.
+struct Skinned {
+  FbxText file;
+  const Transform link[2] = {moved({0, 0, 2}), product({moved({1, 1, 0}), turned(0, 40)})};
+  const Transform mesh = product({moved({0, 3, 0}), turned(1, 25)});
+  const Transform geometry = product({moved({0, 0, 1}), turned(2, 90), scaled_by({1, 2, 1})});
+
+  explicit Skinned(double scale_of_weights = 1, const std::string& mode = {}) {
+    file.model(20, "same", 0,
+               property("Lcl Translation", {0, 3, 0}) + property("Lcl Rotation", {0, 25, 0}) +
+                   property("GeometricTranslation", {0, 0, 1}) + property("GeometricRotation", {0, 0, 90}) +
+                   property("GeometricScaling", {1, 2, 1}),
+               "Mesh");
+    file.model(30, "same", 0, property("Lcl Translation", {0, 0, 2}));
+    file.model(31, "same", 30, property("Lcl Translation", {5, 0, 0}));
+    file.triangle(10, 20);
+    file.skin(40, 10);
+    const double w = scale_of_weights;
+    const auto bound = [&](int k) { return composed(inverse(link[k]), mesh); };
+    file.cluster(41, 40, 30, {0, 1}, {w, w / 4}, matrix(bound(0)), matrix(link[0]), mode);
+    file.cluster(42, 40, 31, {1}, {3 * w / 4}, matrix(bound(1)), matrix(link[1]), mode);
+  }
+  Vec3 posed(int k, const Vec3& x) const {
+    const Transform now = k == 0 ? moved({0, 0, 2}) : moved({5, 0, 2});
+    return product({now, inverse(link[k]), mesh, geometry})(x);
+  }
+};
+
+TEST(FbxSkin, FollowsTheSdksRecipeByIdentity) {
+  const Skinned skinned(3);  // weights are made to sum to 1
+  const std::vector<Vec3> was = vertices_at(read(skinned.file), 0);
+  ASSERT_EQ(was.size(), 3u);
+  expect_at(was[0], skinned.posed(0, kPoints[0]));
+  expect_at(was[1], 0.25 * skinned.posed(0, kPoints[1]) + 0.75 * skinned.posed(1, kPoints[1]));
+  expect_at(was[2], product({skinned.mesh, skinned.geometry})(kPoints[2]));
+}
+
+TEST(FbxSkin, InTheModeTotalOneTheMeshsNodeTakesWhatMissesOfOne) {
+  const Skinned skinned(0.5, "Mode: \"Total1\"\n");
+  const Vec3 own = product({skinned.mesh, skinned.geometry})(kPoints[0]);
+  expect_at(vertices_at(read(skinned.file), 0)[0], 0.5 * skinned.posed(0, kPoints[0]) + 0.5 * own);
+  EXPECT_NE(refusal_of(Skinned(2, "Mode: \"Total1\"\n").file.text()).find("sum to more than 1"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(Skinned(1, "Mode: \"Additive\"\n").file.text()).find("link mode is additive"),
+            std::string::npos);
+}
+
+TEST(FbxSkin, SeveralSkinsAndDualQuaternionsAreRefused) {
+  Skinned twice;
+  twice.file.skin(45, 10);
+  twice.file.cluster(46, 45, 30, {0}, {1}, matrix({}), matrix({}));
+  EXPECT_NE(refusal_of(twice.file.text()).find("several skins"), std::string::npos);
+  Skinned dual;
+  dual.file.objects.insert(dual.file.objects.find("\"Skin\" {") + 8, "\nSkinningType: \"DualQuaternion\"\n");
+  EXPECT_NE(refusal_of(dual.file.text()).find("dual quaternions"), std::string::npos);
+  Skinned outside;
+  outside.file.cluster(47, 40, 30, {7}, {1}, matrix({}), matrix({}));
+  EXPECT_NE(refusal_of(outside.file.text()).find("weighs vertex 7 of 3"), std::string::npos);
+}
+
+TEST(FbxMesh, InstancesStandWhereTheirNodesDo) {
+  FbxText file;
+  file.model(20, "one", 0, property("Lcl Translation", {1, 0, 0}), "Mesh");
+  file.model(21, "two", 0, property("Lcl Translation", {0, 2, 0}), "Mesh");
+  file.mesh(9, {21}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, -3});
+  file.mesh(10, {20, 21}, {1, 0, 0, 0, 1, 0, 0.5, 0.25, 1}, {0, 1, -3});
+  const Character character = read(file);
+  ASSERT_EQ(character.parts.size(), 3u);
+  EXPECT_EQ(character.parts[0].mesh, 1);
+  EXPECT_EQ(character.parts[1].mesh, 0);
+  EXPECT_EQ(character.parts[2].mesh, 1);
+  const std::vector<Vec3> was = vertices_at(character, 0);
+  expect_at(was[0], kPoints[0] + Vec3(1, 0, 0));
+  expect_at(was[6], kPoints[0] + Vec3(0, 2, 0));
+}
+
+// The sum of the triangles' areas, each against the normal z, and of their sizes.
+std::pair<double, double> areas(const std::vector<double>& points, const std::vector<double>& polygons) {
+  FbxText file;
+  file.model(20, "node", 0, "", "Mesh");
+  file.mesh(10, {20}, points, polygons);
+  const Character character = read(file);
+  const Part& part = character.parts[0];
+  double sum = 0, size = 0;
+  for (const auto& t : part.triangles) {
+    const auto at = [&](std::size_t k) { return part.positions[static_cast<std::size_t>(t[k])]; };
+    const double area = (at(1) - at(0)).cross(at(2) - at(0)).z() / 2;
+    sum += area;
+    size += std::abs(area);
+  }
+  return {sum, size};
+}
+
+TEST(FbxMesh, PolygonsAreCutInsideAndFaceTheirWay) {
+  // A dart, whose first diagonal lies outside, and the other way round; an L; a comb of nine corners.
+  EXPECT_EQ(areas({0, 0, 0, 4, 0, 0, 1, 1, 0, 0, 4, 0}, {0, 1, 2, -4}), std::make_pair(4.0, 4.0));
+  EXPECT_EQ(areas({0, 4, 0, 0, 0, 0, 4, 0, 0, 1, 1, 0}, {0, 1, 2, -4}), std::make_pair(4.0, 4.0));
+  EXPECT_EQ(areas({0, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0, 1, 2, 0, 0, 2, 0}, {0, 1, 2, 3, 4, -6}),
+            std::make_pair(3.0, 3.0));
+  const auto comb = areas({0, 0, 0, 6, 0, 0, 6, 3, 0, 5, 3, 0, 4, 1, 0, 3, 3, 0, 2, 1, 0, 1, 3, 0, 0, 3, 0},
+                          {0, 1, 2, 3, 4, 5, 6, 7, -9});
+  EXPECT_NEAR(comb.first, comb.second, 1e-12);
+  EXPECT_NEAR(comb.first, 14, 1e-12);
+}
+
+TEST(FbxMesh, ConvexQuadrilateralsTakeTheShorterDiagonal) {
+  FbxText file;
+  file.model(20, "node", 0, "", "Mesh");
+  file.mesh(10, {20}, {0, 0, 0, 3, 1, 0, 4, 4, 0, 1, 3, 0}, {0, 1, 2, -4});
+  const Character character = read(file);
+  ASSERT_EQ(character.parts[0].triangles.size(), 2u);
+  for (const auto& t : character.parts[0].triangles) {
+    EXPECT_TRUE(std::count(t.begin(), t.end(), 1) == 1 && std::count(t.begin(), t.end(), 3) == 1);
+  }
+}
+
+TEST(FbxMesh, PolygonsThatRunTwiceThroughAPlaceKeepTheirArea) {
+  // A square with a square hole, joined by an edge that is run along both ways; then one with equal corners.
+  const std::vector<double> points = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 3, 1, 0};
+  const auto frame = areas(points, {0, 1, 2, 3, 0, 4, 5, 6, 7, -5});
+  EXPECT_NEAR(frame.first, 12, 1e-9);
+  EXPECT_NEAR(frame.second, 12, 1e-9);
+  EXPECT_EQ(areas({0, 0, 0, 0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 0, 0, 0}, {0, 1, 2, 3, 4, -6}),
+            std::make_pair(16.0, 16.0));
+}
+
+FbxText shaped(const std::string& full_weights) {
+  FbxText file;
+  file.model(20, "node", 0, "", "Mesh");
+  file.triangle(10, 20);
+  file.add("Deformer", 40, "shapes", "BlendShape", "");
+  file.connect(40, 10);
+  file.add("Deformer", 41, "smile", "BlendShapeChannel", property("DeformPercent", {50}), full_weights);
+  file.connect(41, 40);
+  file.add("Geometry", 42, "smile", "Shape", "", array("Indexes", {1}) + array("Vertices", {0, 0, 8}));
+  file.connect(42, 41);
+  return file;
+}
+
+TEST(FbxShapes, PercentagesBlendAtRestAndInClips) {
+  expect_at(vertices_at(read(shaped(array("FullWeights", {100}))), 0)[1], kPoints[1] + Vec3(0, 0, 4));
+  expect_at(vertices_at(read(shaped(array("FullWeights", {50}))), 0)[1], kPoints[1] + Vec3(0, 0, 8));
+  FbxText file = shaped("");
+  file.clip(0, 1);
+  file.curve_node(60, 51, 41, "DeformPercent", property("d|DeformPercent", {0}));
+  file.curve(61, 60, "d|DeformPercent", {0, 1}, {0, 100}, {4, 4});
+  const Character character = read(file);
+  expect_at(vertices_at(character, 0.25)[1], kPoints[1] + Vec3(0, 0, 2));
+  expect_at(vertices_at(character, 0.25)[0], kPoints[0]);
+}
+
+TEST(FbxShapes, ShapesInBetweenAreRefused) {
+  FbxText file = shaped("");
+  file.add("Geometry", 43, "half", "Shape", "", array("Indexes", {1}) + array("Vertices", {0, 0, 1}));
+  file.connect(43, 41);
+  EXPECT_NE(refusal_of(file.text()).find("blend shape 'smile': has shapes in between"), std::string::npos);
+}
+
+TEST(Fbx, RefusesWhatIsDamagedOrCannotBe) {
+  FbxText good;
+  good.model(20, "node", 0, "", "Mesh");
+  good.triangle(10, 20);
+  EXPECT_EQ(refusal_of(good.text()), "");
+  FbxText old = good;
+  old.version = "6100";
+  EXPECT_NE(refusal_of(old.text()).find("version 6100"), std::string::npos);
+  EXPECT_NE(refusal_of("").find("is no FBX file"), std::string::npos);
+  EXPECT_NE(
+      refusal_of(good.text().substr(0, good.text().find("PolygonVertexIndex"))).find("brace is not closed"),
+      std::string::npos);
+  std::string deep = good.text();
+  for (int i = 0; i < 100000; ++i) deep += "a: {";
+  EXPECT_NE(refusal_of(deep).find("nested too deeply"), std::string::npos);
+
+  const auto with_mesh = [](const std::vector<double>& points, const std::vector<double>& polygons) {
+    FbxText file;
+    file.model(20, "node", 0, "", "Mesh");
+    file.mesh(10, {20}, points, polygons);
+    return refusal_of(file.text());
+  };
+  EXPECT_NE(with_mesh({0, 0, 0, 1, 0}, {0, 1, -3}).find("not three a vertex"), std::string::npos);
+  EXPECT_NE(with_mesh({0, 0, 0}, {0, 1, -3}).find("names vertex 1 of 1"), std::string::npos);
+  EXPECT_NE(with_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}).find("cut short"), std::string::npos);
+  EXPECT_NE(
+      with_mesh({0, 0, 0, 1, 0, 0, 0, 1, std::nan("")}, {0, 1, -3}).find("vertex 2: position is not finite"),
+      std::string::npos);
+
+  FbxText twin = good;
+  twin.add("Model", 20, "twin", "Null", "");
+  EXPECT_NE(refusal_of(twin.text()).find("has the same number"), std::string::npos);
+  FbxText circle = good;
+  circle.model(21, "a", 22, "");
+  circle.model(22, "b", 21, "");
+  EXPECT_NE(refusal_of(circle.text()).find("in a circle"), std::string::npos);
+  FbxText parents = good;
+  parents.model(21, "a", 0, "");
+  parents.connect(21, 20);
+  EXPECT_NE(refusal_of(parents.text()).find("'a': hangs on two nodes"), std::string::npos);
+}
+
+// A binary file of one mesh, whose vertices are deflated.
+class BinaryFile {
+ public:
+  std::string bytes = std::string("Kaydara FBX Binary  \0\x1a\0", 23);
+  bool wide;
+
+  explicit BinaryFile(std::uint32_t version) : wide(version >= 7500) { put(version); }
+
+  template <class Number>
+  void put(Number number) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  }
+  void size(std::size_t number) {
+    if (wide)
+      put(static_cast<std::uint64_t>(number));
+    else
+      put(static_cast<std::uint32_t>(number));
+  }
+  template <class Children>
+  void element(const std::string& name, std::size_t values, const std::string& value_bytes,
+               const Children& children) {
+    const std::size_t start = bytes.size();
+    size(0);
+    size(values);
+    size(value_bytes.size());
+    bytes += static_cast<char>(name.size());
+    bytes += name + value_bytes;
+    const std::size_t before = bytes.size();
+    children();
+    if (bytes.size() > before) bytes.append(wide ? 25 : 13, '\0');
+    const std::uint64_t end = bytes.size();
+    std::memcpy(bytes.data() + start, &end, wide ? 8 : 4);
+  }
+  void leaf(const std::string& name, std::size_t values, const std::string& value_bytes) {
+    element(name, values, value_bytes, [] {});
+  }
+};
+
+template <class Number>
+std::string raw(Number number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+std::string number(std::int64_t id) {
+  return "L" + raw(id);
+}
+std::string text(const std::string& words) {
+  return "S" + raw(static_cast<std::uint32_t>(words.size())) + words;
+}
+
+std::string deflated(const std::vector<double>& numbers, std::uint32_t claimed) {
+  const auto bytes = static_cast<uLong>(numbers.size() * sizeof(double));
+  std::string packed(compressBound(bytes), '\0');
+  auto length = static_cast<uLongf>(packed.size());
+  compress(reinterpret_cast<Bytef*>(packed.data()), &length, reinterpret_cast<const Bytef*>(numbers.data()),
+           bytes);
+  return "d" + raw(claimed) + raw(std::uint32_t{1}) + raw(static_cast<std::uint32_t>(length)) +
+         packed.substr(0, length);
+}
+
+std::string binary_file(std::uint32_t version, std::uint32_t claimed) {
+  BinaryFile file(version);
+  const std::string separator("\0\x01", 2);
+  file.element("Objects", 0, "", [&] {
+    file.element("Geometry", 3, number(10) + text("mesh" + separator + "Geometry") + text("Mesh"), [&] {
+      file.leaf("Vertices", 1, deflated({1, 0, 0, 0, 1, 0, 0.5, 0.25, 1}, claimed));
+      file.leaf("PolygonVertexIndex", 1,
+                "i" + raw(std::uint32_t{3}) + raw(std::uint32_t{0}) + raw(std::uint32_t{12}) + raw(0) +
+                    raw(1) + raw(-3));
+    });
+    file.leaf("Model", 3, number(20) + text("body" + separator + "Model") + text("Mesh"));
+  });
+  file.element("Connections", 0, "", [&] {
+    file.leaf("C", 3, text("OO") + number(20) + number(0));
+    file.leaf("C", 3, text("OO") + number(10) + number(20));
+  });
+  file.bytes.append(file.wide ? 25 : 13, '\0');
+  return file.bytes;
+}
+
+TEST(Fbx, ReadsBinaryFilesWithDeflatedArrays) {
+  for (const std::uint32_t version : {7400u, 7500u}) {
+    const std::string bytes = binary_file(version, 9);
+    const Character character = read_fbx(bytes, {});
+    ASSERT_EQ(character.parts.size(), 1u);
+    EXPECT_EQ(character.parts[0].name, "mesh");
+    EXPECT_EQ(character.parts[0].triangles.size(), 1u);
+    const std::vector<Vec3> was = vertices_at(character, 0);
+    ASSERT_EQ(was.size(), 3u);
+    for (std::size_t v = 0; v < 3; ++v) EXPECT_EQ(was[v], kPoints[v]);
+    // Cut anywhere before the end of the list, it is refused.
+    for (std::size_t length = 0; length + (version >= 7500 ? 25 : 13) < bytes.size(); ++length)
+      EXPECT_NE(refusal_of(bytes.substr(0, length)), "") << length;
+  }
+  for (const std::uint32_t claimed : {8u, 10u, 3'000'000u, 4'000'000'000u})
+    EXPECT_NE(refusal_of(binary_file(7400, claimed)), "") << claimed;
+}
+
+}  // namespace
+}  // namespace cscd::scenes
