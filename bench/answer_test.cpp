@@ -87,9 +87,12 @@ TEST_P(Answers, OfACharacterAreRight) {
         ModelOptions options;
         options.import.clip = clip;
         options.import.fps = 12;
-        Input input = open_input(character_file("generated_figure.glb", scratch), options);
-        if (!allows(input, strategy_named(GetParam())))
-          GTEST_SKIP() << GetParam() << " takes no open surface";
+        const std::string file = character_file("generated_figure.glb", scratch);
+        Input input = open_input(file, options);
+        if (!allows(input, strategy_named(GetParam()))) {
+          options.import.component = "auto";  // the closed body alone
+          input = open_input(file, options);
+        }
         expect_right(input, strategy_named(GetParam()), {first, false, keep},
                      {0, input.clip->interval_count()}, verdicts);
       }
@@ -143,8 +146,7 @@ TEST_P(Answers, OfAScenesStepsAreRight) {
   EXPECT_GT(count(verdicts, IntervalVerdict::touches), 3u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Strategies, Answers,
-                         testing::Values("base", "drvbc_fast", "drvbc_fast_complete", "rvbc"),
+INSTANTIATE_TEST_SUITE_P(Strategies, Answers, testing::Values("base", "drvbc_fast", "drvbc_fast_complete"),
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(Answerer, TakesARestPoseThatIsNotAFrame) {
@@ -161,16 +163,16 @@ TEST(Answerer, TakesARestPoseThatIsNotAFrame) {
   EXPECT_GT(answerer.answer(1).rest_pairs, 10u);
 }
 
+// Coplanar triangles that slide onto each other: boxes without end, cut off after a few.
 TEST(Answerer, SaysWhatAnInexactTestCannotTell) {
-  // Coplanar triangles that slide: newton decides nothing.
   const test::Shape shape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}},
                           {test::corners(0, 1, 2), test::corners(3, 4, 5)}};
-  Input input = input_of(shape, {shape.positions, moved_part(shape, 3, {-5, 0, 0})});
-  Answerer newton(input, strategy_named("base"), elementary_test_named("newton"), {});
-  const IntervalAnswer answer = newton.answer(0);
-  if (answer.found.contacts.empty() || answer.time()) GTEST_SKIP() << "newton decided";
+  Input input = input_of(shape, {shape.positions, moved_part(shape, 3, {-5, 0.1, 0})});
+  Answerer inexact(input, strategy_named("base"), elementary_test_named("inclusion@1e-9:10"), {});
+  const IntervalAnswer answer = inexact.answer(0);
+  EXPECT_FALSE(answer.found.contacts.empty());
+  EXPECT_EQ(answer.time(), std::nullopt);
   EXPECT_EQ(answer.verdict, IntervalVerdict::undecided);
-  EXPECT_FALSE(answer.proven);
 }
 
 }  // namespace
