@@ -72,6 +72,21 @@ TEST(GltfDocument, OnlyFilesOfTheModelsOwnFolderAreRead) {
             std::string::npos);
 }
 
+// The model and its buffers share one limit.
+TEST(GltfDocument, FilesTogetherMustNotBeTooLarge) {
+  const TestFolder folder;
+  const std::string text = with_uri("tube.bin"), bytes = TubeFile().bytes;
+  folder.write("tube.bin", bytes);
+  const std::filesystem::path file = folder.write("test.gltf", text);
+  CharacterLimits limits;
+  limits.file_bytes = text.size() + bytes.size();
+  EXPECT_NO_THROW(read_gltf(file, limits));
+  for (const std::size_t less : {std::size_t{1}, bytes.size() + 1}) {
+    limits.file_bytes = text.size() + bytes.size() - less;
+    EXPECT_THROW(read_gltf(file, limits), InputError);
+  }
+}
+
 TEST(GltfDocument, BuffersThatHoldTooLittleAreRefused) {
   const TestFolder folder;
   const std::string bytes = TubeFile().bytes;
