@@ -1,3 +1,5 @@
+#include <ctime>
+
 #include "scenes/import/gltf/test_files.h"
 
 // Containers, buffers and what a file says of itself.
@@ -167,9 +169,9 @@ TEST(GltfDocument, TextThatIsNoGltfIsRefused) {
 TEST(GltfDocument, LongListsAreReadInTime) {
   TubeFile file;
   for (int i = 0; i < 200'000; ++i) file.root["materials"].push_back({{"name", "m"}});
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: others may use the machine, too
   EXPECT_EQ(refusal(file), "");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);
 }
 
 TEST(GltfDocument, RequiredExtensionsAreReadHarmlessOrRefusedByName) {
