@@ -1,5 +1,5 @@
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <new>
 #include <random>
 
@@ -123,7 +123,7 @@ TEST(GltfDamage, DamagedFilesAreReadOrRefused) {
           spoil_member(file.root, random);
         else
           spoil_bytes(file.bytes, random);
-      const auto start = std::chrono::steady_clock::now();
+      const std::clock_t start = std::clock();  // of the processor: others may use the machine, too
       std::string bytes;
       try {
         bytes = file.glb();
@@ -132,7 +132,7 @@ TEST(GltfDamage, DamagedFilesAreReadOrRefused) {
       }
       accepted += survives(bytes);
       ++runs;
-      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << file.root.dump();
+      ASSERT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC) << file.root.dump();
     }
   }
   EXPECT_GT(accepted, runs / 20);

@@ -183,16 +183,16 @@ void Surfaces::read_influences(Attributes& attributes, Part& part, const std::st
   for (;;) {
     require_count(influences_ + 4 * vertices * sets.size(), limits_.influences, "weights");
     const std::string number = std::to_string(sets.size());
-    const auto joints = attributes.read("JOINTS_" + number, TINYGLTF_TYPE_VEC4,
-                                        Components::unsigned_bytes | Components::unsigned_shorts, vertices);
-    const auto weights = attributes.read(
+    auto joints = attributes.read("JOINTS_" + number, TINYGLTF_TYPE_VEC4,
+                                  Components::unsigned_bytes | Components::unsigned_shorts, vertices);
+    auto weights = attributes.read(
         "WEIGHTS_" + number, TINYGLTF_TYPE_VEC4,
         Components::floats | Components::unsigned_bytes | Components::unsigned_shorts, vertices);
     if (!joints && !weights) break;
     if (!joints || !weights || joints->count != vertices || weights->count != vertices)
       throw InputError(where + ": JOINTS_" + number + " and WEIGHTS_" + number +
                        " do not give one entry each a vertex; export it again");
-    sets.push_back({*joints, *weights});
+    sets.push_back({std::move(*joints), std::move(*weights)});
   }
   for (std::size_t v = 0; v < vertices; ++v) {
     const std::size_t first = part.influences.size();
