@@ -109,13 +109,12 @@ class Builder {
     if (models.size() > limits_.nodes)
       throw InputError("has more than " + std::to_string(limits_.nodes) + " nodes; simplify the model");
     std::map<const Object*, std::vector<const Object*>> children;
+    std::set<const Object*> placed;  // files may say twice where a node hangs
     for (const Object* model : models)
       if (parent_of(*model) == nullptr) children[nullptr].push_back(model);
     for (const Object* model : models)
-      for (const Object* child : objects_.sources(*model, "Model")) {
-        std::vector<const Object*>& list = children[model];
-        if (std::find(list.begin(), list.end(), child) == list.end()) list.push_back(child);
-      }
+      for (const Object* child : objects_.sources(*model, "Model"))
+        if (placed.insert(child).second) children[model].push_back(child);
     std::vector<std::pair<const Object*, const Object*>> open;  // a model and its parent
     const auto open_children = [&](const Object* parent) {
       const std::vector<const Object*>& list = children[parent];

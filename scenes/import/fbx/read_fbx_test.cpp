@@ -72,6 +72,12 @@ TEST(FbxSkin, SeveralSkinsAndDualQuaternionsAreRefused) {
   Skinned dual;
   dual.file.objects.insert(dual.file.objects.find("\"Skin\" {") + 8, "\nSkinningType: \"DualQuaternion\"\n");
   EXPECT_NE(refusal_of(dual.file.text()).find("dual quaternions"), std::string::npos);
+  for (const double share : {0.0, 0.5}) {
+    Skinned blend;
+    blend.file.objects.insert(blend.file.objects.find("\"Skin\" {") + 8,
+                              "\nSkinningType: \"Blend\"\n" + array("BlendWeights", {0, share}));
+    EXPECT_EQ(refusal_of(blend.file.text()).empty(), share == 0);
+  }
   Skinned outside;
   outside.file.cluster(47, 40, 30, {7}, {1}, matrix({}), matrix({}));
   EXPECT_NE(refusal_of(outside.file.text()).find("weighs vertex 7 of 3"), std::string::npos);

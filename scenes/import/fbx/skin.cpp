@@ -54,7 +54,12 @@ class SkinReader {
   void require_linear(const Object& skin) const {
     const Element* type = skin.element->child("SkinningType");
     const std::string_view kind = type == nullptr ? std::string_view() : type->text(0);
-    if (kind == "DualQuaternion" || kind == "Blend")
+    bool quaternions = kind == "DualQuaternion";
+    // 3ds Max blends both ways, vertex by vertex; a vertex that is not listed is skinned linearly.
+    const Element* shares = skin.element->child("BlendWeights");
+    if (kind == "Blend" && shares != nullptr)
+      for (const double share : reals(*shares, limits_.vertices, where())) quaternions |= share != 0;
+    if (quaternions)
       throw InputError(where() + ": is skinned by dual quaternions; choose linear skinning on export");
   }
 
