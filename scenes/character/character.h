@@ -131,7 +131,7 @@ struct MorphChannel {
 struct Animation {
   std::string name;               // may be empty
   double start = 0, seconds = 0;  // the clip's first moment, and from there to its last
-  double ticks_per_second = 0;    // as the file says; 0 where it does not
+  double ticks_per_second = 0;    // as the file says; 0 where it does not, 1 in formats of seconds
   std::vector<Channel> channels;
   std::vector<MorphChannel> morphs{};
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -35,15 +36,17 @@ std::vector<fs::path> samples(const std::string& extension) {
   return files;
 }
 
-TEST(Truth, GltfIsPosedAsTheSpecificationSays) {
-  const std::vector<fs::path> files = samples(".glb");
+class Truth : public testing::TestWithParam<const char*> {};
+
+TEST_P(Truth, EveryVertexIsWhereTheFormatsSpecificationPutsIt) {
+  const std::vector<fs::path> files = samples(GetParam());
   if (files.empty()) GTEST_SKIP() << "no samples";
   for (const fs::path& file : files) {
     SCOPED_TRACE(file.filename());
     const Character character = read_model(file, {});
     const auto truth = read_truth(fs::path(file).replace_extension(".truth.h5"));
-    ASSERT_FALSE(truth.empty());
     const Animation& clip = character.animations.at(0);
+    EXPECT_EQ(static_cast<std::size_t>(std::lround(clip.seconds * kFramesPerSecond)) + 1, truth.size());
     for (std::size_t f = 0; f < truth.size(); ++f) {
       const double seconds = clip.start + static_cast<double>(f) / kFramesPerSecond;
       std::vector<Vec3> positions;
@@ -54,6 +57,9 @@ TEST(Truth, GltfIsPosedAsTheSpecificationSays) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Formats, Truth, testing::Values(".glb", ".fbx"),
+                         [](const auto& format) { return std::string(format.param).substr(1); });
 
 }  // namespace
 }  // namespace cscd::scenes
