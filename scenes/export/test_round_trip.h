@@ -25,15 +25,17 @@ struct ReadBack {
 inline ReadBack read_back(const std::string& glb, const ImportOptions& options = {}) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("cscd-export-" + std::to_string(getpid()) + ".glb");
-  const std::filesystem::path cache = std::filesystem::path(file).replace_extension(".h5");
+  const std::filesystem::path cache = std::filesystem::path(file).replace_extension(".h5"),
+                              sources = std::filesystem::path(file).replace_extension(".sources");
   std::ofstream(file, std::ios::binary) << glb;
   Character character = read_model(file, {});
-  ImportReport report = convert(character, options, {}, cache);
+  ImportReport report = convert(character, options, {}, cache, sources);
   PointCacheReader reader(cache);
   Clip clip(reader.header());
   copy_frames(reader, clip);
   std::filesystem::remove(file);
   std::filesystem::remove(cache);
+  std::filesystem::remove(sources);
   return {std::move(character), std::move(report), std::move(clip)};
 }
 
