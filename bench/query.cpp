@@ -117,33 +117,29 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
 
 // The clips of a model file, one after the other. A clip of one pose moves nothing and is passed over.
 ClipAnswer answer_all_clips(QueryOptions options, bool with_json) {
+  options.model.import.clip.clear();
+  ModelOptions survey = options.model;
+  survey.import.survey = true;
+  const scenes::ImportReport seen = *open_input(options.input, survey).import;
   ClipAnswer all{{{"schema", "cscd.query/2"}, {"input", options.input}, {"clips", json::array()}}, false};
-  std::size_t clips = 1, answered = 0;
-  for (std::size_t clip = 0; clip < clips; ++clip) {
-    options.model.import.clip = std::to_string(clip);
-    if (clip == 0) {
-      ModelOptions survey = options.model;
-      survey.import.survey = true;
-      const Input seen = open_input(options.input, survey);
-      clips = seen.import->clips.size();
-      if (clips == 0)
-        throw InputError(options.input + ": has no clip; leave out --clip, or pass --from-bind-pose");
-      options.model.import = survey.import;
-      options.model.import.survey = false;
-      for (const scenes::ImportReport::Clip& known : seen.import->clips)
-        if (known.frames < 2 && !options.model.import.from_bind_pose)
-          std::printf("%s: clip '%s' is one pose; passed over\n", options.input.c_str(), known.name.c_str());
-      all.document["import"] = import_json(*seen.import);
+  all.document["import"] = import_json(seen);
+  std::size_t answered = 0;
+  for (std::size_t clip = 0; clip < seen.clips.size(); ++clip) {
+    if (seen.clips[clip].frames < 2 && !options.model.import.from_bind_pose) {
+      std::printf("%s: clip %zu '%s' is one pose; passed over\n", options.input.c_str(), clip,
+                  seen.clips[clip].name.c_str());
+      continue;
     }
-    if (all.document["import"]["clips"][clip]["frames"] < 2 && !options.model.import.from_bind_pose) continue;
-    ++answered;
+    options.model.import.clip_number = clip;
     ClipAnswer one = answer_clip(options, open_input(options.input, options.model), with_json);
     all.collides = all.collides || one.collides;
     if (with_json) all.document["clips"].push_back(std::move(one.document));
+    ++answered;
   }
   if (answered == 0)
     throw InputError(options.input +
-                     ": all clips are of one pose, so nothing moves; pass --from-bind-pose to move to them");
+                     ": has no clip of more than one pose, so nothing moves; pass "
+                     "--from-bind-pose to move from the bind pose to one of them");
   return all;
 }
 

@@ -38,6 +38,7 @@ std::vector<std::string> to_arguments(const ImportOptions& options) {
     words.push_back(value);
   };
   if (!options.clip.empty()) add("--clip", options.clip);
+  if (options.clip_number) add("--clip-number", std::to_string(*options.clip_number));
   if (options.fill_holes > 0) add("--fill-holes", std::to_string(options.fill_holes));
   if (options.weld) add("--weld", text(*options.weld));
   if (options.from_bind_pose) words.push_back("--from-bind-pose");
@@ -60,6 +61,8 @@ ImportOptions parse_arguments(std::span<const std::string> arguments) {
       options.component = value();
     } else if (name == "--clip") {
       options.clip = value();
+    } else if (name == "--clip-number") {
+      options.clip_number = number<std::size_t>(name, value());
     } else if (name == "--fill-holes") {
       options.fill_holes = number<std::size_t>(name, value());
     } else if (name == "--weld") {

@@ -80,6 +80,11 @@ std::size_t choose_clip(const Character& character, const std::vector<bool>& use
         "has a bind pose but no clip, so nothing moves (" + std::to_string(character.nodes.size()) +
         " nodes, " + std::to_string(moving_nodes(character).size()) +
         " bones); export it with an animation, or pass --from-bind-pose to move to the pose at rest");
+  if (options.clip_number) {
+    if (*options.clip_number < all.size()) return *options.clip_number;
+    throw InputError("has no clip " + std::to_string(*options.clip_number) + "; choose one of " +
+                     listed_clips(character));
+  }
   if (!options.clip.empty()) return clip_named(character, options.clip);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (moves_surface(character, all[i], used, diagonal, options.fps)) return i;
