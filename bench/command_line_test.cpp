@@ -24,7 +24,7 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
   } kCases[] = {
       {"query small --jsno out.json", "unknown option --jsno; did you mean --json?; see cscd query --help"},
       {"query small --jsno=out.json", "unknown option --jsno; did you mean --json?"},
-      {"query small", "--json is required; see cscd query --help"},
+      {"run", "--json is required; see cscd run --help"},
       {"qurey small --json x", "unknown command qurey; did you mean query?; see cscd --help"},
       {"frobnicate", "unknown command frobnicate; see cscd --help"},
       {"--verson", "unknown option --verson; did you mean --version?"},

@@ -63,7 +63,7 @@ TEST(Traps, Trap10AnOverlappingStartIsAnsweredByACompleteStrategy) {
   writer.finish();
   for (const Strategy* row : with_guarantee()) {
     const Strategy& strategy = *row;
-    const std::string named = "--strategy " + std::string(strategy.name);
+    const std::string named = "--keep-rest-crossings --strategy " + std::string(strategy.name);
     const nlohmann::json answer = query(folder / "overlap.h5", folder / "out.json", named);
     EXPECT_FALSE(answer.at("starts_embedded").get<bool>());
     EXPECT_TRUE(answer.at("proven").get<bool>());
