@@ -26,11 +26,12 @@ int run(int argc, char** argv) {
   CLI::App app(
       "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
       "  cscd list                            what there is\n"
-      "  cscd query rope --json answer.json   where and when does it touch itself?\n"
+      "  cscd query rope                      where and when does it touch itself?\n"
       "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
       "  cscd tables r.json --out tables      the paper's tables, published beside measured\n"
       "  cscd help query                      what a command does and takes\n\n"
-      "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input.",
+      "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input; 3 query --fail-on-contact "
+      "found one.",
       "cscd");
   app.formatter(std::make_shared<cscd::bench::HelpFormat>());  // commands that are added have it, too
   app.require_subcommand(1);

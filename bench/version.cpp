@@ -22,11 +22,11 @@ std::string version_text() {
   out += "libraries:";
   for (const auto& [name, number] : build.at("libraries").items())
     out += " " + name + " " + number.get<std::string>() + ",";
-  const std::pair<std::string, std::string> others[] = {{"tbb", build_info::kTbb},
-                                                        {"embree", build_info::kEmbree},
-                                                        {"fcl", build_info::kFcl},
-                                                        {"cgal", build_info::kCgal},
-                                                        {"assimp", build_info::kAssimp}};
+  const std::pair<std::string, std::string> others[] = {
+      {"tbb", build_info::kTbb},       {"embree", build_info::kEmbree},
+      {"fcl", build_info::kFcl},       {"cgal", build_info::kCgal},
+      {"assimp", build_info::kAssimp}, {"meshoptimizer", build_info::kMeshoptimizer},
+      {"zlib", build_info::kZlib},     {"pugixml", build_info::kPugixml}};
   for (const auto& [name, number] : others)
     out += " " + name + " " + (number.empty() ? "none" : number) + ",";
   out.back() = '\n';
