@@ -114,7 +114,8 @@ void Answerer::know_start(const scenes::ClipInterval& interval) {
   std::optional<Rig::Interval> bones;
   if (interval.bones) bones = Rig::Interval{pose_bones_, interval.bones->start};
   ContactSet touched;
-  main_.detector->detect(Motion(poses_.positions(), start), bones ? &*bones : nullptr, touched);
+  main_.detector->detect(Motion(poses_.positions(), start), bones && input_.use_bones ? &*bones : nullptr,
+                         touched);
   const bool all_known = touched.contacts.empty() || finds_all(main_);
   if (all_known && touched.contacts.size() <= kMostFollowed)
     poses_.follow(start, touched);
@@ -146,7 +147,7 @@ std::size_t Answerer::leave_out(ContactSet& found) const {
 
 IntervalAnswer Answerer::answer(std::size_t index) {
   const scenes::ClipInterval interval = input_.clip->load(index);
-  const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
+  const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
   IntervalAnswer answer;
   answer.index = index;
 

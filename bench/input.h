@@ -26,6 +26,7 @@ struct Input {
   std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
   int threads = 1;                                            // for whatever can use them
+  bool use_bones = true;                                      // for strategies that can do without
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
   std::span<const Vec3> rest() const {
@@ -34,7 +35,7 @@ struct Input {
   }
 
   Setup setup(const ElementaryTest& elementary) const {
-    return {mesh, reference, rig ? &*rig : nullptr, elementary, threads};
+    return {mesh, reference, rig && use_bones ? &*rig : nullptr, elementary, threads};
   }
 };
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/base/error.h"
@@ -72,17 +73,42 @@ class CacheLock {
   int file_;
 };
 
+std::string first_line(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+// Which file of which size stands there, and when it was last changed. The time of change is the system's:
+// whatever writes to the file moves it on.
+std::string identity_of(const fs::path& path) {
+  struct stat facts {};
+  if (stat(path.c_str(), &facts) != 0) return {};
+  const auto nanoseconds = [](const timespec& t) {
+    return std::to_string(t.tv_sec) + "." + std::to_string(t.tv_nsec);
+  };
+  return std::to_string(facts.st_dev) + " " + std::to_string(facts.st_ino) + " " +
+         std::to_string(facts.st_size) + " " + nanoseconds(facts.st_mtim) + " " + nanoseconds(facts.st_ctim);
+}
+
+// Reading all frames for their digest takes longer than many a query, so it is done once for each file: a
+// cache whose digest was found right, and which has not been changed since, is whole.
 bool is_whole(const Scene& scene) {
   std::error_code error;
   if (!fs::exists(costs_file(scene), error)) return false;
-  std::optional<std::string> right = scene.expected.digest;
-  if (!right) {
-    std::ifstream written(digest_file(scene));
-    std::string word;
-    if (!(written >> word)) return false;
-    right = word;
+  const std::string right = scene.expected.digest.value_or(first_line(digest_file(scene)));
+  const fs::path verified = cache_file(scene).replace_extension(".verified");
+  const std::string now = right + " " + identity_of(cache_file(scene));
+  if (right.empty()) return false;
+  if (first_line(verified) == now) return true;
+  if (digest_of(cache_file(scene)) != right) return false;
+  try {
+    write_whole(verified, now + "\n");
+  } catch (const InputError&) {
+    // Where nothing can be written, the digest is looked at every time.
   }
-  return digest_of(cache_file(scene)) == right;
+  return true;
 }
 
 void generate_to_cache(const Scene& scene, const Progress& progress) {

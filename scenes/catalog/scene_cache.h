@@ -19,8 +19,8 @@ std::filesystem::path cache_folder();
 std::filesystem::path cache_file(const Scene& scene);
 
 // The scene's frames, streamed from its cache. Generated first where the cache is missing, and again where it
-// is damaged; the digest is verified either way. Of several processes that miss the same cache, one generates
-// it. `progress` tells of generating only.
+// is damaged: its digest is verified, once for each cache file that has not been changed since. Of several
+// processes that miss the same cache, one generates it. `progress` tells of generating only.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
 
 // Generates the scene of a file, whatever the file expects of it, and returns what came of it: all four

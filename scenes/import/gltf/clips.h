@@ -9,8 +9,7 @@ namespace cscd::scenes::gltf {
 // Makes clips of a file's animations, and counts what it leaves out.
 class Clips {
  public:
-  Clips(const Document& document, Accessors& accessors, const CharacterLimits& limits)
-      : document_(document), accessors_(accessors), limits_(limits) {}
+  Clips(Accessors& accessors, const CharacterLimits& limits) : accessors_(accessors), limits_(limits) {}
 
   // `parts` stand in the order of their nodes.
   Animation read(const tinygltf::Animation& source, const Tree& tree, const std::vector<Part>& parts);
@@ -27,7 +26,6 @@ class Clips {
   template <class Value, class Convert>
   std::vector<Key<Value>> keys(const Sampled& from, const Convert& convert);
 
-  const Document& document_;
   Accessors& accessors_;
   const CharacterLimits& limits_;
   // Of all clips so far.

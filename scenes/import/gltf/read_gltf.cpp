@@ -23,7 +23,7 @@ Character read_gltf(const std::filesystem::path& path, const CharacterLimits& li
   const gltf::Document document = gltf::read_document(path, limits.file_bytes);
   gltf::Accessors accessors(document);
   gltf::Surfaces surfaces(document, accessors, limits);
-  gltf::Clips clips(document, accessors, limits);
+  gltf::Clips clips(accessors, limits);
 
   Character character;
   character.format = "glTF 2";
