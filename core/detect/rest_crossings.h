@@ -13,9 +13,9 @@ namespace cscd {
 // A pair of triangles that crosses at rest explains itself. Where the two belong to different components, the
 // line along which they cross shifts by a triangle or two as both bend, so the pair also explains every pair
 // of triangles of which one lies within kRings rings round the first and the other within kRings rings round
-// the second. (On a shark of 28 pieces, pairs alone leave all 89 intervals crossing, one ring leaves 10, two
-// none.) Inside one component only the pairs themselves count, so that a limb that crosses its own crease
-// elsewhere is still told.
+// the second. (The pairs alone, or one ring, leave the teeth of a shark crossing its gums in some frames.)
+// Inside one component only the pairs themselves count, so that a limb that crosses its own crease elsewhere
+// is still told.
 class RestCrossings {
  public:
   static constexpr int kRings = 2;  // a ring: all triangles that share a vertex with those inside
