@@ -98,7 +98,7 @@ TEST_F(CommandLine, HasAManualPage) {
   const Ran shown = run("groff -man -Tutf8 -ww -rHY=0 cscd.1 >shown");
   EXPECT_EQ(shown.status, 0);
   EXPECT_EQ(shown.errors, "");
-  EXPECT_NE(text("shown").find("cscd query rope --json"), std::string::npos) << "examples stand as they are";
+  EXPECT_NE(text("shown").find("cscd run --scene rope --json"), std::string::npos) << "examples stand as they are";
 }
 
 TEST_F(CommandLine, ListsNamesAndFaults) {
