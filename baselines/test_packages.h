@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "baselines/aabb.h"
+#include "core/elementary/catalogue.h"
 #include "scenes/random/random_interval.h"
 
 namespace cscd::test {

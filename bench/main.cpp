@@ -4,12 +4,12 @@
 #include <new>
 #include <string>
 
-#include "bench/command.h"
-#include "bench/help_format.h"
-#include "bench/output.h"
-#include "bench/standard_streams.h"
-#include "bench/usage.h"
-#include "bench/version.h"
+#include "bench/command_line/help_format.h"
+#include "bench/command_line/standard_streams.h"
+#include "bench/command_line/usage.h"
+#include "bench/command_line/version.h"
+#include "bench/commands/command.h"
+#include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/temporaries.h"
 

@@ -6,6 +6,7 @@
 
 #include "baselines/test_packages.h"
 #include "core/base/team.h"
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

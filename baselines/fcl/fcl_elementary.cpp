@@ -4,7 +4,7 @@
 
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 
-#include "core/elementary/unit_scale.h"
+#include "core/elementary/question/unit_scale.h"
 
 // FCL 0.7 of Debian, called as its continuous traversal calls it. Idea: roots of the coplanarity cubic by
 // interval Newton, then a test of the features at the root with absolute tolerances. A "no" proves nothing:

@@ -5,6 +5,7 @@
 
 #include "baselines/base.h"
 #include "core/base/error.h"
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/random/random_interval.h"
 

@@ -8,6 +8,7 @@
 #include "baselines/mcd/contour.h"
 #include "baselines/mcd/discs.h"
 #include "baselines/mcd/normal_cones.h"
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::mcd {

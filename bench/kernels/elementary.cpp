@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "bench/catalogue.h"
-#include "bench/input.h"
+#include "bench/input/input.h"
+#include "bench/rows/catalogue.h"
 #include "core/detect/carried_pairs.h"
 #include "core/detect/plain_culler.h"
-#include "core/elementary/filtered_exact.h"
-#include "core/elementary/query_file.h"
+#include "core/elementary/certified/filtered_exact.h"
+#include "core/elementary/queries/query_file.h"
 #include "scenes/catalog/scene.h"
 
 namespace cscd::bench {

@@ -2,9 +2,9 @@
 #include <exception>
 #include <memory>
 
-#include "bench/catalogue.h"
-#include "bench/input.h"
+#include "bench/input/input.h"
 #include "bench/kernels/elementary.h"
+#include "bench/rows/catalogue.h"
 #include "core/hierarchy/bounds.h"
 #include "core/hierarchy/descent.h"
 #include "core/radial/orientation.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/elementary/filter.h"
+#include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

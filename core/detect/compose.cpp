@@ -7,13 +7,13 @@
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
 #include "core/detect/no_contact_before.h"
-#include "core/elementary/relative_box.h"
+#include "core/elementary/question/relative_box.h"
 
 namespace cscd {
 namespace {
 
-// More than the error of a time (2^-50, core/elementary/exact.h), so that all that touch at one time are
-// tested.
+// More than the error of a time (2^-50, core/elementary/exact/exact.h), so that all that touch at one time
+// are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
 // Of one kind, to be tested together.

@@ -5,7 +5,7 @@
 #include "core/detect/carried_pairs.h"
 #include "core/detect/culler.h"
 #include "core/detect/detector.h"
-#include "core/elementary/elementary_test.h"
+#include "core/elementary/question/elementary_test.h"
 
 namespace cscd {
 

@@ -6,8 +6,9 @@
 #include <random>
 #include <set>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/filter.h"
+#include "core/elementary/catalogue.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

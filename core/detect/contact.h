@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
-#include "core/elementary/elementary_test.h"
+#include "core/elementary/question/elementary_test.h"
 
 namespace cscd {
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

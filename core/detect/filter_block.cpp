@@ -6,14 +6,14 @@
 
 #include "core/detect/carried_filter.h"
 #include "core/detect/carried_look.h"
-#include "core/elementary/filter.h"
+#include "core/elementary/question/filter.h"
 #include "core/geometry/triple_product_lanes.h"
 
 namespace cscd {
 namespace {
 
 // The vertices between which the three vectors of eight coplanarity cubics run, as in
-// core/elementary/filter.h. The first and the third start at one vertex.
+// core/elementary/question/filter.h. The first and the third start at one vertex.
 struct CubicLanes {
   VertexLanes origin, a_to, b_from, b_to, c_to;
 

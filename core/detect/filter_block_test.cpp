@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/filter.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/detect/compose.h"
-#include "core/elementary/elementary_test.h"
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

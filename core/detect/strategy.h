@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/detect/detector.h"
-#include "core/elementary/elementary_test.h"
+#include "core/elementary/question/elementary_test.h"
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/test_queries.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_queries.h"
 
 namespace cscd {
 namespace {

@@ -1,14 +1,15 @@
+#include "core/elementary/catalogue.h"
+
 #include <array>
 
 #include "core/elementary/additive.h"
+#include "core/elementary/certified/filtered_exact.h"
 #include "core/elementary/cubic.h"
-#include "core/elementary/elementary_test.h"
-#include "core/elementary/exact.h"
-#include "core/elementary/filter.h"
-#include "core/elementary/filtered_exact.h"
+#include "core/elementary/exact/exact.h"
 #include "core/elementary/inclusion.h"
 #include "core/elementary/newton.h"
-#include "core/elementary/relative_box.h"
+#include "core/elementary/question/filter.h"
+#include "core/elementary/question/relative_box.h"
 
 namespace cscd {
 namespace {

@@ -1,4 +1,6 @@
 // What the rows of the catalogue promise, held against the referee; a new row is tested by being there.
+#include "core/elementary/catalogue.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/elementary/elementary_test.h"
-#include "core/elementary/exact.h"
-#include "core/elementary/test_queries.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_queries.h"
 
 namespace cscd {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/elementary/elementary_test.h"
+#include "core/elementary/question/elementary_test.h"
 
 namespace cscd {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/extent.h"
-#include "core/elementary/test_queries.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/extent.h"
+#include "core/elementary/question/test_queries.h"
 #include "core/geometry/feature_distance.h"
 
 namespace cscd {

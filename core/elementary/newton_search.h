@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include "core/elementary/elementary_test.h"
-#include "core/elementary/filter.h"
-#include "core/elementary/relative_box.h"
+#include "core/elementary/question/elementary_test.h"
+#include "core/elementary/question/filter.h"
+#include "core/elementary/question/relative_box.h"
 
 // Interval Newton on the coplanarity cubic (section 7.1 of the paper; the root finder is the one customary
 // with the filter of Tang et al. 2010), in double or in single precision.

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/filter.h"
-#include "core/elementary/test_queries.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/filter.h"
+#include "core/elementary/question/test_queries.h"
 
 namespace cscd {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "core/elementary/exact.h"
-#include "core/elementary/filtered_exact.h"
-#include "core/elementary/query_file.h"
+#include "core/elementary/certified/filtered_exact.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/queries/query_file.h"
 
 namespace cscd {
 namespace {

@@ -7,7 +7,7 @@
 #include <gmpxx.h>
 #include <optional>
 
-#include "core/elementary/touch.h"
+#include "core/elementary/exact/touch.h"
 #include "core/radial/orientation.h"
 
 namespace cscd::test {

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "scenes/clip/digest.h"
-#include "scenes/shape/shape.h"
+#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "scenes/effects/sequence.h"
+#include "scenes/shape/rows.h"
 #include "scenes/shape/subdivide.h"
 
 namespace cscd::scenes {

@@ -5,10 +5,12 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-#include "core/detect/embedding.h"
 #include "core/detect/nearness.h"
-#include "core/engine/drvbc.h"
+#include "core/detect/start/embedding.h"
+#include "core/drvbc/drvbc.h"
+#include "core/elementary/catalogue.h"
 #include "scenes/catalog/scene_cache.h"
+#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {

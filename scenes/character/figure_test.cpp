@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/detect/embedding.h"
+#include "core/detect/start/embedding.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_figure.h"
 

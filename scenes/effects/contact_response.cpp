@@ -2,9 +2,10 @@
 
 #include "core/base/error.h"
 #include "core/detect/compose.h"
-#include "core/detect/embedding.h"
 #include "core/detect/plain_culler.h"
-#include "core/engine/drvbc.h"
+#include "core/detect/start/embedding.h"
+#include "core/drvbc/drvbc.h"
+#include "core/elementary/catalogue.h"
 #include "scenes/effects/contact_step.h"
 #include "scenes/effects/effect.h"
 

@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/detect/embedding.h"
-#include "core/engine/drvbc.h"
+#include "core/detect/start/embedding.h"
+#include "core/drvbc/drvbc.h"
+#include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/effects/contact_response.h"
 #include "scenes/effects/contact_step.h"

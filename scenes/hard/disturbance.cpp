@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/elementary/extent.h"
+#include "core/elementary/question/extent.h"
 
 namespace cscd::scenes::hard {
 namespace {

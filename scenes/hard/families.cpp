@@ -1,6 +1,6 @@
 #include <array>
 
-#include "core/elementary/exact.h"
+#include "core/elementary/exact/exact.h"
 #include "scenes/hard/rows.h"
 
 namespace cscd::scenes::hard {

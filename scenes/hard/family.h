@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/elementary/query_file.h"
+#include "core/elementary/queries/query_file.h"
 #include "scenes/random/surface.h"
 
 // Elementary queries that are hard on purpose: one family a file, each with its story. Every query is made on

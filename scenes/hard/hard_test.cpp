@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/elementary/brute_referee.h"
-#include "core/elementary/elementary_test.h"
-#include "core/elementary/exact.h"
+#include "core/elementary/catalogue.h"
+#include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/exact/exact.h"
 #include "scenes/hard/disturbance.h"
 #include "scenes/hard/family.h"
 

@@ -1,6 +1,6 @@
 // cscd-import MODEL CACHE.h5 REPORT SOURCES [options]: turns a model file into a point cache, a report and a
-// source map. `cscd` runs it under limits (bench/import.h), so that no reader of model files ever runs in the
-// program that answers.
+// source map. `cscd` runs it under limits (bench/input/import.h), so that no reader of model files ever runs
+// in the program that answers.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

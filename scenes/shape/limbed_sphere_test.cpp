@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "core/detect/embedding.h"
+#include "core/detect/start/embedding.h"
+#include "scenes/shape/rows.h"
 #include "scenes/shape/test_shapes.h"
 
 namespace cscd::scenes {

@@ -44,16 +44,7 @@ struct ShapeRow {
   bool settles = false;
 };
 
-std::span<const ShapeRow> shapes();
-
 // A count of cells at another resolution, as parameters hold it.
 double scaled_count(int count, double factor, int least);
-
-// Checks the parameters and builds the shape. Throws InputError for an unknown name, listing the known ones,
-// and for unusable parameters.
-Shape make_shape(std::string_view name, const Parameters& parameters);
-
-// The row of that name. Throws InputError for an unknown name, listing the known ones.
-const ShapeRow& shape_row(std::string_view name, const Parameters& parameters);
 
 }  // namespace cscd::scenes

@@ -1,12 +1,15 @@
 # What the program knows about its own build, and the data files that it carries.
 #
-#   cscd_bench_data(bench)
+#   cscd_build_info(ROOM)   for the room that includes these two headers:
 #
 # build_info.h   compiler, flags and library versions, written when CMake configures
 # commit.h       the commit and whether the sources differ from it: asked from git at every build, so that a record
 #                never names an older state than the binary's
-# data_files.cpp     bench/*.json, so that the program needs no files of its own beside it
-function(cscd_bench_data room)
+#
+#   cscd_bench_data(ROOM)   for the room that declares data_files():
+#
+# data_files.cpp   bench/*/*.json, so that the program needs no files of its own beside it
+function(cscd_build_info room)
   set(generated ${PROJECT_BINARY_DIR}/generated)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   get_target_property(room_options cscd_flags INTERFACE_COMPILE_OPTIONS)
@@ -22,8 +25,13 @@ function(cscd_bench_data room)
             -P ${PROJECT_SOURCE_DIR}/scripts/cmake/commit.cmake
     BYPRODUCTS ${generated}/commit.h
     COMMENT "")
+  target_include_directories(${room} PRIVATE ${generated})
+  add_dependencies(${room} cscd_commit)
+endfunction()
 
-  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.json)
+function(cscd_bench_data room)
+  set(generated ${PROJECT_BINARY_DIR}/generated)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*/*.json)
   set(rows "")
   foreach(file ${files})
     get_filename_component(name ${file} NAME)
@@ -32,7 +40,7 @@ function(cscd_bench_data room)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   endforeach()
   file(CONFIGURE OUTPUT ${generated}/data_files.cpp @ONLY CONTENT [[
-#include "bench/data.h"
+#include "bench/output/data.h"
 
 namespace cscd::bench {
 namespace {
@@ -44,6 +52,4 @@ std::span<const DataFile> data_files() { return kFiles; }
 ]])
 
   target_sources(${room} PRIVATE ${generated}/data_files.cpp)
-  target_include_directories(${room} PRIVATE ${generated})
-  add_dependencies(${room} cscd_commit)
 endfunction()

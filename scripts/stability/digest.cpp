@@ -11,7 +11,8 @@
 
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
-#include "core/elementary/query_file.h"
+#include "core/elementary/catalogue.h"
+#include "core/elementary/queries/query_file.h"
 #include "core/hierarchy/bounds.h"
 
 using namespace cscd;

@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "scenes/import/gltf/document.h"
 #include "scenes/sandbox/own_folder.h"
 
 namespace cscd::scenes::gltf {
+
+using Bytes = std::vector<unsigned char>;
 
 // The bytes of the buffers that `list` describes (the checked 'buffers' of a file): from the binary chunk,
 // from data within the text, or from a file of the model's own folder. Throws InputError where a buffer holds

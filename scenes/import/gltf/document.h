@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "scenes/import/gltf/buffers.h"
 
 namespace cscd::scenes::gltf {
-
-using Bytes = std::vector<unsigned char>;
 
 // A primitive's indices stand among its attributes by this name: tinygltf refuses indices without a buffer
 // view, which sparse and compressed ones do not need.

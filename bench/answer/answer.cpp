@@ -1,0 +1,187 @@
+#include "bench/answer/answer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "bench/rows/catalogue.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// Of one pose so many crossing pairs are kept (eight bytes each): more is a surface that has collapsed.
+constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
+// Each pair that crosses at rest explains its neighbourhood, which takes a few hundred bytes.
+constexpr std::size_t kMostLeftOut = 500'000;
+// From more contacts than this it is quicker to look at the whole surface again.
+constexpr std::size_t kMostFollowed = 20'000;
+
+bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+bool decided(const Contact& contact) {
+  return contact.verdict == Verdict::contact;
+}
+
+IntervalVerdict verdict_of(const IntervalAnswer& answer) {
+  if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
+  if (std::any_of(answer.found.contacts.begin(), answer.found.contacts.end(), decided))
+    return IntervalVerdict::touches;
+  return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
+}
+
+}  // namespace
+
+std::string_view to_string(IntervalVerdict verdict) {
+  switch (verdict) {
+    case IntervalVerdict::clear:
+      return "clear";
+    case IntervalVerdict::touches:
+      return "touches";
+    case IntervalVerdict::intersects_at_start:
+      return "intersects_at_start";
+    case IntervalVerdict::undecided:
+      return "undecided";
+  }
+  return "";
+}
+
+std::optional<double> IntervalAnswer::time() const {
+  const auto first = std::find_if(found.contacts.begin(), found.contacts.end(), decided);
+  return first == found.contacts.end() ? std::nullopt : std::optional(first->time);
+}
+
+Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                   const AnswerOptions& options)
+    : input_(input),
+      elementary_(elementary),
+      options_(options),
+      poses_(input.mesh, input.reference, kMostCrossings) {
+  rest_ = poses_.find(input.rest());
+  if (!options.keep_rest_crossings) {
+    if (rest_.total > kMostLeftOut)
+      throw InputError(
+          input.name + ": " + std::to_string(rest_.total) +
+          " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
+          "--keep-rest-crossings");
+    left_out_ = RestCrossings(input.mesh, rest_);
+  }
+  main_ = make(strategy);
+}
+
+Answerer::Row Answerer::make(const Strategy& strategy) const {
+  Prepared prepared = strategy.make(input_.setup(elementary_));
+  // With pairs left out, the earliest contact may be one of theirs, and then later ones are asked for.
+  if (options_.first && left_out_.empty() && !prepared.detector->look_for_first_only())
+    throw InputError("--first: strategy " + std::string(strategy.name) +
+                     " tests pairs by itself and finds all; leave one of the two out");
+  return {&strategy, std::move(prepared.detector), prepared.preparation.threads};
+}
+
+Answerer::Row& Answerer::stand_in() {
+  if (!stand_in_) stand_in_ = make(complete_stand_in());
+  return *stand_in_;
+}
+
+bool Answerer::finds_all(const Row& row) const {
+  const bool first_only = options_.first && left_out_.empty();
+  return row.strategy->guarantee == Guarantee::complete && !row.strategy->own_test &&
+         elementary_.apart_is_proof && !first_only;
+}
+
+// Which triangles cross at the start: known from the interval before, or from the straight way from the last
+// pose that is known, if little touches on it, or found from nothing.
+void Answerer::know_start(const scenes::ClipInterval& interval) {
+  const std::span<const Vec3> start = interval.motion.start();
+  const auto keep_bones = [&] {
+    if (interval.bones) pose_bones_.assign(interval.bones->start.begin(), interval.bones->start.end());
+  };
+  if (poses_.knows(start)) {
+    keep_bones();
+    return;
+  }
+  const bool embedded = poses_.crossings().total == 0;
+  const bool provable = elementary_.apart_is_proof && !main_.strategy->own_test &&
+                        (finds_all(main_) || (embedded && main_.strategy->guarantee != Guarantee::heuristic));
+  const bool has_bones = !interval.bones || pose_bones_.size() == interval.bones->start.size();
+  if (!provable || !has_bones || same_bits(touched_end_, start)) {
+    poses_.find(start);
+    keep_bones();
+    return;
+  }
+  std::optional<Rig::Interval> bones;
+  if (interval.bones) bones = Rig::Interval{pose_bones_, interval.bones->start};
+  ContactSet touched;
+  main_.detector->detect(Motion(poses_.positions(), start), bones && input_.use_bones ? &*bones : nullptr,
+                         touched);
+  const bool all_known = touched.contacts.empty() || finds_all(main_);
+  if (all_known && touched.contacts.size() <= kMostFollowed)
+    poses_.follow(start, touched);
+  else
+    poses_.find(start);
+  keep_bones();
+}
+
+// What an interval proves of its end. `found` holds everything that the row found.
+void Answerer::know_end(const scenes::ClipInterval& interval, const Row& row, const ContactSet& found) {
+  const std::span<const Vec3> end = interval.motion.end();
+  const bool embedded = poses_.crossings().total == 0;
+  const bool nothing_touched = found.contacts.empty() && embedded && elementary_.apart_is_proof &&
+                               !row.strategy->own_test && row.strategy->guarantee != Guarantee::heuristic;
+  if (nothing_touched || (finds_all(row) && found.contacts.size() <= kMostFollowed)) {
+    poses_.follow(end, found);
+    touched_end_.clear();
+    if (interval.bones) pose_bones_.assign(interval.bones->end.begin(), interval.bones->end.end());
+  } else {
+    touched_end_.assign(end.begin(), end.end());
+  }
+}
+
+std::size_t Answerer::leave_out(ContactSet& found) const {
+  if (left_out_.empty()) return 0;
+  return std::erase_if(found.contacts,
+                       [&](const Contact& contact) { return left_out_.explains(contact.pair); });
+}
+
+IntervalAnswer Answerer::answer(std::size_t index) {
+  const scenes::ClipInterval interval = input_.clip->load(index);
+  const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
+  IntervalAnswer answer;
+  answer.index = index;
+
+  const auto before = std::chrono::steady_clock::now();
+  know_start(interval);
+  answer.embedding_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+  const Crossings& crossing = poses_.crossings();
+  answer.starts_embedded = crossing.total == 0;
+  answer.start = crossing;
+  answer.rest_pairs =
+      std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) { return left_out_.explains(pair); });
+  answer.start.total -= answer.rest_pairs;
+
+  const bool needs_start = main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
+  const auto ask = [&](Row& row) -> const Row& {
+    answer.strategy = row.strategy;
+    answer.report = row.detector->detect(interval.motion, bones, answer.found);
+    know_end(interval, row, answer.found);
+    answer.rest_contacts = leave_out(answer.found);
+    return row;
+  };
+  const Row* row = &ask(needs_start && !answer.starts_embedded ? stand_in() : main_);
+  // What comes later than a contact that is left out may be missing from the answer.
+  if (needs_start && answer.rest_contacts > 0 && row == &main_) row = &ask(stand_in());
+
+  answer.found.sort();
+  if (options_.first) keep_first(answer.found);
+  answer.verdict = verdict_of(answer);
+  const Guarantee guarantee = row->strategy->guarantee;
+  answer.proven = elementary_.apart_is_proof &&
+                  (guarantee == Guarantee::complete || (guarantee == Guarantee::first_contact &&
+                                                        answer.starts_embedded && answer.rest_contacts == 0));
+  return answer;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+
+#include "bench/answer/answer.h"
+#include "bench/answer/surface_names.h"
+#include "bench/input/input.h"
+
+// Answers as JSON. Every field is described in query.schema.json.
+namespace cscd::bench {
+
+// A moment of a clip: inside interval `interval`, at the share `time` of it.
+struct ClipMoment {
+  std::size_t interval = 0;
+  double time = 0;
+};
+// In frames, and in seconds where the input tells its rate: of a model file both count from the clip's start,
+// of other inputs frames count from frame 0.
+double frame_of(const Input& input, const ClipMoment& moment);
+std::optional<double> second_of(const Input& input, const ClipMoment& moment);
+nlohmann::json moment_json(const Input& input, const ClipMoment& moment);
+
+// One interval; up to `most_start_pairs` of the pairs that cross at its start are listed.
+nlohmann::json interval_json(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
+                             const Motion& motion, std::size_t most_start_pairs);
+
+// What crosses at rest, by the parts it belongs to.
+nlohmann::json rest_json(const Input& input, const SurfaceNames& names, const Crossings& rest, bool left_out);
+
+}  // namespace cscd::bench

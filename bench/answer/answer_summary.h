@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bench/answer/answer.h"
+#include "bench/answer/answer_json.h"
+#include "bench/answer/surface_names.h"
+
+// What all answers of a clip come to: for people, and in JSON.
+namespace cscd::bench {
+
+struct AnswerSummary {
+  std::array<std::size_t, 4> verdicts{};          // by IntervalVerdict
+  std::map<std::string, std::size_t> strategies;  // how many intervals each answered
+  std::size_t proven = 0;
+  std::size_t with_left_out = 0;    // intervals from which something was left out
+  std::optional<ClipMoment> first;  // at which something touches or crosses
+  // The interval in which most goes wrong: most pairs of triangles that cross at its start, or, where none
+  // cross anywhere, most contacts.
+  struct Worst {
+    ClipMoment moment;
+    std::size_t start_pairs = 0, contacts = 0;
+  };
+  std::optional<Worst> worst;
+  // Bones, or else parts, that met: in how many intervals.
+  std::map<std::pair<std::string, std::string>, std::size_t> met;
+  double embedding_ms = 0, query_ms = 0;
+
+  std::size_t intervals() const;
+  std::size_t count(IntervalVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
+  bool collides() const {
+    return count(IntervalVerdict::touches) + count(IntervalVerdict::intersects_at_start) > 0;
+  }
+  void add(const IntervalAnswer& answer, const SurfaceNames& names);
+};
+
+nlohmann::json summary_json(const Input& input, const AnswerSummary& summary);
+
+// Several lines. `rest` is what crosses at rest; `left_out` says whether it is left out.
+std::string summary_text(const Input& input, const SurfaceNames& names, const AnswerSummary& summary,
+                         const Crossings& rest, bool left_out);
+
+}  // namespace cscd::bench

@@ -1,0 +1,75 @@
+#include "bench/command_line/usage.h"
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/base/closest_name.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// The innermost command that was named, and how it is called.
+struct Named {
+  const CLI::App* command;
+  std::string words;
+};
+
+Named named_command(const CLI::App& program) {
+  Named named{&program, "cscd"};
+  for (;;) {
+    const std::vector<CLI::App*> used = named.command->get_subcommands();
+    if (used.empty()) return named;
+    named = {used.front(), named.words + " " + used.front()->get_name()};
+  }
+}
+
+std::string hint(const std::string& word, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return did_you_mean(word, views);
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+  return "unknown option " + name + hint(name, names);
+}
+
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
+  std::vector<std::string> below;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    below.push_back(sub->get_name());
+  if (!below.empty() && words.front()[0] != '-')
+    return "unknown command " + words.front() + hint(words.front(), below);
+  for (const std::string& word : words)
+    if (word.size() > 1 && word[0] == '-') return unknown_option(command, word);
+  return "one argument too many: " + words.front();
+}
+
+}  // namespace
+
+std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
+  const Named named = named_command(program);
+  std::vector<std::string> unknown = named.command->remaining();
+  std::erase(unknown, "");
+  const bool about_presence = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  std::string text = about_presence && !unknown.empty() ? unexpected(*named.command, unknown) : error.what();
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text + "; see " + named.words + " --help";
+}
+
+void require_text(int count, const char* const* words) {
+  for (int i = 1; i < count; ++i) {
+    try {
+      nlohmann::json(words[i]).dump();
+    } catch (const nlohmann::json::exception&) {
+      throw InputError("argument " + std::to_string(i) + " is not UTF-8; give the file another name");
+    }
+  }
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,72 @@
+// Meshes without bones: what soft bodies and simulations leave.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/testing/test_program.h"
+#include "scenes/clip/point_cache.h"
+#include "scenes/random/random_interval.h"
+
+namespace cscd::bench {
+namespace {
+
+// Frames of a random interval, its bones left out, and the last `open` of its triangles.
+void write_without_bones(const fs::path& file, std::uint64_t seed, std::size_t open = 0) {
+  const scenes::RandomInterval random = scenes::make_random_interval(seed);
+  scenes::ClipHeader header = random.clip.header();
+  header.bone_parent.clear();
+  header.triangles.resize(header.triangles.size() - open);
+  scenes::PointCacheWriter writer(file, header, true);
+  for (const std::size_t frame : {std::size_t{0}, std::size_t{1}})
+    writer.append({random.clip.frame(frame).positions, {}});
+  writer.finish();
+}
+
+nlohmann::json answer_of(const Scratch& scratch, const std::string& file, const std::string& strategy = "") {
+  std::vector<std::string> arguments = {"query", file, "--force", "--json", scratch / "out.json"};
+  if (!strategy.empty()) arguments.insert(arguments.end(), {"--strategy", strategy});
+  const Outcome outcome = cscd(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  return nlohmann::json::parse(read(scratch / "out.json"));
+}
+
+TEST(Boneless, QueryTakesTheBestStrategyAndFindsTheFirstTime) {
+  const Scratch scratch;
+  const std::string file = scratch / "soft.h5";
+  std::size_t at_stake = 0;
+  for (std::uint64_t seed = 1; seed <= 22; ++seed) {
+    write_without_bones(file, seed);
+    const nlohmann::json answer = answer_of(scratch, file), truth = answer_of(scratch, file, "brute");
+    EXPECT_EQ(answer["strategy"], "drvbc_fast") << seed;
+    const nlohmann::json &own = answer["intervals"][0], &judge = truth["intervals"][0];
+    EXPECT_TRUE(own["proven"]) << seed;
+    EXPECT_EQ(own["collides"], judge["collides"]) << seed;
+    EXPECT_EQ(own["time"], judge["time"]) << seed;
+    at_stake += judge["starts_embedded"].get<bool>() && judge["collides"].get<bool>();
+  }
+  EXPECT_GE(at_stake, 10u);
+}
+
+TEST(Boneless, InspectSaysWhoTakesThem) {
+  const Scratch scratch;
+  const std::string file = scratch / "soft.h5";
+  for (const std::size_t open : {std::size_t{0}, std::size_t{1}}) {
+    write_without_bones(file, 11, open);
+    const Outcome outcome = cscd({"inspect", file, "--force", "--json", scratch / "out.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.errors;
+    const nlohmann::json document = nlohmann::json::parse(read(scratch / "out.json"));
+    for (const nlohmann::json& row : document["together"]["strategies"]) {
+      const std::string name = row["name"];
+      if (name == "drvbc") {
+        EXPECT_NE(row["why_not"].get<std::string>().find("bones"), std::string::npos) << row;
+      } else if (name == "drvbc_fast") {
+        EXPECT_EQ(row["can"], open == 0) << row;
+      } else if (name == "base") {
+        EXPECT_EQ(row["can"], true) << row;
+      }
+    }
+    EXPECT_EQ(answer_of(scratch, file)["strategy"], open == 0 ? "drvbc_fast" : "drvbc_fast_complete");
+  }
+}
+
+}  // namespace
+}  // namespace cscd::bench

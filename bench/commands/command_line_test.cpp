@@ -1,0 +1,173 @@
+#include <nlohmann/json.hpp>
+
+#include "bench/testing/test_shell.h"
+
+// What the program says of itself, and to whoever mistypes.
+namespace cscd::bench {
+namespace {
+
+class CommandLine : public Program {
+ protected:
+  // What bash offers for the words of a line, the last of which is being written.
+  std::string completed(const std::string& words) const {
+    Ran ran = run("source <(cscd completion bash)\nCOMP_WORDS=(" + words +
+                  ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_cscd\necho \"${COMPREPLY[*]}\"");
+    EXPECT_EQ(ran.errors, "") << words;
+    if (!ran.out.empty()) ran.out.pop_back();
+    return ran.out;
+  }
+};
+
+TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
+  const struct {
+    const char *words, *line;
+  } kCases[] = {
+      {"query small --jsno out.json", "unknown option --jsno; did you mean --json?; see cscd query --help"},
+      {"query small --jsno=out.json", "unknown option --jsno; did you mean --json?"},
+      {"run", "--json is required; see cscd run --help"},
+      {"qurey small --json x", "unknown command qurey; did you mean query?; see cscd --help"},
+      {"frobnicate", "unknown command frobnicate; see cscd --help"},
+      {"--verson", "unknown option --verson; did you mean --version?"},
+      {"scene acept x.json", "unknown command acept; did you mean accept?; see cscd scene --help"},
+      {"export small a.h5 b.h5", "one argument too many: b.h5; see cscd export --help"},
+      {"query smal --json -", "unknown scene smal; did you mean small?; known are: small"},
+      {"query small --json - --strategy drvbc-fast",
+       "strategy 'drvbc-fast' is not known; did you mean drvbc_fast?"},
+      {"query small --json - --elementary newtom@1", "did you mean newton?"},
+      {"run --json x.json --strategy basee", "did you mean base?"},
+      {"help qurey", "unknown command qurey; did you mean query?"},
+      {"completion fish", "fish"},
+      {"", "subcommand is required"},
+      {"query small --json - --threads many", "--threads"},
+      {"query small --json - --threads 0", "--threads"},
+      {"list --names --json", "--names"},
+  };
+  for (const auto& one : kCases) {
+    const Ran ran = run(std::string("cscd ") + one.words);
+    expect_refused(ran, one.line);
+    EXPECT_EQ(ran.out, "") << one.words;
+  }
+  EXPECT_EQ(files(), "");
+}
+
+TEST_F(CommandLine, RefusesWordsThatAreNoText) {
+  expect_refused(run("cscd query $'p\\xe4th.h5' --json -"), "is not UTF-8");
+}
+
+TEST_F(CommandLine, SaysWhatItWasBuiltOf) {
+  const Ran ran = run("cscd --version");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(ran.out.find("cscd "), 0u);
+  for (const char* part :
+       {"\ncommit: ", "\ncompiler: ", "\ninstruction set: ", "\nlibraries: eigen 3", " hdf5 1", " gmp 6"})
+    EXPECT_NE(ran.out.find(part), std::string::npos) << part << " in " << ran.out;
+}
+
+TEST_F(CommandLine, HelpsAsEachCommandDoes) {
+  EXPECT_EQ(run("cscd help").out, run("cscd --help").out);
+  for (const std::string command : {"query", "run", "scene accept", "completion"}) {
+    const Ran ran = run("cscd help " + command);
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.out, run("cscd " + command + " --help").out);
+    EXPECT_GT(ran.out.size(), 50u);
+  }
+}
+
+TEST_F(CommandLine, IsCompletedByBash) {
+  EXPECT_EQ(run("cscd completion bash >script && bash -n script && echo good").out, "good\n");
+  EXPECT_EQ(completed("cscd que"), "query");
+  EXPECT_EQ(completed("cscd query --js"), "--json");
+  EXPECT_EQ(completed("cscd query sm"), "small");
+  EXPECT_EQ(completed("cscd query small --strategy drvbc_fast_c"), "drvbc_fast_complete");
+  EXPECT_EQ(completed("cscd run --strategy base,mc"), "base,mcd");
+  EXPECT_EQ(completed("cscd run --scene = sm"), "small") << "--scene=sm";
+  EXPECT_EQ(completed("cscd list st"), "strategies");
+  EXPECT_EQ(completed("cscd scene ac"), "accept");
+  EXPECT_EQ(completed("cscd elementary --kind v"), "vf");
+  EXPECT_EQ(completed("cscd query small --json ou"), "") << "left to bash, which knows files";
+  EXPECT_NE(completed("cscd ''").find("export"), std::string::npos);
+}
+
+TEST_F(CommandLine, HasAManualPage) {
+  const Ran page = run("cscd man >cscd.1");
+  ASSERT_EQ(page.status, 0) << page.errors;
+  for (const char* part :
+       {".TH CSCD 1", ".SH NAME", ".SH \"query\"", ".SH \"scene accept\"", "\\-\\-strategy", "\\-\\-version"})
+    EXPECT_NE(text("cscd.1").find(part), std::string::npos) << part;
+  if (run("command -v groff").status != 0) GTEST_SKIP() << "no groff";
+  const Ran shown = run("groff -man -Tutf8 -ww -rHY=0 cscd.1 >shown");
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_EQ(shown.errors, "");
+  EXPECT_NE(text("shown").find("cscd run --scene rope --json"), std::string::npos)
+      << "examples stand as they are";
+}
+
+TEST_F(CommandLine, ListsNamesAndFaults) {
+  put("scenes/broken.json", "{");
+  EXPECT_EQ(run("cscd list scenes --names").out, "broken\nsmall\n");
+  const Ran listed = run("cscd list scenes");
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_NE(listed.out.find("broken\n    fault: "), std::string::npos) << listed.out;
+  EXPECT_NE(listed.out.find("vertices: 82"), std::string::npos);
+  EXPECT_EQ(run("cscd query small --json /dev/null").status, 0) << "breaks nothing else";
+  const Ran all = run("cscd run --scene all --json records");
+  expect_refused(all, "broken.json: is not JSON");
+}
+
+TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
+  std::string open = scenes::kSmallScene;
+  open.replace(open.find("\"digest\": \"0000000000000000\""), 28, "\"digest\": null");
+  open.replace(open.find(", \"digest\": null"), 16, "");
+  put("mein Stück.json", open);
+  const std::string file = "'mein Stück.json'";
+  const Ran first = run("cscd query " + file + " --json -");
+  EXPECT_EQ(first.status, 0);
+  EXPECT_NE(first.errors.find("cscd scene accept"), std::string::npos) << first.errors;
+  const Ran accepted = run("cscd scene accept " + file);
+  EXPECT_EQ(accepted.status, 0) << accepted.errors;
+  EXPECT_NE(accepted.out.find("82 vertices, 160 triangles, 4 bones, digest "), std::string::npos);
+  EXPECT_EQ(text("mein Stück.json"), scenes::small_scene_with_digest());
+  const Ran second = run("cscd query " + file + " --json -");
+  EXPECT_EQ(second.errors.find("note"), std::string::npos) << second.errors;
+
+  for (const std::string& command : {"export " + file + " out.h5", "nearness " + file, "inspect " + file,
+                                     "clusters " + file + " --json c.json"})
+    EXPECT_EQ(run("cscd " + command).status, 0) << command;
+  const Ran ran = run("cscd run --smoke --strategy base,drvbc_fast --scene " + file + " --json r.json");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.out.find("median total of an interval, with refit:\n  base "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("than base\nrecord: r.json\n"), std::string::npos) << ran.out;
+  const nlohmann::json record = nlohmann::json::parse(text("r.json"));
+  EXPECT_EQ(record["scene"]["name"], "mein_Stück");
+  EXPECT_EQ(record["scene"]["path"], "mein Stück.json");
+  const Ran tables = run("cscd tables r.json");
+  EXPECT_NE(tables.out.find("| mein_Stück |"), std::string::npos) << tables.out;
+  EXPECT_EQ(tables.out.find("no record of"), std::string::npos) << tables.out;
+  EXPECT_NE(tables.out.find("times faster"), std::string::npos);
+  EXPECT_NE(tables.out.find("--scene 'mein Stück.json' --strategy base,drvbc_fast "), std::string::npos)
+      << tables.out;
+}
+
+TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {
+  const std::string scripts = (scenes::scenes_folder().parent_path() / "scripts").string();
+  if (run("/usr/bin/python3 -c 'import matplotlib'").status != 0) GTEST_SKIP() << "no matplotlib";
+  ASSERT_EQ(run("cscd export small model.h5 && cscd run --smoke --strategy base,mcd --scene "
+                "\"$PWD/model.h5\" --json r.json")
+                .status,
+            0);
+  nlohmann::json old = nlohmann::json::parse(text("r.json"));
+  EXPECT_EQ(old["scene"]["name"], "model");
+  old["scene"]["name"] = (folder / "model.h5").string();  // as older records have it
+  put("old.json", old.dump());
+  for (const char* record : {"r.json", "old.json"}) {
+    const Ran ran =
+        run("mkdir figures; '" + scripts + "/figures' " + record + " --out figures && ls figures | head -1");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    EXPECT_EQ(ran.out.substr(0, 5), "model") << ran.out;
+    EXPECT_EQ(run("rm -r figures").status, 0);
+    EXPECT_EQ(files(), "model.h5 old.json r.json");
+  }
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "bench/input/import.h"
+
+namespace cscd::bench {
+
+inline constexpr char kInputHelp[] =
+    "a scene (cscd list), a .h5 point cache, or a model file (.glb .gltf .fbx .dae .x)";
+
+// The options of every command that takes a model file. `options` must live as long as the command.
+void add_model_options(CLI::App& command, ModelOptions& options);
+
+// --threads, of every command that answers intervals.
+void add_threads_option(CLI::App& command, int& threads);
+
+}  // namespace cscd::bench

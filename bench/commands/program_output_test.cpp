@@ -1,0 +1,166 @@
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include "bench/testing/test_shell.h"
+
+// What becomes of the outputs of the program, wherever they go and however it ends.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+class ProgramOutput : public Program {
+ protected:
+  // A scene that takes minutes to generate.
+  void put_long_scene(const std::string& name) const {
+    std::string text = scenes::kSmallScene;
+    text.replace(text.find("\"frames\": 6"), 11, "\"frames\": 9000000");
+    put("scenes/" + name + ".json", text);
+  }
+};
+
+TEST_F(ProgramOutput, TakesStandardOutputForTheAnswerAlone) {
+  for (const std::string name : {"-", "/dev/stdout"})
+    for (const std::string command : {"query small", "inspect small", "nearness small", "clusters small",
+                                      "run --smoke --strategy base --scene small"}) {
+      const Ran ran = run("cscd " + command + " --json " + name + " | cat; exit ${PIPESTATUS[0]}");
+      EXPECT_EQ(ran.status, 0) << ran.errors;
+      EXPECT_TRUE(json::accept(ran.out)) << command << ": " << ran.out.substr(0, 200);
+      EXPECT_EQ(ran.errors.empty(), command.find("clusters") != std::string::npos) << command;
+    }
+  EXPECT_EQ(files(), "");
+}
+
+TEST_F(ProgramOutput, EndsQuietlyWhereNobodyReads) {
+  const Ran listed = run("cscd list | true; exit ${PIPESTATUS[0]}");
+  EXPECT_EQ(listed.status, 141);
+  EXPECT_EQ(listed.errors, "");
+  const Ran answered =
+      run("{ sleep 0.2; cscd query small --json - 2>/dev/null; echo $? >status; } | true; cat status");
+  EXPECT_EQ(answered.out, "141\n");
+  EXPECT_EQ(answered.errors, "");
+}
+
+TEST_F(ProgramOutput, IsNoSuccessWhereStandardOutputIsClosedOrFull) {
+  expect_refused(run("cscd list >&-"), "standard output: cannot be written");
+  expect_refused(run("cscd list >/dev/full"), "standard output: cannot be written");
+  expect_refused(run("cscd --version >/dev/full"), "standard output: cannot be written");
+  EXPECT_EQ(run("cscd query small --json - >/dev/full").status, 2);
+  EXPECT_EQ(run("cscd query small --json - >&-").status, 2);
+  // The descriptor that is free must not become the output's, or the output holds what is printed.
+  EXPECT_EQ(run("cscd query small --json out.json >&-").status, 2);
+  EXPECT_TRUE(json::accept(text("out.json"))) << text("out.json");
+  EXPECT_EQ(run("cscd query small --json all.json <&- >&- 2>&-").status, 2);
+  EXPECT_TRUE(json::accept(text("all.json"))) << text("all.json");
+}
+
+TEST_F(ProgramOutput, WritesToDevicesAndPipesAndLeavesThem) {
+  for (const std::string force : {"", " --force"}) {
+    expect_refused(run("cscd query small --json /dev/full" + force), "No space left on device");
+    EXPECT_EQ(run("cscd query small --json /dev/null" + force).status, 0);
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+    const Ran piped = run("rm -f pipe; mkfifo pipe; cat pipe >got.json & cscd query small --json pipe" +
+                          force + "; echo $?; wait");
+    EXPECT_EQ(piped.out.substr(piped.out.size() - 2), "0\n");
+    EXPECT_TRUE(json::accept(text("got.json")));
+    EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+  }
+  const std::string device = folder / "device";
+  if (mknod(device.c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0) GTEST_SKIP() << "may not make a device";
+  for (const std::string name : {"device", "link"})
+    for (const std::string force : {"", " --force"}) {
+      EXPECT_EQ(run("ln -sf device link; cscd query small --json " + name + force).status, 0);
+      EXPECT_TRUE(fs::is_character_file(device) && fs::is_symlink(folder / "link"));
+      expect_refused(run("cscd export small " + name + force), "has no extension");
+      expect_refused(run("ln -sf device d.h5; cscd export small d.h5" + force), "is a device");
+    }
+}
+
+TEST_F(ProgramOutput, FollowsLinks) {
+  ASSERT_EQ(
+      run("echo old >real.json; ln -s real.json link.json; ln -s new.json dangling.json; ln -s new.h5 d.h5")
+          .status,
+      0);
+  expect_refused(run("cscd query small --json link.json"), "exists");
+  EXPECT_EQ(text("real.json"), "old\n");
+  EXPECT_EQ(run("cscd query small --json link.json --force && cscd query small --json dangling.json && "
+                "cscd export small d.h5")
+                .status,
+            0);
+  EXPECT_TRUE(json::accept(text("real.json")) && json::accept(text("new.json")));
+  for (const char* name : {"link.json", "dangling.json", "d.h5"}) EXPECT_TRUE(fs::is_symlink(folder / name));
+  EXPECT_TRUE(fs::is_regular_file(folder / "new.h5") && !fs::is_symlink(folder / "new.h5"));
+}
+
+TEST_F(ProgramOutput, HasTheFormatThatItsExtensionNames) {
+  expect_refused(run("cscd export small small.obj"), ".obj is not written here; let its name end in .h5");
+  expect_refused(run("cscd export small small"), "has no extension");
+  expect_refused(run("cscd query small --json out.obj"),
+                 ".obj is not written here; let its name end in .json");
+  EXPECT_EQ(run("cscd export small A.H5 && cscd export small b.hdf5 && cscd query small --json plain && "
+                "cscd query small --json c.JSON && rm A.H5 b.hdf5 plain c.JSON")
+                .status,
+            0);
+  EXPECT_EQ(files(), "");
+}
+
+TEST_F(ProgramOutput, IsRefusedBeforeTheWorkAndLeavesNothing) {
+  put_long_scene("long");
+  for (const std::string command :
+       {"query long --json ", "run --scene long --json ", "inspect long --json "}) {
+    expect_refused(run("cscd " + command + "."), "is a folder");
+    expect_refused(run("cscd " + command + "no/such.json"), "cannot be created");
+    expect_refused(run("touch here.json; cscd " + command + "here.json"), "exists");
+  }
+  expect_refused(run("cscd export long no/such.h5"), "cannot be created");
+  expect_refused(run("touch here.h5; cscd export long here.h5"), "exists");
+  expect_refused(run("cscd run --scene all --json -"), "several records");
+  EXPECT_EQ(files(), "here.h5 here.json");
+}
+
+TEST_F(ProgramOutput, SaysThatADiskIsFullAndLeavesNothingThere) {
+  ASSERT_EQ(run("cscd list >/dev/null; cscd clusters small --json /dev/null; mkdir disk").status, 0);
+  const std::string commands[] = {"clusters small --json ", "export small "};
+  for (const std::string& command : commands) {
+    const std::string name = command.starts_with("export") ? "disk/out.h5" : "disk/out.json";
+    const Ran limited = run("ulimit -f 2; cscd " + command + name + "; status=$?; ls -A disk; exit $status");
+    expect_refused(limited, name);
+    EXPECT_EQ(limited.out, "");
+    const Ran full =
+        run("unshare -m bash -c 'mount -t tmpfs -o size=4k none disk || exit 77; cscd " + command + name +
+            "; status=$?; ls -A disk; exit $status' 2>+full; status=$?; cat +full >&2; exit $status");
+    if (full.status == 77 || full.errors.find("unshare") != std::string::npos) continue;  // may not mount
+    expect_refused(full, name);
+    EXPECT_EQ(full.out, "");
+  }
+}
+
+TEST_F(ProgramOutput, VanishesWhereASignalEndsTheProgram) {
+  put_long_scene("long");
+  put_long_scene("longer");
+  // The signal is sent as soon as all that is unfinished can be seen.
+  const auto interrupt = [&](const std::string& command, const std::string& signal, int unfinished) {
+    return run("ulimit -t 60; set -m; mkdir -p records; cscd " + command + " & for i in $(seq 600); do\n" +
+               "  n=$(find . -name '.cscd-unfinished-*' | wc -l); [ $n -ge " + std::to_string(unfinished) +
+               " ] && break; sleep 0.05; done; echo $n; kill -" + signal + " $!; wait $!; status=$?\n" +
+               "find . -name '.cscd-*' >+left; rmdir records; exit $status");
+  };
+  const struct {
+    const char *command, *signal;
+    int unfinished, status;
+  } kCases[] = {{"query long --json out.json", "INT", 2, 130},
+                {"export long out.h5", "TERM", 1, 143},
+                {"run --scene all --json records", "HUP", 4, 129},
+                {"run --scene all --json records", "INT -- -$! ; true", 4, 130}};
+  for (const auto& one : kCases) {
+    const Ran ran = interrupt(one.command, one.signal, one.unfinished);
+    EXPECT_EQ(ran.status, one.status) << one.command << ran.errors;
+    EXPECT_EQ(ran.out, std::to_string(one.unfinished) + "\n") << one.command;
+    EXPECT_EQ(text("+left"), "") << one.command;
+    EXPECT_EQ(files(), "") << one.command;
+  }
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/output/data.h"
+#include "bench/output/schema.h"
+#include "bench/testing/test_generated.h"
+#include "bench/testing/test_shell.h"
+
+// The query command from outside: what it prints, where, and the form of its JSON.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr char kSchema[] = "query.schema.json";
+
+class Query : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  }
+  // The answer as JSON, which has to keep to the schema.
+  json answer(const std::string& words) const {
+    const Ran ran = run("cscd query " + words + " --json -");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    const auto document = nlohmann::ordered_json::parse(ran.out);
+    EXPECT_EQ(schema_violation(document, kSchema), "") << words;
+    return json(document);
+  }
+};
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST_F(Query, AloneAnswersAPerson) {
+  // Standard output is a file here, as a terminal would be: no program reads it.
+  const Ran ran = run("cscd query small");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(has(ran.out, "small\n  does not touch itself\n")) << ran.out;
+  EXPECT_TRUE(has(ran.out, " clear, 0 touch, 0 intersect at their start")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "every answer proven")) << ran.out;
+}
+
+TEST_F(Query, ProgramsGetJsonAndPeopleStandardError) {
+  for (const char* script : {"cscd query small --json -", "cscd query small | cat"}) {
+    const Ran ran = run(script);
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    EXPECT_EQ(json::parse(ran.out)["schema"], "cscd.query/2") << script;
+    EXPECT_TRUE(has(ran.errors, "does not touch itself")) << ran.errors;
+  }
+  const Ran both = run("cscd query small --json answer.json");
+  EXPECT_TRUE(has(both.out, "does not touch itself")) << "a file beside it leaves the text where it is";
+  EXPECT_EQ(json::parse(text("answer.json"))["input"], "small");
+}
+
+TEST_F(Query, FailsOnContactWhereThatIsAsked) {
+  EXPECT_EQ(run("cscd query figure.glb --clip hug --fail-on-contact").status, 3);
+  EXPECT_EQ(run("cscd query figure.glb --clip hug").status, 0);
+  EXPECT_EQ(run("cscd query small --fail-on-contact").status, 0);
+}
+
+TEST_F(Query, SpeaksOfACharacterInItsOwnNamesAndTimes) {
+  const Ran ran = run("cscd query figure.glb --clip HUG");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(has(ran.out, "'hug' of 2")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "all 4 components")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "first at frame ")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "right_eye in skin: ") && has(ran.out, "left_eye in skin: ")) << ran.out;
+
+  const json whole = answer("figure.glb --clip hug --from-bind-pose");
+  EXPECT_EQ(whole["import"]["lead_in_frames"], 15);
+  EXPECT_TRUE(whole["rest_crossings"]["left_out"]);
+  std::size_t by_part = 0;
+  for (const json& row : whole["rest_crossings"]["parts"]) by_part += row["pairs"].get<std::size_t>();
+  EXPECT_EQ(whole["rest_crossings"]["pairs"], by_part);
+  EXPECT_GT(by_part, 0u);
+  const json& intervals = whole["intervals"];
+  EXPECT_EQ(intervals[0]["seconds"], -0.5);
+  EXPECT_EQ(intervals[15]["seconds"], 0);
+  EXPECT_EQ(intervals[18]["frame"], 3);
+  std::size_t contacts = 0;
+  for (const json& interval : intervals) {
+    EXPECT_GT(interval["left_out"]["start_pairs"], 0) << "the eyes";
+    for (const json& contact : interval["contacts"]) {
+      ++contacts;
+      const bool face = contact["kind"] == "vf";
+      const json& weights = contact[face ? "barycentric" : "edge_parameters"];
+      if (face) {
+        EXPECT_NEAR(weights[0].get<double>() + weights[1].get<double>() + weights[2].get<double>(), 1, 1e-12);
+      }
+      const auto n = contact["normal"].get<std::vector<double>>();
+      EXPECT_NEAR(std::hypot(n[0], n[1], n[2]), 1, 1e-12);
+      for (const char* side : {"first", "second"}) {
+        EXPECT_TRUE(contact[side]["bone"].is_string());
+        const json& source = contact[side]["source"];
+        EXPECT_EQ(source["mesh"], whole["import"]["parts"][source["part"].get<std::size_t>()]["mesh"]);
+        const std::size_t vertices = !face ? 2 : side == std::string("first") ? 1 : 3;
+        EXPECT_EQ(source["vertices"].size(), vertices);
+      }
+    }
+  }
+  EXPECT_GT(contacts, 0u);
+  const json& summary = whole["summary"];
+  EXPECT_EQ(summary["intervals"], intervals.size());
+  EXPECT_EQ(summary["clear"].get<int>() + summary["touches"].get<int>() +
+                summary["intersects_at_start"].get<int>() + summary["undecided"].get<int>(),
+            intervals.size());
+  const auto first = std::find_if(intervals.begin(), intervals.end(),
+                                  [](const json& interval) { return interval["collides"] == true; });
+  ASSERT_NE(first, intervals.end());
+  EXPECT_EQ(summary["first"]["interval"], (*first)["index"]);
+}
+
+TEST_F(Query, AnswersAllClipsInOneRun) {
+  const json all = answer("figure.glb --clip all");
+  ASSERT_EQ(all["clips"].size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const json one = answer("figure.glb --clip " + std::to_string(c));
+    EXPECT_EQ(all["clips"][c]["summary"], one["summary"]);
+    EXPECT_EQ(all["clips"][c]["import"]["clip"], c);
+  }
+  EXPECT_EQ(run("cscd query figure.glb --clip all --fail-on-contact").status, 3);
+  expect_refused(run("cscd inspect figure.glb --clip all"), "only query answers all clips");
+}
+
+TEST_F(Query, ListsAsManyStartPairsAsAsked) {
+  const auto longest = [&](const std::string& words) {
+    std::size_t most = 0, total = 0;
+    const json whole = answer("figure.glb --clip hug --keep-rest-crossings " + words);
+    for (const json& interval : whole["intervals"]) {
+      most = std::max(most, interval["start_pairs"].size());
+      total = std::max(total, interval["start_pairs_total"].get<std::size_t>());
+      EXPECT_EQ(interval["verdict"], "intersects_at_start") << "the eyes count";
+      EXPECT_EQ(interval["collides"], true);
+    }
+    EXPECT_GE(total, most);
+    return std::pair(most, total);
+  };
+  EXPECT_EQ(longest("--start-pairs 7").first, 7u);
+  const auto [all, total] = longest("--start-pairs all");
+  EXPECT_EQ(all, total);
+  expect_refused(run("cscd query small --start-pairs few"), "--start-pairs few");
+}
+
+// The schema says what each field means, and refuses what it does not know.
+void expect_described(const json& schema, const std::string& where, std::size_t& fields) {
+  if (schema.is_array())
+    for (const json& each : schema) expect_described(each, where, fields);
+  if (!schema.is_object()) return;
+  if (schema.contains("properties"))
+    for (const auto& [name, field] : schema["properties"].items()) {
+      ++fields;
+      const bool said = field.contains("description") || field.contains("$ref") || field.contains("anyOf");
+      EXPECT_TRUE(said) << where << "/" << name;
+    }
+  for (const auto& [name, inner] : schema.items()) expect_described(inner, where + "/" + name, fields);
+}
+
+TEST(QuerySchema, DescribesEveryField) {
+  std::size_t fields = 0;
+  expect_described(json(data_json(kSchema)), "", fields);
+  EXPECT_GT(fields, 80u);
+}
+
+TEST_F(Query, KeepsToTheSchemaWithBonesWithoutAndWhenUndecided) {
+  answer("small");
+  answer("small --first --strategy base");
+  answer("small --elementary newton --strategy base --frames 0:2");
+  const auto document = nlohmann::ordered_json::parse(run("cscd query small --json -").out);
+  for (const auto& [name, value] : document.items()) {
+    auto spoiled = document;
+    spoiled.erase(name);
+    if (name != "import") {
+      EXPECT_NE(schema_violation(spoiled, kSchema), "") << "without " << name;
+    }
+  }
+  auto spoiled = document;
+  spoiled["intervals"][0]["verdict"] = "perhaps";
+  EXPECT_NE(schema_violation(spoiled, kSchema), "");
+  spoiled = document;
+  spoiled["intervals"][0]["surprise"] = 1;
+  EXPECT_NE(schema_violation(spoiled, kSchema), "");
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,66 @@
+// --threads changes how long an answer takes and nothing else.
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/testing/test_program.h"
+#include "scenes/clip/point_cache.h"
+#include "scenes/random/random_interval.h"
+
+namespace cscd::bench {
+namespace {
+
+class Threads : public testing::Test {
+ protected:
+  Threads() {
+    const scenes::RandomInterval random = scenes::make_random_interval(11);
+    scenes::PointCacheWriter writer(file, random.clip.header(), false);
+    for (const std::size_t frame : {std::size_t{0}, std::size_t{1}}) writer.append(random.clip.frame(frame));
+    writer.finish();
+  }
+  nlohmann::json answer(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--force", "--json", out});
+    const Outcome outcome = cscd(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.errors;
+    return nlohmann::json::parse(read(out));
+  }
+  const Scratch scratch;
+  const std::string file = scratch / "ball.h5", out = scratch / "out.json";
+};
+
+TEST_F(Threads, ChangeNoAnswer) {
+  const nlohmann::json alone = answer({"query", file, "--strategy", "drvbc_fast"});
+  EXPECT_EQ(alone["threads"], 1);
+  EXPECT_EQ(alone["intervals"][0]["collides"], true);
+  for (const char* threads : {"2", "7"}) {
+    const nlohmann::json shared = answer({"query", file, "--strategy", "drvbc_fast", "--threads", threads});
+    EXPECT_EQ(shared["threads"], std::stoi(threads));
+    EXPECT_EQ(shared["intervals"][0]["contacts"], alone["intervals"][0]["contacts"]);
+    EXPECT_EQ(shared["intervals"][0]["counts"], alone["intervals"][0]["counts"]);
+  }
+}
+
+TEST_F(Threads, AreSaidForEveryStrategy) {
+  EXPECT_EQ(answer({"query", file, "--strategy", "base", "--threads", "2"})["threads"], 1);
+  const nlohmann::json record =
+      answer({"run", "--input", file, "--strategy", "drvbc_fast,base", "--smoke", "--threads", "2"});
+  EXPECT_EQ(record["strategies"][0]["threads"], 2);
+  EXPECT_EQ(record["strategies"][1]["threads"], 1);
+}
+
+TEST_F(Threads, AreRefusedInOneLineUnlessAtLeastOne) {
+  for (const char* threads : {"0", "-1", "two", "1.5", ""})
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"query", file}, {"run", "--input", file}, {"scale", "--smoke"}}) {
+      std::vector<std::string> arguments = command;
+      arguments.insert(arguments.end(), {"--json", out, "--threads", threads});
+      const Outcome outcome = cscd(arguments);
+      EXPECT_EQ(outcome.code, 2) << command[0] << " --threads '" << threads << "'";
+      EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
+      EXPECT_NE(outcome.errors.find("--threads"), std::string::npos) << outcome.errors;
+      EXPECT_FALSE(fs::exists(out));
+    }
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,116 @@
+#include "bench/input/input.h"
+
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/output/progress.h"
+#include "bench/rows/applicable.h"
+#include "bench/rows/catalogue.h"
+#include "core/base/error.h"
+#include "scenes/catalog/scene_cache.h"
+#include "scenes/clip/point_cache.h"
+#include "scenes/sandbox/run_limited.h"
+
+namespace cscd::bench {
+namespace {
+
+std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
+  const scenes::Scene scene = scenes::load_scene(name);
+  if (!scene.expected.digest)
+    std::fprintf(stderr,
+                 "note: %s promises no digest, so its frames may be any; cscd scene accept FILE writes it\n",
+                 name.c_str());
+  std::optional<Progress> progress;
+  return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
+    if (!progress) progress.emplace("generating " + name, total);
+    progress->set(done);
+  });
+}
+
+std::size_t parse_frame(std::string_view digits, std::size_t otherwise, const std::string& whole) {
+  if (digits.empty()) return otherwise;
+  std::size_t frame = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
+  if (error != std::errc{} || end != digits.data() + digits.size())
+    throw InputError("--frames " + whole + ": '" + std::string(digits) +
+                     "' is not a frame number; write A:B, as in 0:10");
+  return frame;
+}
+
+}  // namespace
+
+bool is_point_cache(const std::filesystem::path& path) {
+  return path.extension() == ".h5" || path.extension() == ".hdf5";
+}
+
+bool is_model_file(const std::string& name) {
+  const std::filesystem::path path(name);
+  std::error_code ignored;
+  return !is_point_cache(path) && !scenes::is_scene_file(path) &&
+         (path.has_extension() || std::filesystem::exists(path, ignored));
+}
+
+Input open_input(const std::string& name, const ModelOptions& options) {
+  const bool model = is_model_file(name);
+  if (!model && options != ModelOptions{})
+    throw InputError("input " + name +
+                     ": is no model file, so its frames are used as they are; leave out the options of model "
+                     "files (--clip, --fps, ...)");
+  std::unique_ptr<scenes::ClipSource> clip;
+  std::optional<scenes::ImportReport> import;
+  std::optional<scenes::SourceMap> sources;
+  if (model) {
+    ImportedModel imported = import_model(name, options);
+    scenes::limit_memory(options.answer_memory_mib << 20);
+    clip = std::move(imported.clip);
+    import = std::move(imported.report);
+    sources = std::move(imported.sources);
+  } else if (is_point_cache(name)) {
+    clip = std::make_unique<scenes::PointCacheReader>(name);
+  } else {
+    clip = open_scene_named(name);
+  }
+  const scenes::ClipHeader& header = clip->header();
+  TriangleMesh mesh(header.triangles, header.vertex_count, name);
+  std::optional<Rig> rig = scenes::rig_of(*clip);
+  const scenes::FrameView first = clip->load_frame(0);
+  std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
+  return {name,           std::move(clip),   std::move(mesh),   std::move(reference),
+          std::move(rig), std::move(import), std::move(sources)};
+}
+
+void say_what_was_read(const Input& input, std::FILE* to) {
+  if (input.import)
+    std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
+                 import_text(*input.import).c_str());
+}
+
+IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
+  if (text.empty()) return {0, frame_count - 1};
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    throw InputError("--frames " + text +
+                     ": has no colon; write A:B for the intervals between frames A and B");
+  const std::string_view view(text);
+  const std::size_t first = parse_frame(view.substr(0, colon), 0, text);
+  const std::size_t last = parse_frame(view.substr(colon + 1), frame_count - 1, text);
+  if (first >= last || last >= frame_count)
+    throw InputError("--frames " + text + ": not inside the clip's frames 0 to " +
+                     std::to_string(frame_count - 1) +
+                     ", or empty; choose 0 <= A < B <= " + std::to_string(frame_count - 1));
+  return {first, last};
+}
+
+bool allows(const Input& input, const Strategy& strategy) {
+  return !why_not(strategy, input.mesh, input.rig.has_value());
+}
+
+const Strategy& default_strategy(const Input& input) {
+  const Strategy* chosen = &complete_stand_in();
+  for (const Strategy* strategy : strategies_in(""))
+    if (strategy->guarantee == Guarantee::first_contact && allows(input, *strategy)) chosen = strategy;
+  return *chosen;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/input/import.h"
+#include "core/detect/strategy.h"
+#include "core/mesh/rig.h"
+#include "core/mesh/triangle_mesh.h"
+#include "scenes/clip/clip.h"
+
+namespace cscd::bench {
+
+// What a command works on: a scene by its name, a point cache or a model file by its path.
+struct Input {
+  std::string name;
+  std::unique_ptr<scenes::ClipSource> clip;
+  TriangleMesh mesh;
+  std::vector<Vec3> reference;  // positions of frame 0
+  std::optional<Rig> rig;
+  std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
+  std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
+  int threads = 1;                                            // for whatever can use them
+  bool use_bones = true;                                      // for strategies that can do without
+
+  // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
+  std::span<const Vec3> rest() const {
+    const std::vector<Vec3>& named = clip->header().rest;
+    return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
+  }
+
+  Setup setup(const ElementaryTest& elementary) const {
+    return {mesh, reference, rig && use_bones ? &*rig : nullptr, elementary, threads};
+  }
+};
+
+// Throws InputError. Generates a scene whose cache is missing; imports a model file. Options are for model
+// files only.
+Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
+
+// Says what was made of a model file, a few lines; nothing of other inputs.
+void say_what_was_read(const Input& input, std::FILE* to);
+
+// Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
+bool is_model_file(const std::string& name_or_path);
+bool is_point_cache(const std::filesystem::path& path);
+
+// Half-open range of intervals.
+struct IntervalRange {
+  std::size_t first, last;
+};
+// "A:B" stands for the intervals between frames A and B; either may be left out. Throws InputError.
+IntervalRange parse_frames(const std::string& text, std::size_t frame_count);
+
+// Whether the input has what a strategy needs.
+bool allows(const Input& input, const Strategy& strategy);
+
+// The last first_contact row without a group that the input allows, or else the complete reference.
+const Strategy& default_strategy(const Input& input);
+
+}  // namespace cscd::bench

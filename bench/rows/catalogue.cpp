@@ -1,0 +1,245 @@
+#include "bench/rows/catalogue.h"
+
+#include <array>
+#include <charconv>
+#include <map>
+#include <string>
+
+#include "baselines/aabb.h"
+#include "baselines/base.h"
+#include "baselines/brute.h"
+#include "baselines/cgal_boxes/cgal_boxes.h"
+#include "baselines/embree/embree.h"
+#include "baselines/fcl/fcl.h"
+#include "baselines/fcl/fcl_elementary.h"
+#include "baselines/mcd/mcd.h"
+#include "baselines/rvbc.h"
+#include "baselines/selfccd.h"
+#include "core/base/closest_name.h"
+#include "core/base/error.h"
+#include "core/drvbc/drvbc.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+
+namespace cscd::bench {
+namespace {
+
+constexpr std::string_view kAblation = "ablation";
+
+// The first row is the reference, the second the oracle.
+constexpr std::array kStrategies = {
+    Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, false, make_base},
+    Strategy{"brute", "all pairs of triangles", Guarantee::complete, false, make_brute, "oracle"},
+    Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, false, make_aabb},
+    Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
+             false, make_mcd},
+    Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
+             Guarantee::complete, false, make_selfccd},
+#ifdef CSCD_BASELINES_EMBREE
+    Strategy{"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, false, make_embree},
+#endif
+#ifdef CSCD_BASELINES_CGAL_BOXES
+    Strategy{"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, false, make_cgal_boxes},
+#endif
+    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_rvbc(setup); }},
+    Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_drvbc(setup); }},
+    Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
+             false, [](const Setup& setup) { return make_drvbc_fast(setup); }},
+    Strategy{"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters", Guarantee::complete,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+             }},
+#ifdef CSCD_BASELINES_FCL
+    Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
+             Guarantee::heuristic, false, make_fcl, "checker", true},
+#endif
+    // One thing at a time left out, or added.
+    Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, true,
+             [](const Setup& setup) {
+               return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
+             },
+             kAblation},
+    Strategy{"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
+             true,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
+             },
+             kAblation},
+    Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
+             kAblation},
+    Strategy{"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, true,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
+             },
+             kAblation},
+    Strategy{"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
+             Guarantee::first_contact, true,
+             [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
+             kAblation},
+    Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
+             Guarantee::first_contact, false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact, false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact, false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_no_planes", "drvbc_fast without planes of triangles", Guarantee::first_contact,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
+             false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(
+                   setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
+             },
+             kAblation},
+    Strategy{"drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
+             Guarantee::first_contact, false,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones",
+                                              .clusters = DrvbcFastOptions::Clusters::of_surface});
+             },
+             kAblation},
+    Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
+             Guarantee::heuristic, true,
+             [](const Setup& setup) {
+               return make_drvbc(
+                   setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
+             },
+             kAblation},
+};
+
+template <class Rows>
+[[noreturn]] void refuse(const char* what, std::string_view name, const Rows& rows) {
+  std::string known;
+  std::vector<std::string_view> names;
+  for (const auto& row : rows) {
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+    names.push_back(row.name);
+  }
+  throw InputError(std::string(what) + " '" + std::string(name) + "' is not known" +
+                   did_you_mean(name.substr(0, name.find('@')), names) + "; choose one of " + known);
+}
+
+// Of NAME@TOLERANCE[:STEPS].
+TestParameters parsed_parameters(std::string_view name, TestParameters parameters) {
+  const auto fail = [&](const std::string& what) {
+    throw InputError("elementary test '" + std::string(name) + "': " + what);
+  };
+  const std::string_view text = name.substr(name.find('@') + 1), tolerance = text.substr(0, text.find(':'));
+  if (parameters.tolerance < 0) fail("takes no tolerance; leave out what begins with @");
+  const auto read = [](std::string_view digits, auto& value) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return error == std::errc() && end == digits.data() + digits.size();
+  };
+  if (!read(tolerance, parameters.tolerance) || !(parameters.tolerance >= 0 && parameters.tolerance < 1))
+    fail("the tolerance is not a number from 0 to less than 1; write it as in @1e-6");
+  if (tolerance.size() == text.size()) return parameters;
+  if (parameters.steps < 0) fail("takes no number of steps; leave out what begins with :");
+  if (!read(text.substr(tolerance.size() + 1), parameters.steps) || parameters.steps < 1)
+    fail("the number of steps is not a whole number from 1; write it as in @1e-6:1000");
+  return parameters;
+}
+
+}  // namespace
+
+std::span<const Strategy> strategies() {
+  return kStrategies;
+}
+
+const Strategy& strategy_named(std::string_view name) {
+  for (const Strategy& strategy : kStrategies)
+    if (strategy.name == name) return strategy;
+  refuse("strategy", name, kStrategies);
+}
+
+std::vector<const Strategy*> strategies_called(std::string_view name_or_group) {
+  std::vector<const Strategy*> group = strategies_in(name_or_group);
+  if (group.empty()) group.push_back(&strategy_named(name_or_group));
+  return group;
+}
+
+std::vector<const Strategy*> strategies_in(std::string_view group) {
+  std::vector<const Strategy*> rows;
+  for (const Strategy& strategy : kStrategies)
+    if (strategy.group == group) rows.push_back(&strategy);
+  return rows;
+}
+
+std::span<const ElementaryTest> all_elementary_tests() {
+  static const std::vector<ElementaryTest> rows = [] {
+    const auto own = elementary_tests();
+    std::vector<ElementaryTest> all(own.begin(), own.end());
+#ifdef CSCD_BASELINES_FCL
+    all.push_back(fcl_elementary_test());
+#endif
+    return all;
+  }();
+  return rows;
+}
+
+const ElementaryTest& elementary_test_named(std::string_view name) {
+  static std::map<std::string, ElementaryTest, std::less<>> chosen;
+  if (const auto before = chosen.find(name); before != chosen.end()) return before->second;
+  const std::string_view row_name = name.substr(0, name.find('@'));
+  for (const ElementaryTest& row : all_elementary_tests()) {
+    if (row.name != row_name) continue;
+    if (row_name == name) return row;
+    ElementaryTest with = row;
+    with.parameters = parsed_parameters(name, row.parameters);
+    const auto place = chosen.emplace(std::string(name), with).first;
+    place->second.name = place->first;
+    return place->second;
+  }
+  refuse("elementary test", name, all_elementary_tests());
+}
+
+std::vector<const ElementaryTest*> elementary_tests_named(std::string_view names) {
+  std::vector<const ElementaryTest*> rows;
+  for (;;) {
+    const std::size_t comma = names.find(',');
+    const std::string_view name = names.substr(0, comma);
+    if (name == "all")
+      for (const ElementaryTest& row : all_elementary_tests()) rows.push_back(&row);
+    else
+      rows.push_back(&elementary_test_named(name));
+    if (comma == std::string_view::npos) return rows;
+    names.remove_prefix(comma + 1);
+  }
+}
+
+const Strategy& complete_stand_in() {
+  return strategy_named("drvbc_fast_complete");
+}
+
+const Strategy& complete_reference() {
+  return kStrategies[0];
+}
+
+const Strategy& all_pairs() {
+  return kStrategies[1];
+}
+
+}  // namespace cscd::bench

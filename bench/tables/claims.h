@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/record/record.h"
+#include "bench/tables/quantity.h"
+
+// What the paper claims in its text and tables, held against records. The claims are data:
+// bench/tables/claims.json.
+namespace cscd::bench {
+
+enum class ClaimVerdict { reproduced, partly, not_reproduced, not_measured };
+std::string_view to_string(ClaimVerdict verdict);
+
+// One measured figure that a claim speaks about.
+struct Evidence {
+  std::string scene, title;
+  Measured measured;
+  bool holds = false;  // false too where nothing was measured
+};
+
+struct ClaimResult {
+  std::string id, quote, where, expectation;
+  ClaimVerdict verdict = ClaimVerdict::not_measured;
+  std::vector<Evidence> evidence;
+  std::string why;  // where the measured figures differ, or why nothing was measured
+};
+
+// A claim has `quote`, `where`, `scenes`, `measure` (definitions as in bench/tables/quantity.h, each with a
+// title; all must hold in a scene), `expect` ({"least": .., "most": ..}, either may be left out) and `why`. A
+// claim without `measure` cannot be measured here, for the reason in `why`. With `somewhere`, one scene is
+// enough. Reproduced: every figure that was measured holds; partly: some; scenes without a record do not
+// count.
+std::vector<ClaimResult> judge_claims(std::span<const Record> records);
+// The same with other claims.
+std::vector<ClaimResult> judge_claims(const nlohmann::ordered_json& claims, std::span<const Record> records);
+
+nlohmann::ordered_json claims_json(std::span<const ClaimResult> claims);
+std::string claims_markdown(std::span<const ClaimResult> claims);
+
+}  // namespace cscd::bench

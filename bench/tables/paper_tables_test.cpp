@@ -1,0 +1,247 @@
+#include "bench/tables/paper_tables.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "bench/output/data.h"
+#include "bench/output/json_text.h"
+#include "bench/output/schema.h"
+#include "bench/tables/tables_text.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// Two strategies, two timed of three intervals, three repetitions; `swift` is three times as fast in every
+// one.
+Record sample_record() {
+  Record record;
+  record.environment = {{"cpu", "a, \"quoted\" machine"}, {"commit", "0123456789abcdef"}, {"dirty", false}};
+  record.command = {"cscd", "run"};
+  record.scene = {"rope", "A rope.", "00ff", 4, 8, 1, 4};
+  record.elementary = "newton";
+  record.intervals = 3;
+  record.counted_intervals = {0, 1, 2};
+  record.timed_intervals = {0, 2};
+  record.verification.reference = "slow";
+  record.verification.elementary = "exact";
+  record.verification.intervals = {0, 1, 2};
+  record.verification.strategies = {{"slow", "complete", 2, 2, 1, {}},
+                                    {"swift", "first_contact", 2, 1, 1, {}}};
+  StrategyRecord slow;
+  slow.name = "slow";
+  slow.guarantee = "complete";
+  slow.counts = {{"bvot", {100, 200, 300}}};
+  slow.digests = {"a", "b", "c"};
+  slow.ms = {{"refit", {{1, 1}, {1, 1}, {1, 1}}}, {"traversal", {{6, 12}, {30, 60}, {3, 9}}}};
+  StrategyRecord swift = slow;
+  swift.name = "swift";
+  swift.counts = {{"bvot", {10, 20, 30}}};
+  swift.ms["traversal"] = {{1, 3}, {5, 15}, {1, 1}};
+  swift.ms["rv_update"] = {{1, 1}, {5, 5}, {1, 1}};
+  swift.preparation.decomposition_ms = {4, 2};
+  swift.preparation.atomic_clusters = 7;
+  record.strategies = {slow, swift};
+  return record;
+}
+
+nlohmann::ordered_json one_column(const nlohmann::ordered_json& column) {
+  return {{"tables", {{{"id", "t"}, {"title", "T"}, {"scenes", "t"}, {"columns", {column}}}}}};
+}
+
+Cell cell(nlohmann::ordered_json column, const std::string& scene = "rope") {
+  column["key"] = column["title"] = "k";
+  const nlohmann::ordered_json published = {{"t", {{"rope", {{"k", 2.5}}}, {"hand", {{"k", 3.5}}}}}};
+  const std::vector<Record> records = {sample_record()};
+  return paper_tables(one_column(column), published, records, scene).at(0).rows.at(0).cells.at(0);
+}
+
+TEST(PaperTables, CountsAreExact) {
+  const Cell mean = cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"scale", 0.001}});
+  EXPECT_DOUBLE_EQ(mean.measured.value.value(), 0.2);
+  EXPECT_FALSE(mean.measured.interval);
+  const auto value = [](const nlohmann::ordered_json& column) { return cell(column).measured.value; };
+  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"statistic", "max"}}), 300);
+  EXPECT_EQ(value({{"quantity", "counts.bvot+bvot"}, {"strategy", "slow"}}), 400);
+  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "swift"}, {"over", "slow"}}), 0.1);
+  EXPECT_EQ(value({{"quantity", "counts.bvot"},
+                   {"strategy", "swift"},
+                   {"over_quantity", "preparation.atomic_clusters"}}),
+            20 / 7.0);
+  EXPECT_EQ(value({{"quantity", "verification.recall"}, {"strategy", "swift"}}), 0.5);
+}
+
+TEST(PaperTables, TimesAreMediansOfRepetitions) {
+  const Cell time = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}});
+  EXPECT_EQ(time.measured.value, 9);  // of 9, 45 and 6; `slow` has no rv_update
+  EXPECT_EQ(time.measured.interval.value().low, 6);
+  EXPECT_EQ(time.measured.interval.value().high, 45);
+  EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured.value, 10);
+}
+
+TEST(PaperTables, RatiosArePairedWithinARepetition) {
+  const Cell ratio = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}, {"over", "swift"}});
+  EXPECT_DOUBLE_EQ(ratio.measured.value.value(), 3);
+  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().low, 3);
+  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().high, 3);
+}
+
+TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
+  EXPECT_EQ(cell({{"quantity", "scene.triangles"}, {"published", "t.{scene}.k"}}).published, 2.5);
+  EXPECT_FALSE(cell({{"quantity", "scene.triangles"}, {"published", "t.{scene}.other"}}).published);
+  EXPECT_FALSE(cell({{"quantity", "scene.triangles"}}).published);
+}
+
+TEST(PaperTables, EmptyCellsSayWhy) {
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).measured.reason,
+            "nowhere: not in this build");
+  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).measured.reason,
+            "base: not run in this record");
+  EXPECT_EQ(cell({{"quantity", "ms.rv_update"}, {"strategy", "slow"}}).measured.reason,
+            "slow: has no stage rv_update");
+  EXPECT_EQ(cell({{"quantity", "counts.clusters"}, {"strategy", "slow"}}).measured.reason,
+            "slow: does not count clusters");
+  EXPECT_EQ(cell({{"quantity", "preparation.decomposition_ms"}, {"strategy", "slow"}}).measured.reason,
+            "slow: has no such preparation");
+  const Cell other =
+      cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"published", "t.{scene}.k"}}, "hand");
+  EXPECT_EQ(other.measured.reason, "no record of hand was given");
+  EXPECT_EQ(other.published, 3.5);
+}
+
+TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
+  const std::vector<Record> records = {sample_record()};
+  nlohmann::ordered_json definitions = one_column({{"key", "{strategy}.k"},
+                                                   {"title", "{strategy} / swift"},
+                                                   {"each_strategy", true},
+                                                   {"quantity", "counts.bvot"},
+                                                   {"strategy", "{strategy}"},
+                                                   {"over", "swift"}});
+  definitions["tables"][0].erase("scenes");
+  const PaperTable table = paper_tables(definitions, {}, records).at(0);
+  ASSERT_EQ(table.columns.size(), 1u);  // none for a strategy beside itself
+  EXPECT_EQ(table.columns[0].key, "slow.k");
+  EXPECT_EQ(table.columns[0].title, "slow / swift");
+  EXPECT_EQ(table.rows.at(0).cells.at(0).measured.value, 10);
+}
+
+// The definitions that ship: every published figure has its column, and every column that names a published
+// figure finds it.
+TEST(PaperTables, ShippedDefinitionsCoverThePublishedFigures) {
+  const nlohmann::ordered_json definitions = data_json("paper_tables.json"),
+                               published = data_json("published.json");
+  std::vector<std::string> named;
+  for (const auto& table : definitions["tables"])
+    for (const auto& column : table["columns"])
+      if (column.contains("published")) named.push_back(column["published"]);
+
+  std::size_t figures = 0;
+  for (const char* part : {"table1", "table2", "table3", "text"}) {
+    const nlohmann::ordered_json flat = published[part].flatten();
+    for (const auto& [pointer, figure] : flat.items()) {
+      if (pointer.starts_with("/parameters") || !figure.is_number()) continue;
+      std::string path = part;
+      const std::vector<std::string> keys = split(pointer, '/');
+      for (const std::string& key : std::span(keys).subspan(1))
+        path += published["scenes"].contains(key) ? ".{scene}" : "." + key;
+      EXPECT_NE(std::find(named.begin(), named.end(), path), named.end()) << path;
+      ++figures;
+    }
+  }
+  std::size_t shown = 0;
+  for (const PaperTable& table : paper_tables(definitions, published, {}))
+    for (const Row& row : table.rows) {
+      EXPECT_TRUE(published["scenes"].contains(row.scene)) << row.scene;
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        shown += row.cells[i].published && !table.columns[i].key.starts_with("triangles") &&
+                 !table.columns[i].key.starts_with("vertices");
+    }
+  EXPECT_EQ(shown, figures);
+}
+
+TEST(Record, SurvivesBeingWrittenAndRead) {
+  const Record record = sample_record();
+  const std::string text = json_text(to_json(record));
+  EXPECT_EQ(json_text(to_json(parse_record(text, "test"))), text);
+}
+
+TEST(Record, CallsAFileByAPlainNameBesideItsPath) {
+  Record record = sample_record();
+  record.scene.name = "hand_1";
+  record.scene.path = "/models/hand 1.glb";
+  const Record read = parse_record(to_json(record).dump(), "test");
+  EXPECT_EQ(read.scene.name, "hand_1");
+  EXPECT_EQ(read.scene.path, "/models/hand 1.glb");
+  EXPECT_EQ(schema_violation(to_json(record), "run.schema.json"), "");
+
+  nlohmann::ordered_json old = to_json(sample_record());
+  for (const char* name : {"/models/hand 1.glb", "hand 1.glb"}) {  // as older records have it
+    old["scene"]["name"] = name;
+    EXPECT_EQ(parse_record(old.dump(), "test").scene.name, "hand_1");
+    EXPECT_EQ(parse_record(old.dump(), "test").scene.path, name);
+  }
+}
+
+TEST(PaperTables, ShowAnOwnSceneInPlaceOfThePapers) {
+  Record record = sample_record();
+  record.scene.path = "my/rope.json";  // has the name of one of the paper's
+  const std::vector<Record> own = {record};
+  std::size_t rows = 0;
+  for (const PaperTable& table : paper_tables(own))
+    for (const Row& row : table.rows) {
+      ++rows;
+      EXPECT_EQ(row.scene, "rope");
+      for (const Cell& cell : row.cells) EXPECT_FALSE(cell.published) << table.id;
+    }
+  EXPECT_GT(rows, 4u);
+  for (const ClaimResult& claim : judge_claims(own)) EXPECT_TRUE(claim.evidence.empty()) << claim.id;
+  const std::vector<Record> papers = {sample_record()};
+  EXPECT_GT(paper_tables(papers).front().rows.size(), 1u) << "the paper's scenes stand side by side";
+}
+
+TEST(Schema, HoldsForWhatIsWritten) {
+  const std::vector<Record> records = {sample_record()};
+  EXPECT_EQ(schema_violation(to_json(records[0]), "run.schema.json"), "");
+  nlohmann::ordered_json document = tables_json(paper_tables(records), judge_claims(records), records);
+  EXPECT_EQ(schema_violation(document, "tables.schema.json"), "");
+  document["tables"][0]["rows"][0]["cells"][1]["measured"] = "many";
+  const std::string violation = schema_violation(document, "tables.schema.json");
+  EXPECT_NE(violation.find("[measured]"), std::string::npos) << violation;
+}
+
+TEST(Record, RefusesWhatIsNotWhole) {
+  const nlohmann::ordered_json whole = to_json(sample_record());
+  const auto refusal = [](const nlohmann::ordered_json& document) -> std::string {
+    try {
+      parse_record(document.dump(), "r.json");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(whole), "");
+  nlohmann::ordered_json other = whole, short_counts = whole, short_times = whole, keyless = whole;
+  other["schema"] = "cscd.run/0";
+  EXPECT_NE(refusal(other).find("its schema is cscd.run/0"), std::string::npos);
+  short_counts["strategies"][0]["counts"]["bvot"].erase(0);
+  EXPECT_NE(refusal(short_counts).find("counts of bvot"), std::string::npos);
+  short_times["strategies"][1]["ms"]["refit"].erase(0);
+  EXPECT_NE(refusal(short_times).find("times of"), std::string::npos);
+  keyless.erase("verification");
+  EXPECT_NE(refusal(keyless).find("r.json"), std::string::npos);
+}
+
+TEST(TablesText, CsvHasOneLineACellAndQuotesCommas) {
+  const std::vector<Record> records = {sample_record()};
+  const nlohmann::ordered_json column = {
+      {"key", "k"}, {"title", "swift, slow"}, {"quantity", "ms.traversal"}, {"strategy", "slow"}};
+  nlohmann::ordered_json definitions = one_column(column);
+  definitions["tables"][0].erase("scenes");  // rows are those of the records
+  const auto tables = paper_tables(definitions, {}, records);
+  EXPECT_EQ(tables_csv(tables),
+            "table,scene,key,title,unit,published,measured,low,high,reason\n"
+            "t,rope,k,\"swift, slow\",,,9,6,45,\n");
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,183 @@
+#include "bench/tables/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "bench/rows/catalogue.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Why there is no figure.
+struct Missing {
+  std::string reason;
+};
+
+// A figure with its repetitions, or one that has no noise.
+struct Amount {
+  std::vector<double> samples;
+  bool noisy = false;
+};
+
+double summary(const std::vector<double>& samples, const std::string& statistic) {
+  if (statistic == "mean") return mean(samples);
+  if (statistic == "median") return median(samples);
+  if (statistic == "min") return *std::min_element(samples.begin(), samples.end());
+  if (statistic == "max") return *std::max_element(samples.begin(), samples.end());
+  throw std::logic_error("unknown statistic " + statistic);
+}
+
+const StrategyRecord& strategy_of(const Record& record, const std::string& name) {
+  if (const StrategyRecord* strategy = record.strategy(name)) return *strategy;
+  const auto rows = strategies();
+  const bool built =
+      std::any_of(rows.begin(), rows.end(), [&](const Strategy& row) { return row.name == name; });
+  throw Missing{name + (built ? ": not run in this record" : ": not in this build")};
+}
+
+Amount exactly(double value) {
+  return {{value}, false};
+}
+
+Amount scene_amount(const SceneRecord& scene, const std::string& what) {
+  if (what == "triangles") return exactly(static_cast<double>(scene.triangles));
+  if (what == "vertices") return exactly(static_cast<double>(scene.vertices));
+  if (what == "bones") return exactly(static_cast<double>(scene.bones));
+  throw std::logic_error("unknown scene quantity " + what);
+}
+
+Amount preparation_amount(const StrategyRecord& strategy, const std::string& what) {
+  const PreparationRecord& preparation = strategy.preparation;
+  if (what == "atomic_clusters") {
+    if (!preparation.atomic_clusters) throw Missing{strategy.name + ": has no clusters"};
+    return exactly(*preparation.atomic_clusters);
+  }
+  const std::vector<double>& samples =
+      what == "distance_and_heat_ms" ? preparation.distance_and_heat_ms : preparation.decomposition_ms;
+  if (samples.empty()) throw Missing{strategy.name + ": has no such preparation"};
+  return {samples, true};
+}
+
+Amount footprint_amount(const StrategyRecord& strategy, const std::string& what) {
+  const auto figure = [&](const auto& value, const char* whose) {
+    if (!value) throw Missing{std::string("this ") + whose + " does not count them"};
+    return exactly(static_cast<double>(*value));
+  };
+  if (what == "peak_bytes") return figure(strategy.footprint.peak_bytes, "kernel");
+  if (what == "held_bytes") return figure(strategy.footprint.held_bytes, "kernel");
+  if (what == "instructions") return figure(strategy.footprint.instructions, "machine");
+  throw std::logic_error("unknown footprint " + what);
+}
+
+Amount count_amount(const StrategyRecord& strategy, const std::string& counters,
+                    const std::string& statistic) {
+  std::vector<double> sums;
+  for (const std::string& counter : split(counters, '+')) {
+    const auto column = strategy.counts.find(counter);
+    if (column == strategy.counts.end()) throw Missing{strategy.name + ": does not count " + counter};
+    sums.resize(column->second.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += static_cast<double>(column->second[i]);
+  }
+  return exactly(summary(sums, statistic));
+}
+
+// One number a repetition. A stage that the strategy does not have takes no time, but all of them cannot be
+// missing.
+Amount time_amount(const StrategyRecord& strategy, const std::string& stages, const std::string& statistic) {
+  std::vector<std::vector<double>> sums;
+  for (const std::string& stage : split(stages, '+')) {
+    const auto column = strategy.ms.find(stage);
+    if (column == strategy.ms.end()) continue;
+    if (sums.empty()) sums.assign(column->second.size(), std::vector<double>(column->second.front().size()));
+    for (std::size_t r = 0; r < sums.size(); ++r)
+      for (std::size_t i = 0; i < sums[r].size(); ++i) sums[r][i] += column->second[r][i];
+  }
+  if (sums.empty()) throw Missing{strategy.name + ": has no stage " + stages};
+  Amount amount{{}, true};
+  for (const std::vector<double>& repetition : sums) amount.samples.push_back(summary(repetition, statistic));
+  return amount;
+}
+
+Amount verification_amount(const VerificationRecord& verification, const std::string& strategy,
+                           const std::string& what) {
+  const auto row =
+      std::find_if(verification.strategies.begin(), verification.strategies.end(),
+                   [&](const VerifiedStrategy& candidate) { return candidate.name == strategy; });
+  if (row == verification.strategies.end()) throw Missing{strategy + ": not verified in this record"};
+  if (row->contacts_expected == 0) throw Missing{"no contact on the verified intervals"};
+  if (what == "recall")
+    return exactly(static_cast<double>(row->contacts_found) / static_cast<double>(row->contacts_expected));
+  if (what == "first_contacts") return exactly(static_cast<double>(row->intervals_promised));
+  throw std::logic_error("unknown verification quantity " + what);
+}
+
+Amount amount_of(const Record& record, const std::string& quantity, const std::string& strategy,
+                 const std::string& statistic) {
+  const std::size_t dot = quantity.find('.');
+  const std::string kind = quantity.substr(0, dot), what = quantity.substr(dot + 1);
+  if (kind == "scene") return scene_amount(record.scene, what);
+  if (kind == "verification") return verification_amount(record.verification, strategy, what);
+  const StrategyRecord& row = strategy_of(record, strategy);
+  if (kind == "preparation") return preparation_amount(row, what);
+  if (kind == "footprint") return footprint_amount(row, what);
+  if (kind == "counts") return count_amount(row, what, statistic);
+  if (kind == "ms") return time_amount(row, what, statistic);
+  throw std::logic_error("unknown quantity " + quantity);
+}
+
+Measured measured(const Amount& amount, double scale) {
+  if (!amount.noisy) return {amount.samples.front() * scale, {}, {}};
+  const Estimate estimate = bootstrap_median(amount.samples);
+  return {estimate.value * scale,
+          Estimate{estimate.value * scale, estimate.low * scale, estimate.high * scale},
+          {}};
+}
+
+Measured ratio(const Amount& amount, const Amount& divisor, const std::string& divisor_name) {
+  if (amount.noisy != divisor.noisy || amount.samples.size() != divisor.samples.size())
+    throw std::logic_error("a ratio of what is measured in different ways");
+  if (median(divisor.samples) == 0) throw Missing{divisor_name + " is zero"};
+  if (!amount.noisy) return {amount.samples.front() / divisor.samples.front(), {}, {}};
+  const Estimate estimate = bootstrap_ratio_of_medians(amount.samples, divisor.samples);
+  return {estimate.value, estimate, {}};
+}
+
+}  // namespace
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+std::string number_text(double value) {
+  char text[40];
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
+  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.4g", value);
+  return text;
+}
+
+Measured measure(const ordered_json& definition, const Record& record) {
+  const std::string quantity = definition.at("quantity"), strategy = definition.value("strategy", ""),
+                    statistic = definition.value("statistic", "mean");
+  try {
+    const Amount amount = amount_of(record, quantity, strategy, statistic);
+    if (!definition.contains("over") && !definition.contains("over_quantity"))
+      return measured(amount, definition.value("scale", 1.0));
+    const std::string over = definition.value("over", strategy),
+                      over_quantity = definition.value("over_quantity", quantity);
+    return ratio(amount, amount_of(record, over_quantity, over, statistic), over + ": " + over_quantity);
+  } catch (const Missing& missing) {
+    return {{}, {}, missing.reason};
+  }
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/record/record.h"
+#include "bench/record/statistics.h"
+
+namespace cscd::bench {
+
+// A figure out of a record, or the reason why it cannot be had.
+struct Measured {
+  std::optional<double> value;
+  std::optional<Estimate> interval;  // 95 %; absent for what has no noise: counters and sizes
+  std::string reason;                // empty when there is a value
+};
+
+// What a definition (a column of paper_tables.json, a claim of claims.json) asks for:
+//   quantity   scene.triangles, scene.vertices, scene.bones
+//              preparation.distance_and_heat_ms, .decomposition_ms, .atomic_clusters
+//              counts.A+B...      a statistic over all intervals of the sum of counters
+//              ms.A+B...          a statistic over the timed intervals of the sum of stages, one a repetition
+//              ms.streaming       the same of streaming all positions once from memory
+//              verification.recall, .first_contacts
+//              footprint.peak_bytes, .held_bytes, .instructions
+//   strategy   whose; absent for scene.*
+//   statistic  mean (default), median, min, max
+//   scale      a factor, 1 by default
+//   over       the strategy whose figure divides it; over_quantity, unless it is the same quantity
+// Throws std::logic_error for a definition that says something else.
+Measured measure(const nlohmann::ordered_json& definition, const Record& record);
+
+// "a+b" at '+'; "a.b" at '.'.
+std::vector<std::string> split(const std::string& text, char separator);
+
+// Four significant digits, or all digits of a whole number.
+std::string number_text(double value);
+
+}  // namespace cscd::bench

@@ -1,0 +1,240 @@
+#include "bench/tables/tables_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include "bench/output/data.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string interval(const Measured& measured, const char* between) {
+  if (!measured.interval) return "";
+  return number_text(measured.interval->low) + between + number_text(measured.interval->high);
+}
+
+std::string number(const std::optional<double>& value) {
+  return value ? number_text(*value) : "";
+}
+
+constexpr std::size_t kScenesAcross = 6;  // more make a page too wide to read
+
+std::string title(const Column& column) {
+  return column.unit.empty() ? column.title : column.title + " (" + column.unit + ")";
+}
+
+// "4.4 [3.8, 4.5] (28.4)", or the reason why nothing was measured.
+std::string plain(const Cell& cell) {
+  std::string out = cell.measured.value ? number_text(*cell.measured.value) : cell.measured.reason;
+  if (cell.measured.interval) out += " [" + interval(cell.measured, ", ") + "]";
+  if (cell.published) out += " (" + number_text(*cell.published) + ")";
+  return out;
+}
+
+std::string latex(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '_' || c == '%' || c == '&' || c == '#') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+ordered_json number_or_null(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : nullptr;
+}
+
+ordered_json cell_json(const Column& column, const Cell& cell) {
+  ordered_json out = {{"key", column.key},
+                      {"title", column.title},
+                      {"unit", column.unit},
+                      {"published", number_or_null(cell.published)},
+                      {"measured", number_or_null(cell.measured.value)}};
+  if (cell.measured.interval) out["interval"] = {cell.measured.interval->low, cell.measured.interval->high};
+  if (!cell.measured.reason.empty()) out["reason"] = cell.measured.reason;
+  return out;
+}
+
+std::string text(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string threads(const Record& record) {
+  int most = 1;
+  std::string sharing;
+  for (const StrategyRecord& strategy : record.strategies)
+    if (strategy.threads > 1) {
+      most = strategy.threads;
+      sharing += (sharing.empty() ? "" : ", ") + strategy.name;
+    }
+  return most == 1 ? "one thread"
+                   : std::to_string(most) + " threads for " + sharing + ", one for every other strategy";
+}
+
+ordered_json source_json(const Record& record) {
+  const VerificationRecord& v = record.verification;
+  return {{"scene", record.scene.name},
+          {"digest", record.scene.digest},
+          {"command", record.command},
+          {"environment", record.environment},
+          {"threads", threads(record)},
+          {"intervals", record.intervals},
+          {"counted_intervals", record.counted_intervals.size()},
+          {"timed_intervals", record.timed_intervals.size()},
+          {"verified_intervals", v.intervals.size()},
+          {"unembedded_intervals", v.unembedded.size()},
+          {"colliding_intervals", v.colliding.size()}};
+}
+
+// As a shell takes it: a word that holds more than letters, digits and a few signs stands in quotes.
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) {
+    const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return c >= 0x80 || std::isalnum(c) != 0 ||
+             std::string_view("_-+=:,./@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    out += out.empty() ? "" : " ";
+    out += plain && !word.empty() ? word : "'" + word + "'";
+  }
+  return out;
+}
+
+std::size_t repetitions(const Record& record) {
+  return record.strategies.empty() || record.strategies.front().ms.empty()
+             ? 0
+             : record.strategies.front().ms.begin()->second.size();
+}
+
+// Where the numbers come from and what stands behind them.
+std::string provenance(const Record& record) {
+  const ordered_json& e = record.environment;
+  const VerificationRecord& v = record.verification;
+  const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
+  std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") + " cores, " +
+                    threads(record) + "; " + get("compiler") + ", " + get("build_type") +
+                    (e.contains("instruction_set") ? ", " + get("instruction_set") : "") + "; commit " +
+                    get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
+                    get("date") + ".\n";
+  out += "Made by `" + joined(record.command) + "`.\n";
+  out += std::to_string(record.timed_intervals.size()) + " of " + std::to_string(record.intervals) +
+         " intervals timed, " + std::to_string(repetitions(record)) +
+         " repetitions, interleaved; counters of " +
+         (record.counted_intervals.size() == record.intervals
+              ? "all"
+              : std::to_string(record.counted_intervals.size())) +
+         ". ";
+  out += "Answers verified on " + std::to_string(v.intervals.size()) + " intervals against `" + v.reference +
+         "` with the elementary test `" + v.elementary + "`: no strategy failed its guarantee";
+  out += v.unembedded.empty() ? ", every start was embedded.\n"
+                              : "; " + std::to_string(v.unembedded.size()) +
+                                    " starts were not embedded, where `first_contact` promises nothing.\n";
+  out += v.colliding.empty() ? "None of them has a contact: here a strategy can fail by inventing one only.\n"
+                             : std::to_string(v.colliding.size()) + " of them have contacts to be lost.\n";
+  out += "The timed test `" + record.elementary + "` on " + std::to_string(v.accuracy_tests) +
+         " feature pairs of these: " + std::to_string(v.accuracy.misses) + " misses, " +
+         std::to_string(v.accuracy.false_alarms) + " false alarms, " + std::to_string(v.accuracy.undecided) +
+         " undecided.\n";
+  return out;
+}
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\n") == std::string::npos) return field;
+  std::string out = "\"";
+  for (const char c : field) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+}  // namespace
+
+ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+                         std::span<const Record> records) {
+  ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
+  for (const Record& record : records) sources.push_back(source_json(record));
+  for (const PaperTable& table : tables) {
+    ordered_json rows = ordered_json::array();
+    for (const Row& row : table.rows) {
+      ordered_json cells = ordered_json::array();
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        cells.push_back(cell_json(table.columns[i], row.cells[i]));
+      rows.push_back({{"scene", row.scene}, {"cells", std::move(cells)}});
+    }
+    out_tables.push_back({{"id", table.id}, {"title", table.title}, {"rows", std::move(rows)}});
+  }
+  const ordered_json published = data_json("published.json");
+  return {{"schema", kTablesSchema},
+          {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
+          {"records", std::move(sources)},
+          {"tables", std::move(out_tables)},
+          {"claims", claims_json(claims)}};
+}
+
+std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records) {
+  const ordered_json published = data_json("published.json");
+  std::string out;
+  for (const Record& record : records) out += provenance(record) + "\n";
+  out += "Published: " + text(published.at("machine")) +
+         ".\n\nA cell is the measured figure, its 95 % interval in ";
+  out += "brackets where it has noise, and the published figure in parentheses where there is one.\n";
+  for (const PaperTable& table : tables) {
+    if (table.rows.empty()) continue;
+    out += "\n### " + table.title + "\n";
+    for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
+      const auto rows =
+          std::span(table.rows).subspan(first, std::min(kScenesAcross, table.rows.size() - first));
+      out += "\n|  |";
+      for (const Row& row : rows) out += " " + row.scene + " |";
+      out += "\n|---|";
+      for (std::size_t i = 0; i < rows.size(); ++i) out += "---:|";
+      out += "\n";
+      for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        out += "| " + title(table.columns[i]) + " |";
+        for (const Row& row : rows) out += " " + plain(row.cells[i]) + " |";
+        out += "\n";
+      }
+    }
+  }
+  return out;
+}
+
+std::string tables_latex(std::span<const PaperTable> tables) {
+  std::string out = "% Needs \\usepackage{booktabs}. Measured [95 % interval] (published).\n";
+  for (const PaperTable& table : tables) {
+    if (table.rows.empty()) continue;
+    out += "\\begin{table*}\n\\caption{" + latex(table.title) + "}\n\\label{tab:" + table.id +
+           "}\n\\begin{tabular}{l" + std::string(table.rows.size(), 'r') + "}\n\\toprule\n";
+    for (const Row& row : table.rows) out += " & " + latex(row.scene);
+    out += " \\\\\n\\midrule\n";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      out += latex(title(table.columns[i]));
+      for (const Row& row : table.rows) out += " & " + latex(plain(row.cells[i]));
+      out += " \\\\\n";
+    }
+    out += "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
+  }
+  return out;
+}
+
+std::string tables_csv(std::span<const PaperTable> tables) {
+  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason\n";
+  for (const PaperTable& table : tables)
+    for (const Row& row : table.rows)
+      for (std::size_t i = 0; i < row.cells.size(); ++i) {
+        const Cell& cell = row.cells[i];
+        const Column& column = table.columns[i];
+        out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
+               column.unit + "," + number(cell.published) + "," + number(cell.measured.value) + "," +
+               (cell.measured.interval ? interval(cell.measured, ",") : std::string(",")) + "," +
+               quoted(cell.measured.reason) + "\n";
+      }
+  return out;
+}
+
+}  // namespace cscd::bench

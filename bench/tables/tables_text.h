@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bench/record/record.h"
+#include "bench/tables/claims.h"
+#include "bench/tables/paper_tables.h"
+
+namespace cscd::bench {
+
+inline constexpr std::string_view kTablesSchema = "cscd.tables/1";
+
+// Everything, for machines: one object a cell, one a claim. Valid under bench/tables/tables.schema.json.
+nlohmann::ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+                                   std::span<const Record> records);
+// For people: quantities down, scenes across; preceded by where the records come from.
+std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records);
+// For papers: the same tables for LaTeX with booktabs.
+std::string tables_latex(std::span<const PaperTable> tables);
+// One line a cell.
+std::string tables_csv(std::span<const PaperTable> tables);
+
+}  // namespace cscd::bench

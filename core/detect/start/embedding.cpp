@@ -1,0 +1,96 @@
+#include "core/detect/start/embedding.h"
+
+#include <algorithm>
+
+#include "core/elementary/exact/static_contact.h"
+#include "core/hierarchy/descent.h"
+
+namespace cscd {
+namespace {
+
+bool contains(const Triangle& triangle, VertexId vertex) {
+  return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
+}
+
+struct Frame {
+  const TriangleMesh& mesh;
+  std::span<const Vec3> x;
+
+  bool touch(VertexId vertex, const Triangle& t) const {
+    return vertex_touches_triangle(x[+vertex], x[+t[0]], x[+t[1]], x[+t[2]]);
+  }
+  bool touch(const Edge& e, const Triangle& t) const {
+    return segment_touches_triangle(x[+e[0]], x[+e[1]], x[+t[0]], x[+t[1]], x[+t[2]]);
+  }
+  bool touch(const Edge& e, const Edge& f) const {
+    return segments_touch(x[+e[0]], x[+e[1]], x[+f[0]], x[+f[1]]);
+  }
+
+  // Does a feature of the first triangle meet the second outside what they share? An edge that is disjoint
+  // from the other triangle settles both of its ends.
+  bool reaches(TriangleId from, TriangleId to) const {
+    const Triangle& target = mesh.corners(to);
+    for (const VertexId vertex : mesh.corners(from))
+      if (!contains(target, vertex) && touch(vertex, target)) return true;
+    for (const EdgeId id : mesh.edges_of(from)) {
+      const Edge& edge = mesh.ends(id);
+      const int shared = contains(target, edge[0]) + contains(target, edge[1]);
+      if (shared == 0 && touch(edge, target)) return true;
+      if (shared != 1) continue;
+      // One end is shared: inside the plane of the target the edge can still cross the side opposite to that
+      // end.
+      for (const EdgeId side : mesh.edges_of(to)) {
+        const Edge& other = mesh.ends(side);
+        const bool disjoint =
+            edge[0] != other[0] && edge[0] != other[1] && edge[1] != other[0] && edge[1] != other[1];
+        if (disjoint && touch(edge, other)) return true;
+      }
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair) {
+  const Frame frame{mesh, positions};
+  return frame.reaches(pair.first, pair.second) || frame.reaches(pair.second, pair.first);
+}
+
+EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference)
+    : mesh_(mesh), tree_(build_tree(mesh, reference)), bounds_(mesh, tree_) {}
+
+template <class Found>
+void EmbeddingTest::search(std::span<const Vec3> positions, const Found& found) {
+  bounds_.refit(Motion(positions, positions));
+  bool done = false;
+  const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+  const auto skip_once_done = [&](NodeIndex, NodeIndex) { return done; };
+  const auto check = [&](NodeIndex a, NodeIndex b) {
+    const TriangleId s = tree_.triangle(a), t = tree_.triangle(b);
+    const CrossingPair pair(std::min(s, t), std::max(s, t));
+    if (triangles_meet(mesh_, positions, pair)) done = !found(pair);
+  };
+  self_descent(tree_, bounds_, 0, is_leaf, skip_once_done, check);
+}
+
+std::optional<CrossingPair> EmbeddingTest::find_intersection(std::span<const Vec3> positions) {
+  std::optional<CrossingPair> first;
+  search(positions, [&](const CrossingPair& pair) {
+    first = pair;
+    return false;
+  });
+  return first;
+}
+
+Crossings EmbeddingTest::find_all(std::span<const Vec3> positions, std::size_t most) {
+  Crossings all;
+  search(positions, [&](const CrossingPair& pair) {
+    if (all.total++ < most) all.pairs.push_back(pair);
+    return true;
+  });
+  std::sort(all.pairs.begin(), all.pairs.end());
+  return all;
+}
+
+}  // namespace cscd

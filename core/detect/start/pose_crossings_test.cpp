@@ -1,0 +1,134 @@
+#include "core/detect/start/pose_crossings.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/elementary/catalogue.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+constexpr std::size_t kAll = 1'000'000;
+
+// All feature pairs of a mesh that touch on the way, by asking about every one.
+ContactSet all_contacts(const TriangleMesh& mesh, const Motion& motion) {
+  const ElementaryTest& exact = *find_elementary_test("filtered_exact");
+  ContactSet found;
+  const auto add = [&](const FeaturePair& pair) {
+    const Answer answer = ask(exact, mesh, motion, pair);
+    if (answer.verdict != Verdict::apart) found.contacts.push_back({pair, answer.verdict, answer.time});
+  };
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const Triangle& c = mesh.triangles()[t];
+      const VertexId vertex{static_cast<std::int32_t>(v)};
+      if (std::find(c.begin(), c.end(), vertex) == c.end())
+        add(FeaturePair::of(vertex, TriangleId{static_cast<std::int32_t>(t)}));
+    }
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
+    for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
+      const Edge &a = mesh.edges()[e], &b = mesh.edges()[f];
+      if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
+        add(FeaturePair::of(EdgeId{static_cast<std::int32_t>(e)}, EdgeId{static_cast<std::int32_t>(f)}));
+    }
+  return found;
+}
+
+// An octahedron at rest and one that tumbles through it, both a little deformed at every step.
+struct Tumbling {
+  test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  TriangleMesh mesh = shape.mesh();
+  std::mt19937 random{7};
+
+  std::vector<Vec3> pose() {
+    std::uniform_real_distribution<double> some(-1, 1);
+    const Vec3 move = 1.1 * Vec3(some(random), some(random), some(random));
+    const Eigen::AngleAxisd turn(3 * some(random),
+                                 Vec3(some(random), some(random), some(random)).normalized());
+    std::vector<Vec3> x = shape.positions;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (v >= 6) x[v] = turn * x[v] + move;
+      x[v] += 0.1 * Vec3(some(random), some(random), some(random));
+    }
+    return x;
+  }
+};
+
+TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
+  Tumbling two;
+  PoseCrossings followed(two.mesh, two.shape.positions, kAll);
+  EmbeddingTest from_nothing(two.mesh, two.shape.positions);
+  std::vector<Vec3> from = two.pose();
+  followed.find(from);
+  std::size_t crossing = 0, changed = 0, free = 0;
+  for (int step = 0; step < 60; ++step) {
+    const std::vector<Vec3> to = two.pose();
+    const ContactSet touched = all_contacts(two.mesh, Motion(from, to));
+    const std::vector<CrossingPair> before = followed.crossings().pairs;
+    const Crossings& got = followed.follow(to, touched);
+    const Crossings expected = from_nothing.find_all(to, kAll);
+    ASSERT_EQ(got.pairs, expected.pairs) << step;
+    EXPECT_EQ(got.total, expected.total);
+    crossing += !got.pairs.empty();
+    changed += got.pairs != before;
+    free += got.pairs.empty();
+    from = to;
+  }
+  EXPECT_GT(crossing, 20u);
+  EXPECT_GT(changed, 20u);
+  EXPECT_GT(free, 3u) << "some poses must be embedded";
+}
+
+// The premise: whoever withholds what touched gets another answer.
+TEST(PoseCrossings, NeedEverythingThatTouched) {
+  Tumbling two;
+  PoseCrossings followed(two.mesh, two.shape.positions, kAll);
+  EmbeddingTest from_nothing(two.mesh, two.shape.positions);
+  std::size_t wrong = 0;
+  for (int step = 0; step < 20; ++step) {
+    followed.find(two.pose());
+    const std::vector<Vec3> to = two.pose();
+    wrong += followed.follow(to, {}).pairs != from_nothing.find_all(to, kAll).pairs;
+  }
+  EXPECT_GT(wrong, 5u);
+}
+
+TEST(PoseCrossings, KnowThePoseBitForBit) {
+  const test::Shape shape = test::octahedron();
+  const TriangleMesh mesh = shape.mesh();
+  PoseCrossings crossings(mesh, shape.positions, kAll);
+  EXPECT_FALSE(crossings.knows(shape.positions));
+  crossings.find(shape.positions);
+  EXPECT_TRUE(crossings.knows(shape.positions));
+  std::vector<Vec3> other = shape.positions;
+  other[5].x() = std::nextafter(other[5].x(), 9.0);
+  EXPECT_FALSE(crossings.knows(other));
+}
+
+// Where not all pairs were kept, nothing can be derived from them.
+TEST(PoseCrossings, FindFromNothingWhatTheyCannotDerive) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron());
+  const TriangleMesh mesh = shape.mesh();
+  PoseCrossings crossings(mesh, shape.positions, 3);
+  const std::size_t total = crossings.find(shape.positions).total;
+  EXPECT_GT(total, 3u);
+  EXPECT_EQ(crossings.crossings().pairs.size(), 3u);
+  EXPECT_FALSE(crossings.crossings().all_kept());
+  EXPECT_EQ(crossings.follow(shape.positions, {}).total, total);
+}
+
+TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.5));
+  const TriangleMesh mesh = shape.mesh();
+  const FeaturePair pair = FeaturePair::of(VertexId{0}, TriangleId{12});
+  const std::vector<CrossingPair> both = carriers(mesh, pair);
+  ASSERT_EQ(both.size(), 4u);
+  for (const CrossingPair& p : both) EXPECT_EQ(p.second, TriangleId{12});
+  EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
+}
+
+}  // namespace
+}  // namespace cscd

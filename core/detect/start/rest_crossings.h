@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/detect/start/crossings.h"
+
+namespace cscd {
+
+// What crosses at rest is how a surface is made, and no collision: eyes in sockets, teeth in gums, clothes in
+// skin. This says which crossings and contacts that explains.
+//
+// A pair of triangles that crosses at rest explains itself. Where the two belong to different components, the
+// line along which they cross shifts by a triangle or two as both bend, so the pair also explains every pair
+// of triangles of which one lies within kRings rings round the first and the other within kRings rings round
+// the second. (The pairs alone, or one ring, leave the teeth of a shark crossing its gums in some frames.)
+// Inside one component only the pairs themselves count, so that a limb that crosses its own crease elsewhere
+// is still told.
+class RestCrossings {
+ public:
+  static constexpr int kRings = 2;  // a ring: all triangles that share a vertex with those inside
+
+  RestCrossings() = default;  // explains nothing
+  // All pairs of `at_rest` have to be kept. `mesh` must outlive this.
+  RestCrossings(const TriangleMesh& mesh, const Crossings& at_rest);
+
+  bool empty() const { return pairs_.pairs.empty(); }
+  bool explains(const CrossingPair& pair) const;
+  // Does a pair of triangles that is explained carry the feature pair?
+  bool explains(const FeaturePair& pair) const;
+
+ private:
+  // The crossings near a triangle, as numbers of pairs_: 2 i for a triangle near the first triangle of pair
+  // i, 2 i + 1 for one near the second. Compressed rows, each sorted.
+  std::span<const std::uint32_t> near(TriangleId triangle) const;
+
+  const TriangleMesh* mesh_ = nullptr;
+  Crossings pairs_;
+  std::vector<std::uint32_t> offset_, near_;
+};
+
+}  // namespace cscd

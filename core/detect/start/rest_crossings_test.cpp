@@ -1,0 +1,81 @@
+#include "core/detect/start/rest_crossings.h"
+
+#include <gtest/gtest.h>
+
+#include "core/detect/start/embedding.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+constexpr std::size_t kAll = 1'000'000;
+
+// A ball that looks out of a larger one, as an eye does.
+struct Eye {
+  test::Shape shape = test::together(test::icosphere(3), test::moved(test::icosphere(2), {0.9, 0, 0}, 0.3));
+  TriangleMesh mesh = shape.mesh();
+  EmbeddingTest test{mesh, shape.positions};
+
+  // The small ball moved by so much, the large one where it is.
+  std::vector<Vec3> moved(const Vec3& by) const {
+    std::vector<Vec3> x = shape.positions;
+    for (std::size_t v = test::icosphere(3).positions.size(); v < x.size(); ++v) x[v] += by;
+    return x;
+  }
+  std::size_t unexplained(const RestCrossings& rest, const std::vector<Vec3>& positions) {
+    std::size_t count = 0;
+    for (const CrossingPair& pair : test.find_all(positions, kAll).pairs) count += !rest.explains(pair);
+    return count;
+  }
+};
+
+TEST(RestCrossings, ExplainThemselvesAndWhereTheyShiftTo) {
+  Eye eye;
+  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAll);
+  ASSERT_GT(at_rest.total, 20u);
+  const RestCrossings rest(eye.mesh, at_rest);
+  EXPECT_EQ(eye.unexplained(rest, eye.shape.positions), 0u);
+  EXPECT_EQ(eye.unexplained(rest, eye.moved({0.02, 0.01, 0})), 0u);
+  EXPECT_NE(eye.test.find_all(eye.moved({0.02, 0.01, 0}), kAll).pairs, at_rest.pairs)
+      << "the line must shift";
+  EXPECT_GT(eye.unexplained(rest, eye.moved({-1.8, 0, 0})), 20u) << "out at the back of the head";
+  EXPECT_GT(eye.unexplained(RestCrossings(), eye.shape.positions), 20u);
+}
+
+TEST(RestCrossings, ExplainFeaturePairsOfTheirTriangles) {
+  Eye eye;
+  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAll);
+  const RestCrossings rest(eye.mesh, at_rest);
+  const auto [head, ball] = at_rest.pairs.front();
+  EXPECT_TRUE(rest.explains(FeaturePair::of(eye.mesh.corners(head)[0], ball)));
+  EXPECT_TRUE(rest.explains(FeaturePair::of(eye.mesh.edges_of(head)[1], eye.mesh.edges_of(ball)[2])));
+  EXPECT_FALSE(rest.explains(FeaturePair::of(eye.mesh.corners(head)[0], TriangleId{0})))
+      << "two places of the head itself";
+  EXPECT_FALSE(RestCrossings().explains(FeaturePair::of(eye.mesh.corners(head)[0], ball)));
+}
+
+// A crease of one component: its neighbours are told.
+TEST(RestCrossings, InsideOneComponentExplainThePairsAlone) {
+  test::Shape shape = test::icosphere(2);
+  shape.positions[0] = -1.05 * shape.positions[0];
+  const TriangleMesh mesh = shape.mesh();
+  const Crossings at_rest = EmbeddingTest(mesh, shape.positions).find_all(shape.positions, kAll);
+  ASSERT_GT(at_rest.total, 1u);
+  const RestCrossings rest(mesh, at_rest);
+  std::size_t neighbours = 0, explained = 0;
+  for (const CrossingPair& pair : at_rest.pairs) {
+    EXPECT_TRUE(rest.explains(pair));
+    for (const VertexId v : mesh.corners(pair.second))
+      for (const TriangleId t : mesh.triangles_at(v)) {
+        const CrossingPair near(std::min(pair.first, t), std::max(pair.first, t));
+        if (t == pair.first || at_rest.contains(near)) continue;
+        ++neighbours;
+        explained += rest.explains(near);
+      }
+  }
+  EXPECT_GT(neighbours, 5u);
+  EXPECT_EQ(explained, 0u);
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,75 @@
+#include "core/drvbc/drvbc.h"
+
+#include "core/base/stage_clock.h"
+#include "core/detect/compose.h"
+#include "core/drvbc/mega_clusters.h"
+#include "core/radial/observer.h"
+#include "core/radial/setup.h"
+
+// Dynamic Radial View Based Culling for Continuous Self-Collision Detection (Wong, Lin, Wang, Hung, Huang,
+// I3D 2014).
+//
+// Preparation: triangles to bones by heat diffusion on a smoothed mesh and a coarse distance field; clusters
+// refined by orientation; an observer point or segment for each (section 4). Every interval: clusters merged
+// into mega clusters (section 5), then intra- and inter-cluster checks over local and global hierarchies and
+// relative boxes for non-adjacent pairs (section 6). What differs is said where it stands: certified
+// orientation classes (orientation.h), three vertices instead of one for segments, a fixed order of seeds and
+// the seed's own cost (mega_clusters.h).
+namespace cscd {
+namespace {
+
+class DrvbcCuller : public Culler {
+ public:
+  DrvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
+              const DrvbcOptions& options)
+      : clusters_(std::move(clusters)),
+        hierarchy_(setup.mesh, setup.reference, clusters_),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign),
+        mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
+
+  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+
+  bool classify(const Motion& motion, const Rig::Interval* bones) override {
+    table_.update(motion);
+    mega_.regrow(table_, *bones, hierarchy_);
+    radial_ = hierarchy_.finish_classes();
+    radial_.clusters = mega_.count();
+    return true;
+  }
+
+  CullCounts cull(TrianglePairSink& sink) override {
+    CullCounts counts = hierarchy_.cull(mega_.labels(), sink);
+    counts.radial = radial_;
+    return counts;
+  }
+
+  RadialView radial_view() const override { return hierarchy_.view(mega_.labels()); }
+
+ private:
+  radial::AtomicClusters clusters_;
+  radial::ClusterHierarchy hierarchy_;
+  radial::OrientationTable table_;
+  MegaClusters mega_;
+  RadialCounts radial_;
+};
+
+}  // namespace
+
+Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
+  radial::require_radial_setup(setup, std::string(options.name));
+  StageClock clock;
+  radial::AtomicClusters clusters =
+      radial::make_atomic_clusters(setup.mesh, radial::bones_of_triangles(setup, options.bones, clock));
+  std::vector<radial::ObserverKind> kinds = radial::choose_by_rotation_trial(
+      setup.mesh, setup.reference, *setup.rig, clusters, options.bones.theta());
+  clock.stop();
+
+  Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
+                          clock.milliseconds(Stage::decomposition), clusters.of_triangle,
+                          static_cast<int>(clusters.clusters.size())};
+  auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
+  PairOptions pairs{options.relative_boxes, options.filter};
+  return {compose(std::move(culler), setup.mesh, setup.elementary, std::move(pairs)), preparation};
+}
+
+}  // namespace cscd

@@ -1,0 +1,97 @@
+#include "core/elementary/certified/contact_time.h"
+
+#include <gmpxx.h>
+#include <gtest/gtest.h>
+
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_queries.h"
+
+namespace cscd {
+namespace {
+
+using test::FourMovingPoints;
+using test::query_of;
+using test::QueryMaker;
+
+TEST(Pairs, SumsAndProductsOfDoublesAreExact) {
+  QueryMaker make(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const double a = std::ldexp(make.uniform(), make.below(80) - 40),
+                 b = std::ldexp(make.uniform(), make.below(80) - 40);
+    const Pair sum = exact_sum(a, b), product = exact_product(a, b);
+    ASSERT_EQ(mpq_class(sum.high) + mpq_class(sum.low), mpq_class(a) + mpq_class(b));
+    ASSERT_EQ(mpq_class(product.high) + mpq_class(product.low), mpq_class(a) * mpq_class(b));
+  }
+}
+
+TEST(Pairs, OperationsKeepTheirBounds) {
+  QueryMaker make(4);
+  const auto value = [](const Pair& p) { return mpq_class(mpq_class(p.high) + mpq_class(p.low)); };
+  const auto any = [&] {
+    return exact_sum(std::ldexp(make.uniform(), make.below(8)), std::ldexp(make.uniform(), -make.below(60)));
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const Pair a = any(), b = i % 4 ? any() : Pair{-a.high, a.low / 3};
+    const mpq_class x = value(a), y = value(b), unit(0x1p-103);
+    ASSERT_LE(abs(mpq_class(value(a + b) - (x + y))), mpq_class(unit * (abs(x) + abs(y))));
+    ASSERT_LE(abs(mpq_class(value(a - b) - (x - y))), mpq_class(unit * (abs(x) + abs(y))));
+    ASSERT_LE(abs(mpq_class(value(a * b) - x * y)), mpq_class(unit * abs(mpq_class(x * y))));
+  }
+}
+
+struct Count {
+  int proved = 0, timed = 0;
+
+  template <class Query>
+  void add(const FourMovingPoints& points) {
+    const Query query = query_of<Query>(points);
+    const Triple v = triple(triple_points(query));
+    const BernsteinCubic f = triple_product(v.p, v.q, v.r);
+    if (!std::isfinite(f.error)) return;
+    const DoublesResult found = decide_in_doubles<Query>(v, f);
+    if (found.kind != DoublesResult::contact) return;
+    ++proved;
+    const CertainTime<double> certain =
+        time_in_pairs(triple_points(query), v.sizes(), Cubic(f, 1), found.low, found.high);
+    if (!certain.known) return;
+    ++timed;
+    const auto truth = exact::first_contact(query);
+    ASSERT_TRUE(truth);
+    ASSERT_EQ(certain.time, truth->lo);
+  }
+};
+
+// The largest double below the root, nearly always.
+TEST(TimeInPairs, IsTheReferees) {
+  QueryMaker make(5);
+  Count vf, ee;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = make.uniform(0, 1), u = make.uniform(0.01, 0.49), v = make.uniform(0.01, 0.49);
+    vf.add<MovingVertexFace>(test::vertex_meets_face(make, t, u, v));
+    ee.add<MovingEdgeEdge>(test::edge_meets_edge(make, t, 2 * u, 2 * v));
+  }
+  for (const Count* count : {&vf, &ee}) {
+    EXPECT_GT(count->proved, 3900);
+    EXPECT_GT(count->timed, count->proved - count->proved / 50);
+  }
+}
+
+// Roots at doubles exactly, or next to them: nothing, or right.
+TEST(TimeInPairs, SaysNothingThatIsNotCertain) {
+  QueryMaker make(6);
+  Count vf, ee;
+  for (int i = 0; i < 30'000; ++i) {
+    FourMovingPoints p = make.lattice(4);
+    const double scale = i % 3 ? 1 : 0.1;
+    for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
+    vf.add<MovingVertexFace>(p);
+    ee.add<MovingEdgeEdge>(p);
+  }
+  for (const Count* count : {&vf, &ee}) {
+    EXPECT_GT(count->proved, 500);
+    EXPECT_LT(count->timed, count->proved);
+  }
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,412 @@
+#include "core/elementary/certified/filtered_exact.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "core/elementary/certified/doubles_stage.h"
+#include "core/elementary/certified/exact_lanes.h"
+#include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_queries.h"
+
+namespace cscd {
+namespace {
+
+using test::FourMovingPoints;
+using test::query_of;
+using test::QueryMaker;
+
+Answer ask(const MovingVertexFace& q) {
+  return filtered_exact_vertex_face(q);
+}
+Answer ask(const MovingEdgeEdge& q) {
+  return filtered_exact_edge_edge(q);
+}
+
+std::string text(const FourMovingPoints& points) {
+  std::ostringstream out;
+  out.precision(17);
+  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
+  return out.str();
+}
+
+bool same(const Answer& a, const Answer& b) {
+  return a.verdict == b.verdict && (a.verdict == Verdict::apart || a.time == b.time);
+}
+
+// Whether the row is right about these queries, by the referee; and which stages they took.
+struct Family {
+  int queries = 0, contacts = 0;
+  std::map<ExactStage, int> stages;
+
+  template <class Query>
+  void add(const FourMovingPoints& points) {
+    const Query query = query_of<Query>(points);
+    const auto truth = exact::first_contact(query);
+    const Answer answer = ask(query);
+    ++queries;
+    contacts += truth.has_value();
+    ++stages[filtered_exact_stage(query)];
+    ASSERT_EQ(answer.verdict, truth ? Verdict::contact : Verdict::apart) << text(points);
+    if (truth) {
+      ASSERT_EQ(answer.time, truth->lo) << text(points);
+    }
+  }
+  void expect_both_answers() const {
+    EXPECT_GT(contacts, queries / 50);
+    EXPECT_LT(contacts, queries - queries / 50);
+  }
+};
+
+// Many at once have the answers that they have one by one.
+template <class Query>
+void expect_same_of_all(const std::vector<FourMovingPoints>& points) {
+  std::vector<Query> queries;
+  for (const FourMovingPoints& p : points) queries.push_back(query_of<Query>(p));
+  std::vector<Answer> answers(queries.size());
+  filtered_exact(queries, answers);
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    ASSERT_TRUE(same(answers[i], ask(queries[i]))) << text(points[i]);
+}
+
+class FilteredExact : public testing::Test {
+ protected:
+  // Both kinds of query with the points that `make_points` gives.
+  template <class MakePoints>
+  void compare(int count, MakePoints&& make_points) {
+    std::vector<FourMovingPoints> all;
+    for (int i = 0; i < count && !HasFatalFailure(); ++i) {
+      const FourMovingPoints points = make_points(i);
+      vf_.add<MovingVertexFace>(points);
+      ee_.add<MovingEdgeEdge>(points);
+      all.push_back(points);
+    }
+    expect_same_of_all<MovingVertexFace>(all);
+    expect_same_of_all<MovingEdgeEdge>(all);
+  }
+  QueryMaker make_{11};
+  Family vf_, ee_;
+};
+
+TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
+  compare(10'000, [&](int) { return make_.any(); });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+  // Exact arithmetic is for the rest.
+  for (const Family* family : {&vf_, &ee_})
+    EXPECT_EQ(family->stages.at(ExactStage::filter) + family->stages.at(ExactStage::doubles), 10'000);
+}
+
+TEST_F(FilteredExact, AgreesWithTheRefereeOnLattices) {
+  for (const int n : {1, 2, 3, 4, 9}) compare(2000, [&](int) { return make_.lattice(n); });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+  for (const Family* family : {&vf_, &ee_}) {
+    EXPECT_GT(family->stages.at(ExactStage::integers), 1000);
+    EXPECT_FALSE(family->stages.contains(ExactStage::referee));
+  }
+}
+
+// The same with bits in the last places: thirds of a lattice, far from the origin, at many scales.
+TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
+  compare(8000, [&](int i) {
+    FourMovingPoints p = make_.lattice(1 + i % 4);
+    const Vec3 shift = i % 3 == 0 ? Vec3(1e6, -3e5, 0.1) : Vec3::Zero();
+    const double scale = i % 2 ? 0.1 : 1.0 / 3;
+    for (MovingPoint& x : p) x = {scale * x.start + shift, scale * x.end + shift};
+    return p;
+  });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
+// Touching exactly on a lattice, then one coordinate moved by an ulp or a few.
+TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
+  const auto move = [&](FourMovingPoints& p) {
+    MovingPoint& x = p[static_cast<std::size_t>(make_.below(4))];
+    double& c = (make_.below(2) ? x.start : x.end)[make_.below(3)];
+    const double away = make_.below(2) ? 1e9 : -1e9;
+    for (int ulps = 1 << make_.below(4); ulps > 0; --ulps) c = std::nextafter(c, away);
+  };
+  const auto apart_from_zero = [](FourMovingPoints p) {  // ulps of 1, not of 0
+    for (MovingPoint& x : p) x = {x.start + Vec3(17, 33, 65), x.end + Vec3(17, 33, 65)};
+    return p;
+  };
+  int tried = 0;
+  while (vf_.queries < 4000 && tried++ < 100'000 && !HasFatalFailure()) {
+    FourMovingPoints p = apart_from_zero(make_.lattice(3));
+    if (!exact::first_contact(query_of<MovingVertexFace>(p))) continue;
+    move(p);
+    vf_.add<MovingVertexFace>(p);
+  }
+  while (ee_.queries < 4000 && tried++ < 200'000 && !HasFatalFailure()) {
+    FourMovingPoints p = apart_from_zero(make_.lattice(3));
+    if (!exact::first_contact(query_of<MovingEdgeEdge>(p))) continue;
+    move(p);
+    ee_.add<MovingEdgeEdge>(p);
+  }
+  EXPECT_EQ(vf_.queries, 4000);
+  EXPECT_EQ(ee_.queries, 4000);
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
+// Zeros of a lattice moved to the smallest of doubles: coordinates with a thousand places between their bits.
+TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
+  compare(1500, [&](int i) {
+    FourMovingPoints p = make_.lattice(1 + i % 3);
+    for (MovingPoint& x : p)
+      for (Vec3* end : {&x.start, &x.end})
+        for (int axis = 0; axis < 3; ++axis)
+          for (int steps = make_.below(3); steps > 0; --steps)
+            (*end)[axis] = std::nextafter((*end)[axis], i % 2 ? 1e9 : -1e9);
+    return p;
+  });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+  for (Family* family : {&vf_, &ee_}) {
+    EXPECT_GT(family->stages.at(ExactStage::integers), 300);
+    EXPECT_LT(family->stages[ExactStage::referee], family->queries / 100);
+  }
+}
+
+// Features that touch at borders, corners and ends up to the rounding of the coordinates.
+TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
+  const double places[] = {0, 0.5, 1, 1e-16, 1 - 1e-16, 1e-9, -1e-16};
+  const auto place = [&] { return places[make_.below(7)]; };
+  const double times[] = {0, 1, 0.5, 1.0 / 3, 1e-17, 1 - 1e-16};
+  compare(4000, [&](int i) {
+    const double t = times[make_.below(6)], u = place();
+    return i % 2 ? test::vertex_meets_face(make_, t, u, make_.below(2) ? 1 - u : place() * (1 - u))
+                 : test::edge_meets_edge(make_, t, u, place());
+  });
+  EXPECT_GT(vf_.contacts, 300);
+  EXPECT_GT(ee_.contacts, 300);
+}
+
+// Cubics with double and triple roots, or nearly.
+TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
+  compare(4000, [&](int i) {
+    FourMovingPoints p = i % 2 ? make_.any() : make_.lattice(4);
+    const double thin = std::ldexp(1.0, -20 - i % 60);
+    if (i % 3 == 0)
+      for (MovingPoint& x : p) x.start.z() *= thin, x.end.z() *= thin;
+    else
+      for (MovingPoint& x : p) x.end = -x.start + thin * make_.vector();
+    return p;
+  });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
+// The range of doubles: neither underflow nor overflow decides anything.
+TEST_F(FilteredExact, AgreesWithTheRefereeAtExtremesOfRange) {
+  for (const double scale : {0x1p-1070, 1e-320, 1e-300, 0x1p-700, 1e-110, 1e110, 1e150, 1e300, 0x1p1019}) {
+    vf_ = ee_ = {};
+    compare(600, [&](int i) {
+      FourMovingPoints p = i % 3 ? make_.lattice(3) : test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
+      for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
+      return p;
+    });
+    SCOPED_TRACE(scale);
+    vf_.expect_both_answers();
+    ee_.expect_both_answers();
+    for (const Family* family : {&vf_, &ee_}) EXPECT_FALSE(family->stages.contains(ExactStage::referee));
+  }
+}
+TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
+  const double scales[] = {1e-300, 1e-150, 1e-20, 1, 1e20, 1e150, 1e300};
+  compare(600, [&](int i) {
+    FourMovingPoints p = make_.lattice(2);
+    if (i % 2 == 0) {
+      const Vec3 by(scales[make_.below(7)], scales[make_.below(7)], scales[make_.below(7)]);
+      for (MovingPoint& x : p) x = {x.start.cwiseProduct(by), x.end.cwiseProduct(by)};
+    } else {
+      for (MovingPoint& x : p) x.start *= scales[make_.below(7)], x.end *= scales[make_.below(7)];
+    }
+    return p;
+  });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
+// Vectors that are subnormal beside others that are not: what is lost between the ends of an interval counts.
+TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
+  const FourMovingPoints lost = {
+      MovingPoint{{0x1p-1074, 0x1p-1073, 0x1p-1073}, {0x1p-1072, 3 * 0x1p-1074, -3 * 0x1p-1074}},
+      MovingPoint{Vec3::Zero(), Vec3::Zero()}, MovingPoint{{1e50, 1e50, 0}, {1e50, 1e50, 0}},
+      MovingPoint{{-1e50, 1e50, 0}, {-1e50, 1e50, 0}}};
+  vf_.add<MovingVertexFace>(lost);
+  EXPECT_EQ(vf_.contacts, 1);
+  for (const double large : {1e-20, 1e25, 1e50, 1e140})
+    for (const double small : {0x1p-1074, 0x1p-1070, 1e-310, 1e-295})
+      compare(100, [&](int i) {
+        FourMovingPoints p = make_.lattice(4);
+        for (MovingPoint& x : p) x = {large * x.start, large * x.end};
+        const auto one = static_cast<std::size_t>(i % 4),
+                   other = (one + 1 + static_cast<std::size_t>(i / 4 % 3)) % 4;
+        p[one] = {small / large * p[one].start, small / large * p[one].end};
+        p[other] = {Vec3::Zero(), Vec3::Zero()};
+        return p;
+      });
+  vf_.expect_both_answers();
+  ee_.expect_both_answers();
+}
+
+// A second opinion that shares no algorithm with the referee either.
+TEST_F(FilteredExact, AgreesWithBruteForceOnSmallIntegers) {
+  const auto check = [](const FourMovingPoints& p, const Answer& answer, const brute::Predicate& predicate) {
+    const brute::Four points{brute::moving(p[0]), brute::moving(p[1]), brute::moving(p[2]),
+                             brute::moving(p[3])};
+    const auto expected = brute::first_contact(points, predicate);
+    ASSERT_EQ(answer.verdict, expected ? Verdict::contact : Verdict::apart) << text(p);
+    if (!expected) return;
+    ASSERT_LE(mpq_class(answer.time), expected->upper) << text(p);
+    ASSERT_GE(mpq_class(answer.time) + mpq_class(0x1p-50), expected->lower) << text(p);
+  };
+  for (int i = 0; i < 300 && !HasFatalFailure(); ++i) {
+    const FourMovingPoints p = make_.lattice(1 + i % 3);
+    check(p, ask(query_of<MovingVertexFace>(p)), brute::kVertexTriangle);
+    check(p, ask(query_of<MovingEdgeEdge>(p)), brute::kEdgeEdge);
+  }
+}
+
+TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
+  for (int i = 0; i < 4000; ++i) {
+    const FourMovingPoints q = i % 4 == 0 ? make_.any() : make_.lattice(1 + i % 3);
+    SCOPED_TRACE(text(q));
+    const Answer vf = ask(query_of<MovingVertexFace>(q)), ee = ask(query_of<MovingEdgeEdge>(q));
+    EXPECT_TRUE(same(vf, ask(MovingVertexFace{q[0], {q[2], q[3], q[1]}})));
+    EXPECT_TRUE(same(vf, ask(MovingVertexFace{q[0], {q[3], q[1], q[2]}})));
+    EXPECT_TRUE(same(vf, ask(MovingVertexFace{q[0], {q[2], q[1], q[3]}})));
+    EXPECT_TRUE(same(ee, ask(MovingEdgeEdge{{q[2], q[3]}, {q[0], q[1]}})));
+    EXPECT_TRUE(same(ee, ask(MovingEdgeEdge{{q[1], q[0]}, {q[2], q[3]}})));
+    EXPECT_TRUE(same(ee, ask(MovingEdgeEdge{{q[0], q[1]}, {q[3], q[2]}})));
+
+    const auto mapped = [&](auto&& map) {
+      FourMovingPoints result = q;
+      for (MovingPoint& p : result) p = {map(p.start), map(p.end)};
+      return result;
+    };
+    std::vector<FourMovingPoints> alike{
+        mapped([](const Vec3& p) { return Vec3(0x1p-900 * p); }),
+        mapped([](const Vec3& p) { return Vec3(0x1p900 * p); }),
+        mapped([](const Vec3& p) { return Vec3(-p); }),
+        mapped([](const Vec3& p) { return Vec3(p.y(), p.z(), p.x()); }),
+        mapped([](const Vec3& p) { return Vec3(p.y(), p.x(), p.z()); }),
+        mapped([](const Vec3& p) { return Vec3(0x1p-300 * p.x(), 0x1p200 * p.y(), p.z()); })};
+    if (i % 4 != 0)  // where the sum is exact
+      alike.push_back(mapped([](const Vec3& p) { return Vec3(p + Vec3(1 << 20, -12345.5, 0x1p-20)); }));
+    for (const FourMovingPoints& p : alike) {
+      EXPECT_TRUE(same(vf, ask(query_of<MovingVertexFace>(p))));
+      EXPECT_TRUE(same(ee, ask(query_of<MovingEdgeEdge>(p))));
+    }
+
+    FourMovingPoints reversed = q;
+    for (MovingPoint& p : reversed) std::swap(p.start, p.end);
+    EXPECT_EQ(vf.verdict, ask(query_of<MovingVertexFace>(reversed)).verdict);
+    EXPECT_EQ(ee.verdict, ask(query_of<MovingEdgeEdge>(reversed)).verdict);
+    if (HasFailure()) return;
+  }
+}
+
+// A vertex that passes the tilted plane z = x by the smallest of doubles, beside a large triangle: more bits
+// than the integers hold.
+TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
+  constexpr double tiny = 0x1p-1074, far = 0x1p900;
+  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
+  const MovingPoint a = still(-far, -far, -far), b = still(far, -far, far), c = still(0, far, 0);
+  const MovingVertexFace crosses{{{tiny, 0, 2 * tiny}, {tiny, 0, 0}}, {a, b, c}},
+      stays{{{tiny, 0, 3 * tiny}, {tiny, 0, 2 * tiny}}, {a, b, c}};
+  for (const MovingVertexFace& query : {crosses, stays})
+    EXPECT_EQ(filtered_exact_stage(query), ExactStage::referee);
+  EXPECT_EQ(ask(crosses).verdict, Verdict::contact);
+  EXPECT_EQ(ask(crosses).time, 0.5);
+  EXPECT_EQ(ask(stays).verdict, Verdict::apart);
+}
+
+// Side by side, nearly all that meets inside is decided, and much of what goes through more roots than one.
+TEST_F(FilteredExact, DecidesMostQueriesSideBySide) {
+  // Share of 500 blocks of one to eight.
+  const auto decided = [](auto&& make_query) {
+    double count = 0, asked = 0;
+    for (int i = 0; i < 500; ++i) {
+      std::vector<decltype(make_query())> queries;
+      for (int l = 0; l <= i % 8; ++l) queries.push_back(make_query());
+      const LaneAnswers found = decide_in_lanes(queries);
+      asked += static_cast<double>(queries.size());
+      for (std::size_t l = 0; l < queries.size(); ++l)
+        if ((found.decided >> l & 1) != 0) {
+          ++count;
+          EXPECT_TRUE(same(found.answer[l], ask(queries[l])));
+        }
+    }
+    return count / asked;
+  };
+  EXPECT_GT(decided([&] { return query_of<MovingVertexFace>(make_.any()); }), 0.4);
+  EXPECT_GT(decided([&] { return query_of<MovingEdgeEdge>(make_.any()); }), 0.4);
+  const auto inside = [&] { return make_.uniform(0.01, 0.49); };
+  const auto time = [&] { return make_.uniform(0, 1); };
+  EXPECT_GT(decided([&] {
+              return query_of<MovingVertexFace>(test::vertex_meets_face(make_, time(), inside(), inside()));
+            }),
+            0.9);
+  EXPECT_GT(decided([&] {
+              return query_of<MovingEdgeEdge>(test::edge_meets_edge(make_, time(), inside(), inside()));
+            }),
+            0.9);
+}
+
+// The tests of the tests: with one bound gone, the stage in double precision claims what is not so, and the
+// families above would show it.
+struct NoComponentBound : ProvenBounds {
+  static constexpr double component = 0;
+};
+struct NoCubicBound : ProvenBounds {
+  static constexpr double cubic = 0;
+};
+
+// Three points on one line, at distances so different that their differences are rounded, and one aside: the
+// middle one stays on the edge between the others.
+FourMovingPoints on_an_edge(QueryMaker& make) {
+  const auto whole = [&] { return Vec3((make.vector() * 0x1p20).array().round()); };
+  const Vec3 d = whole(), near = std::ldexp(1, -30 - make.below(30)) * d, far = std::ldexp(1, 30) * d;
+  return {{{d, d}, {near, near}, {far, far}, {whole(), whole()}}};
+}
+
+template <class Bounds, class Query>
+int wrong_claims(QueryMaker& make) {
+  int wrong = 0;
+  for (int i = 0; i < 6000; ++i) {
+    FourMovingPoints p = make.lattice(3);
+    for (MovingPoint& x : p) x = {x.start / 3 + Vec3(7, 5, 3), x.end / 3 + Vec3(7, 5, 3)};
+    if (i % 2) {
+      p = on_an_edge(make);
+      if (std::is_same_v<Query, MovingEdgeEdge>) p = {p[1], p[2], p[0], p[3]};
+    }
+    const Query query = query_of<Query>(p);
+    const Triple v = triple(triple_points(query));
+    const BernsteinCubic f = triple_product(v.p, v.q, v.r);
+    if (!std::isfinite(f.error)) continue;
+    const DoublesResult found = decide_in_doubles<Query, Bounds>(v, f);
+    if (found.kind == DoublesResult::unclear) continue;
+    const auto truth = exact::first_contact(query);
+    wrong += truth.has_value() != (found.kind == DoublesResult::contact) ||
+             (truth && !(found.low <= truth->hi && truth->lo <= found.high));
+  }
+  return wrong;
+}
+TEST_F(FilteredExact, EveryBoundIsNeeded) {
+  EXPECT_EQ((wrong_claims<ProvenBounds, MovingVertexFace>(make_)), 0);
+  EXPECT_EQ((wrong_claims<ProvenBounds, MovingEdgeEdge>(make_)), 0);
+  EXPECT_GT((wrong_claims<NoComponentBound, MovingVertexFace>(make_)), 100);
+  EXPECT_GT((wrong_claims<NoComponentBound, MovingEdgeEdge>(make_)), 100);
+  EXPECT_GT((wrong_claims<NoCubicBound, MovingVertexFace>(make_)), 10);
+  EXPECT_GT((wrong_claims<NoCubicBound, MovingEdgeEdge>(make_)), 10);
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/elementary/certified/wide.h"
+
+// Polynomials of degree at most 3 with integer coefficients, and what is said of one on [0, 1].
+namespace cscd::integer {
+
+struct Polynomial {
+  Wide c[4];  // by ascending power
+  int degree = -1;
+
+  void trim() {
+    degree = 3;
+    while (degree >= 0 && c[degree].sign() == 0) --degree;
+  }
+  bool is_zero() const { return degree < 0; }
+  int bits() const;  // of the longest coefficient
+};
+
+// A double as an integer over a power of two.
+struct Dyadic {
+  std::int64_t numerator;
+  int places;
+};
+Dyadic dyadic(double t);  // 0 <= t <= 1
+// numerator / denominator against t: -1, 0 or 1.
+int compare(const Wide& numerator, const Wide& denominator, const Dyadic& t);
+
+// 2^(places degree) p((numerator + width s) / 2^places).
+Polynomial stretched_by(const Polynomial& p, const Wide& numerator, const Wide& width, int places);
+
+// Of the Bernstein coefficients on [0, 1].
+struct Signs {
+  int variations = 0, first = 0;  // the sign just above 0; 0 for the zero polynomial
+  bool zero_end = false;          // at 0 or at 1
+};
+Signs bernstein_signs(const Polynomial& p);
+
+// The coefficients as doubles times a common power of two.
+struct Rounded {
+  double c[4] = {0, 0, 0, 0};
+};
+Rounded rounded(const Polynomial& p);
+
+}  // namespace cscd::integer

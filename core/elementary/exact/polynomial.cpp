@@ -1,0 +1,225 @@
+#include "core/elementary/exact/polynomial.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace cscd::exact {
+
+Dyadic dyadic(double x) {
+  assert(std::isfinite(x));
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  mpz_class numerator = std::ldexp(fraction, 53);
+  exponent -= 53;
+  if (exponent >= 0) {
+    numerator <<= static_cast<unsigned long>(exponent);
+    return {std::move(numerator), 0};
+  }
+  // Short numerators keep everything that is computed from them short.
+  unsigned long places = static_cast<unsigned long>(-exponent);
+  if (numerator == 0) return {};
+  const unsigned long spare = std::min<unsigned long>(mpz_scan1(numerator.get_mpz_t(), 0), places);
+  numerator >>= spare;
+  return {std::move(numerator), places - spare};
+}
+
+int compare(const Dyadic& a, const Dyadic& b) {
+  if (a.exponent == b.exponent) return cmp(a.numerator, b.numerator);
+  if (a.exponent < b.exponent) return cmp(mpz_class(a.numerator << (b.exponent - a.exponent)), b.numerator);
+  return cmp(a.numerator, mpz_class(b.numerator << (a.exponent - b.exponent)));
+}
+
+Dyadic midpoint(const Dyadic& a, const Dyadic& b) {
+  const unsigned long exponent = std::max(a.exponent, b.exponent);
+  Dyadic middle{
+      mpz_class(a.numerator << (exponent - a.exponent)) + mpz_class(b.numerator << (exponent - b.exponent)),
+      exponent + 1};
+  if (middle.numerator == 0) return {};
+  const unsigned long spare =
+      std::min<unsigned long>(mpz_scan1(middle.numerator.get_mpz_t(), 0), middle.exponent);
+  middle.numerator >>= spare;
+  middle.exponent -= spare;
+  return middle;
+}
+
+double double_below(const Dyadic& x) {
+  signed long exponent = 0;
+  const double fraction = mpz_get_d_2exp(&exponent, x.numerator.get_mpz_t());  // truncated
+  const double near = std::ldexp(fraction, static_cast<int>(exponent - static_cast<long>(x.exponent)));
+  // Only a subnormal result is rounded a second time, and possibly upwards.
+  return compare(dyadic(near), x) > 0 ? std::nextafter(near, -std::numeric_limits<double>::infinity()) : near;
+}
+
+double double_above(const Dyadic& x) {
+  const double below = double_below(x);
+  return compare(dyadic(below), x) == 0 ? below
+                                        : std::nextafter(below, std::numeric_limits<double>::infinity());
+}
+
+Polynomial::Polynomial(mpz_class constant) {
+  c_[0] = std::move(constant);
+  trim();
+}
+
+Polynomial::Polynomial(mpz_class constant, mpz_class slope) {
+  c_[0] = std::move(constant);
+  c_[1] = std::move(slope);
+  trim();
+}
+
+Polynomial::Polynomial(mpz_class c0, mpz_class c1, mpz_class c2, mpz_class c3)
+    : c_{std::move(c0), std::move(c1), std::move(c2), std::move(c3)} {
+  trim();
+}
+
+void Polynomial::trim() {
+  degree_ = kMaxDegree;
+  while (degree_ >= 0 && sgn((*this)[degree_]) == 0) --degree_;
+}
+
+Polynomial operator-(const Polynomial& a, const Polynomial& b) {
+  Polynomial difference;
+  for (int i = std::max(a.degree_, b.degree_); i >= 0; --i) difference.at(i) = a[i] - b[i];
+  difference.trim();
+  return difference;
+}
+
+Polynomial operator*(const Polynomial& a, const Polynomial& b) {
+  Polynomial product;
+  product.add_product(a, b);
+  return product;
+}
+
+void Polynomial::add_product(const Polynomial& a, const Polynomial& b) {
+  assert(a.degree_ < 0 || b.degree_ < 0 || a.degree_ + b.degree_ <= kMaxDegree);
+  for (int i = 0; i <= a.degree_; ++i)
+    for (int j = 0; j <= b.degree_; ++j)
+      mpz_addmul(at(i + j).get_mpz_t(), a[i].get_mpz_t(), b[j].get_mpz_t());
+  trim();
+}
+
+void Polynomial::subtract_product(const Polynomial& a, const Polynomial& b) {
+  assert(a.degree_ < 0 || b.degree_ < 0 || a.degree_ + b.degree_ <= kMaxDegree);
+  for (int i = 0; i <= a.degree_; ++i)
+    for (int j = 0; j <= b.degree_; ++j)
+      mpz_submul(at(i + j).get_mpz_t(), a[i].get_mpz_t(), b[j].get_mpz_t());
+  trim();
+}
+
+Polynomial Polynomial::stretched(const Dyadic& from, const Dyadic& to) const {
+  if (degree_ <= 0) return *this;
+  const unsigned long k = std::max(from.exponent, to.exponent);
+  const mpz_class a = from.numerator << (k - from.exponent);
+  const mpz_class width = mpz_class(to.numerator << (k - to.exponent)) - a;
+  if (k == 0 && a == 0 && width == 1) return *this;
+  Polynomial result;
+  for (int i = 0; i <= degree_; ++i)
+    result.at(i) = (*this)[i] << (k * static_cast<unsigned long>(degree_ - i));
+  // Taylor shift by a (synthetic division), then s -> width s.
+  if (a != 0)
+    for (int i = 0; i < degree_; ++i)
+      for (int j = degree_ - 1; j >= i; --j) result.at(j) += a * result[j + 1];
+  mpz_class scale = width;
+  for (int i = 1; i <= degree_; ++i) {
+    result.at(i) *= scale;
+    scale *= width;
+  }
+  result.trim();
+  return result;
+}
+
+Polynomial Polynomial::derivative() const {
+  Polynomial result;
+  for (int i = 1; i <= degree_; ++i) result.at(i - 1) = i * (*this)[i];
+  result.trim();
+  return result;
+}
+
+Polynomial Polynomial::primitive_part() const {
+  if (degree_ < 0) return *this;
+  mpz_class content;
+  for (int i = 0; i <= degree_; ++i) content = gcd(content, (*this)[i]);
+  Polynomial result;
+  for (int i = 0; i <= degree_; ++i)
+    mpz_divexact(result.at(i).get_mpz_t(), (*this)[i].get_mpz_t(), content.get_mpz_t());
+  result.trim();
+  return result;
+}
+
+Polynomial greatest_common_divisor(Polynomial a, Polynomial b) {
+  a = a.primitive_part();
+  b = b.primitive_part();
+  if (a.degree_ < b.degree_) std::swap(a, b);
+  // Euclid's algorithm on primitive pseudo-remainders.
+  while (!b.is_zero()) {
+    while (a.degree_ >= b.degree_) {
+      const int shift = a.degree_ - b.degree_;
+      const mpz_class lead_a = a[a.degree_], lead_b = b[b.degree_];
+      for (int i = 0; i <= a.degree_; ++i) a.at(i) *= lead_b;
+      for (int i = 0; i <= b.degree_; ++i) a.at(i + shift) -= lead_a * b[i];
+      a.trim();
+    }
+    a = a.primitive_part();
+    std::swap(a, b);
+  }
+  return a;
+}
+
+Polynomial exact_quotient(const Polynomial& p, const Polynomial& divisor) {
+  assert(!divisor.is_zero());
+  Polynomial rest = p, quotient;
+  while (rest.degree_ >= divisor.degree_) {
+    const int shift = rest.degree_ - divisor.degree_;
+    mpz_class& term = quotient.at(shift);
+    mpz_divexact(term.get_mpz_t(), rest[rest.degree_].get_mpz_t(), divisor[divisor.degree_].get_mpz_t());
+    for (int i = 0; i <= divisor.degree_; ++i) rest.at(i + shift) -= term * divisor[i];
+    rest.trim();
+  }
+  assert(rest.is_zero());
+  quotient.trim();
+  return quotient;
+}
+
+int sign_at(const Polynomial& p, const Dyadic& t) {
+  if (p.is_zero()) return 0;
+  // Horner for 2^(exponent degree) p(t).
+  mpz_class value = p[p.degree()], term;
+  for (int i = p.degree() - 1; i >= 0; --i) {
+    value *= t.numerator;
+    mpz_mul_2exp(term.get_mpz_t(), p[i].get_mpz_t(), t.exponent * static_cast<unsigned long>(p.degree() - i));
+    value += term;
+  }
+  return sgn(value);
+}
+
+UnitIntervalSigns signs_on_unit_interval(const Polynomial& p) {
+  // Bernstein coefficients b_j = sum_i C(j, i) / C(n, i) c_i, times n for n = 2, 3 to stay among the
+  // integers.
+  std::array<int, Polynomial::kMaxDegree + 1> sign{};
+  switch (p.degree()) {
+    case 3:
+      sign = {sgn(p[0]), sgn(3 * p[0] + p[1]), sgn(3 * p[0] + 2 * p[1] + p[2]),
+              sgn(p[0] + p[1] + p[2] + p[3])};
+      break;
+    case 2:
+      sign = {sgn(p[0]), sgn(2 * p[0] + p[1]), sgn(p[0] + p[1] + p[2]), 0};
+      break;
+    case 1:
+      sign = {sgn(p[0]), sgn(p[0] + p[1]), 0, 0};
+      break;
+    default:
+      sign = {sgn(p[0]), 0, 0, 0};
+  }
+  UnitIntervalSigns result{0, 0};
+  for (const int s : sign) {
+    if (s == 0) continue;
+    if (result.sign != 0 && s != result.sign) ++result.variations;
+    result.sign = s;
+  }
+  return result;
+}
+
+}  // namespace cscd::exact

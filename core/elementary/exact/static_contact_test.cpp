@@ -1,0 +1,268 @@
+#include "core/elementary/exact/static_contact.h"
+
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/exact/exact.h"
+
+namespace cscd {
+namespace {
+
+// The referee at rest: decides without any floating-point filter.
+MovingPoint still(const Vec3& p) {
+  return {p, p};
+}
+bool referee_vertex_triangle(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return exact::first_contact(MovingVertexFace{still(v), {still(a), still(b), still(c)}}).has_value();
+}
+bool referee_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return exact::first_contact(MovingEdgeEdge{{still(a), still(b)}, {still(c), still(d)}}).has_value();
+}
+
+// Rational arithmetic for segment and triangle: the point where the line meets the plane, then that point
+// against the triangle; in one plane, ends and edges.
+using RationalPoint = std::array<mpq_class, 3>;
+brute::PolyPoint constant(const RationalPoint& p) {
+  brute::PolyPoint result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = brute::trimmed({p[k]});
+  return result;
+}
+RationalPoint rational(const Vec3& p) {
+  return {mpq_class(p.x()), mpq_class(p.y()), mpq_class(p.z())};
+}
+
+bool brute_touch(const brute::Predicate& predicate, const RationalPoint& a, const RationalPoint& b,
+                 const RationalPoint& c, const RationalPoint& d) {
+  return brute::touches_at(predicate.events({constant(a), constant(b), constant(c), constant(d)}), predicate,
+                           0);
+}
+
+bool brute_segment_triangle(const Vec3& p_, const Vec3& q_, const Vec3& a_, const Vec3& b_, const Vec3& c_) {
+  using brute::operator-, brute::cross, brute::dot;
+  const RationalPoint p = rational(p_), q = rational(q_), a = rational(a_), b = rational(b_),
+                      c = rational(c_);
+  const brute::PolyPoint origin = constant(a), n = cross(constant(b) - origin, constant(c) - origin);
+  const mpq_class height_p = brute::value(dot(n, constant(p) - origin), 0);
+  const mpq_class height_q = brute::value(dot(n, constant(q) - origin), 0);
+  if (height_p * height_q > 0) return false;
+  if (height_p != height_q) {
+    const mpq_class s = height_p / (height_p - height_q);
+    RationalPoint x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = p[k] + s * (q[k] - p[k]);
+    return brute_touch(brute::kVertexTriangle, x, a, b, c);
+  }
+  return brute_touch(brute::kVertexTriangle, p, a, b, c) || brute_touch(brute::kVertexTriangle, q, a, b, c) ||
+         brute_touch(brute::kEdgeEdge, p, q, a, b) || brute_touch(brute::kEdgeEdge, p, q, b, c) ||
+         brute_touch(brute::kEdgeEdge, p, q, c, a);
+}
+
+const Vec3 kA(0, 0, 0), kB(4, 0, 0), kC(0, 4, 0);
+constexpr double kTiny = 0x1p-1074;
+
+TEST(VertexTouchesTriangle, KnownCases) {
+  for (const Vec3& v : {Vec3(1, 1, 0), Vec3(2, 2, 0), Vec3(1, 0, 0), Vec3(0, 3, 0), kA, kB, kC})
+    EXPECT_TRUE(vertex_touches_triangle(v, kA, kB, kC)) << v.transpose();
+  for (const Vec3& v : {Vec3(1, 1, kTiny), Vec3(1, 1, -1), Vec3(2, std::nextafter(2, 3), 0),
+                        Vec3(-kTiny, 1, 0), Vec3(std::nextafter(4, 5), 0, 0), Vec3(3, 3, 0)})
+    EXPECT_FALSE(vertex_touches_triangle(v, kA, kB, kC)) << v.transpose();
+}
+
+TEST(VertexTouchesTriangle, DegenerateTriangles) {
+  const Vec3 middle(1, 1, 1), end(3, 3, 3);
+  EXPECT_TRUE(vertex_touches_triangle(Vec3(2, 2, 2), kA, middle, end));
+  EXPECT_FALSE(vertex_touches_triangle(Vec3(2, 2, 2), kA, middle, middle));
+  EXPECT_FALSE(vertex_touches_triangle(Vec3(2, 2, 1), kA, middle, end));
+  EXPECT_TRUE(vertex_touches_triangle(middle, middle, middle, middle));
+  EXPECT_FALSE(vertex_touches_triangle(kA, middle, middle, middle));
+}
+
+TEST(SegmentsTouch, KnownCases) {
+  EXPECT_TRUE(segments_touch(kA, kB, Vec3(1, -1, 0), Vec3(1, 1, 0)));
+  EXPECT_TRUE(segments_touch(kA, kB, Vec3(1, 0, 0), Vec3(1, 1, 5)));
+  EXPECT_TRUE(segments_touch(kA, kB, kB, Vec3(7, 7, 7)));
+  EXPECT_TRUE(segments_touch(kA, kB, Vec3(2, 0, 0), Vec3(9, 0, 0)));
+  EXPECT_TRUE(segments_touch(kA, kB, Vec3(2, 0, 0), Vec3(2, 0, 0)));
+  EXPECT_FALSE(segments_touch(kA, kB, Vec3(1, -1, kTiny), Vec3(1, 1, kTiny)));
+  EXPECT_FALSE(segments_touch(kA, kB, Vec3(std::nextafter(4, 5), 0, 0), Vec3(9, 0, 0)));
+  EXPECT_FALSE(segments_touch(kA, kB, Vec3(0, kTiny, 0), Vec3(4, kTiny, 0)));
+  EXPECT_FALSE(segments_touch(kA, kA, kB, kB));
+  EXPECT_FALSE(segments_touch(kA, Vec3(4, 4, 0), Vec3(4, 3, 0), Vec3(3, 2, 0)));
+}
+
+TEST(SegmentTouchesTriangle, KnownCases) {
+  const auto touches = [](const Vec3& p, const Vec3& q) {
+    const bool answer = segment_touches_triangle(p, q, kA, kB, kC);
+    EXPECT_EQ(segment_touches_triangle(q, p, kA, kB, kC), answer);
+    EXPECT_EQ(segment_touches_triangle(p, q, kC, kB, kA), answer);
+    EXPECT_EQ(segment_touches_triangle(p, q, kB, kC, kA), answer);
+    return answer;
+  };
+  EXPECT_TRUE(touches({1, 1, 1}, {1, 1, -1}));      // through the interior
+  EXPECT_TRUE(touches({2, 2, 1}, {2, 2, -1}));      // through an edge
+  EXPECT_TRUE(touches({0, 0, 1}, {0, 0, -1}));      // through a corner
+  EXPECT_TRUE(touches({1, 1, 0}, {1, 1, 5}));       // an end on it
+  EXPECT_TRUE(touches({1, 1, 0}, {1.5, 1, 0}));     // inside, in the plane
+  EXPECT_TRUE(touches({-1, 1, 0}, {9, 1, 0}));      // right across, in the plane
+  EXPECT_TRUE(touches({-1, 4, 0}, {1, 4, 0}));      // touches a corner, in the plane
+  EXPECT_TRUE(touches({1, 1, 0}, {1, 1, 0}));       // a point
+  EXPECT_FALSE(touches({1, 1, 1}, {1, 1, kTiny}));  // ends above
+  EXPECT_FALSE(touches({3, 2, 1}, {3, 2, -1}));     // passes beside
+  EXPECT_FALSE(touches({5, -1, 0}, {5, 9, 0}));     // beside, in the plane
+  EXPECT_FALSE(touches({3, 3, 0}, {3, 3, 0}));
+  EXPECT_FALSE(touches({-kTiny, 0, 1}, {-kTiny, 0, -1}));
+}
+
+TEST(SegmentTouchesTriangle, DegenerateTriangles) {
+  const Vec3 end(4, 4, 0);
+  EXPECT_TRUE(segment_touches_triangle({0, 4, 0}, {4, 0, 0}, kA, end, Vec3(1, 1, 0)));
+  EXPECT_TRUE(segment_touches_triangle({1, 1, -1}, {1, 1, 1}, kA, end, end));
+  EXPECT_FALSE(segment_touches_triangle({1, 2, -1}, {1, 2, 1}, kA, end, Vec3(1, 1, 0)));
+  EXPECT_TRUE(segment_touches_triangle({0, 0, -1}, {0, 0, 1}, kA, kA, kA));
+  EXPECT_FALSE(segment_touches_triangle({0, 0, 2}, {0, 0, 1}, kA, kA, kA));
+}
+
+TEST(StaticContact, ExtremeCoordinates) {
+  for (const double s : {kTiny, 0x1p-1000, 0x1p-340, 0x1p340, 0x1p1020}) {
+    EXPECT_TRUE(vertex_touches_triangle(s * Vec3(1, 1, 0), s * kA, s * kB, s * kC)) << s;
+    EXPECT_FALSE(vertex_touches_triangle(s * Vec3(3, 3, 0), s * kA, s * kB, s * kC)) << s;
+    EXPECT_FALSE(vertex_touches_triangle(s * Vec3(1, 1, 1), s * kA, s * kB, s * Vec3(0, 4, 3))) << s;
+    EXPECT_TRUE(segments_touch(s * kA, s * kB, s * Vec3(1, -1, 1), s * Vec3(1, 1, -1))) << s;
+    EXPECT_FALSE(segments_touch(s * kA, s * kB, s * Vec3(1, -1, 2), s * Vec3(1, 2, -1))) << s;
+    EXPECT_TRUE(segment_touches_triangle(s * Vec3(1, 1, 3), s * Vec3(1, 1, -3), s * kA, s * kB, s * kC)) << s;
+    EXPECT_FALSE(segment_touches_triangle(s * Vec3(3, 2, 3), s * Vec3(3, 2, -3), s * kA, s * kB, s * kC))
+        << s;
+  }
+}
+
+std::string describe(std::initializer_list<Vec3> points) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& p : points) text << "(" << p.transpose() << ") ";
+  return text.str();
+}
+
+TEST(StaticContact, AgreesWithRationalArithmeticOnSmallIntegers) {
+  constexpr unsigned seed = 99;
+  std::mt19937_64 random(seed);
+  int touching[3] = {0, 0, 0};
+  constexpr int cases = 6000;
+  for (int i = 0; i < cases; ++i) {
+    const int reach = 1 + i % 2;
+    std::uniform_int_distribution<int> coordinate(-reach, reach);
+    std::array<Vec3, 5> x;
+    for (Vec3& p : x) p = Vec3(coordinate(random), coordinate(random), i % 3 == 0 ? 0 : coordinate(random));
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({x[0], x[1], x[2], x[3], x[4]}));
+    const RationalPoint a = rational(x[0]), b = rational(x[1]), c = rational(x[2]), d = rational(x[3]);
+    const bool vertex = vertex_touches_triangle(x[0], x[1], x[2], x[3]);
+    const bool segments = segments_touch(x[0], x[1], x[2], x[3]);
+    const bool segment = segment_touches_triangle(x[0], x[1], x[2], x[3], x[4]);
+    ASSERT_EQ(vertex, brute_touch(brute::kVertexTriangle, a, b, c, d));
+    ASSERT_EQ(segments, brute_touch(brute::kEdgeEdge, a, b, c, d));
+    ASSERT_EQ(segment, brute_segment_triangle(x[0], x[1], x[2], x[3], x[4]));
+    touching[0] += vertex;
+    touching[1] += segments;
+    touching[2] += segment;
+  }
+  for (const int count : touching) {
+    EXPECT_GT(count, cases / 20);
+    EXPECT_LT(count, cases * 19 / 20);
+  }
+}
+
+// Points that would be in contact but for rounding: the filters must leave these to the exact step.
+TEST(StaticContact, IsNeverMisledByRounding) {
+  constexpr unsigned seed = 4;
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1), weight(0, 1);
+  int touching[3] = {0, 0, 0};
+  constexpr int cases = 20000;
+  for (int i = 0; i < cases; ++i) {
+    // Coordinates with few bits, on or off a coarse grid, near the origin or far from it.
+    const double grid = std::ldexp(1, -3 - i % 48), offset = i % 3 == 0 ? 0 : std::ldexp(1, i % 7);
+    const auto point = [&] {
+      Vec3 p(unit(random), unit(random), unit(random));
+      for (double& c : p) c = std::round(c / grid) * grid + offset;
+      return p;
+    };
+    const Vec3 a = point(), b = point(), c = point();
+    const double s = weight(random), t = (1 - s) * weight(random);
+    const Vec3 on_triangle = a + s * (b - a) + t * (c - a), on_ab = a + s * (b - a);
+    const Vec3 far = point(), opposite = on_ab + (on_ab - far), through = on_triangle + (on_triangle - far);
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({a, b, c, on_triangle, on_ab, far}));
+    for (const Vec3& v : {on_triangle, on_ab}) {
+      const bool vertex = vertex_touches_triangle(v, a, b, c);
+      ASSERT_EQ(vertex, referee_vertex_triangle(v, a, b, c));
+      touching[0] += vertex;
+    }
+    for (const Vec3& end : {on_ab, opposite}) {
+      const bool segments = segments_touch(a, b, far, end);
+      ASSERT_EQ(segments, referee_segments(a, b, far, end));
+      touching[1] += segments;
+    }
+    if (i % 4 == 0)
+      for (const Vec3& end : {on_triangle, on_ab, opposite, through}) {
+        const bool segment = segment_touches_triangle(far, end, a, b, c);
+        ASSERT_EQ(segment, brute_segment_triangle(far, end, a, b, c));
+        touching[2] += segment;
+      }
+  }
+  for (const int count : touching) EXPECT_GT(count, 100);
+}
+
+// Contact does not change when each axis is scaled by its own power of two, but roundings and underflows do.
+TEST(StaticContact, KeepsItsAnswerWhenAxesAreScaledApart) {
+  constexpr unsigned seed = 12;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> coordinate(-6, 6);
+  const Vec3 scales[] = {
+      {0x1p-538, 0x1p-538, 0x1p500}, {0x1p400, 0x1p-541, 0x1p-536}, {0x1p-1070, 0x1p900, 0x1p-30}};
+  for (int i = 0; i < 10000; ++i) {
+    std::array<Vec3, 5> x;
+    for (Vec3& p : x) p = Vec3(coordinate(random), coordinate(random), coordinate(random));
+    // Two thirds of the cases in a common plane.
+    if (i % 3 != 0)
+      for (Vec3& p : x) p.z() = i % 3 * p.x() - 3 * p.y();
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({x[0], x[1], x[2], x[3], x[4]}));
+    const bool vertex = vertex_touches_triangle(x[0], x[1], x[2], x[3]);
+    const bool segments = segments_touch(x[0], x[1], x[2], x[3]);
+    const bool segment = segment_touches_triangle(x[0], x[1], x[2], x[3], x[4]);
+    for (const Vec3& scale : scales) {
+      const auto y = [&](std::size_t k) { return Vec3(x[k].cwiseProduct(scale)); };
+      ASSERT_EQ(vertex_touches_triangle(y(0), y(1), y(2), y(3)), vertex);
+      ASSERT_EQ(segments_touch(y(0), y(1), y(2), y(3)), segments);
+      ASSERT_EQ(segment_touches_triangle(y(0), y(1), y(2), y(3), y(4)), segment);
+    }
+  }
+}
+
+// Multiples of one vector by factors so different that coordinate differences are rounded: exact contacts
+// that every projection may show a little off.
+TEST(StaticContact, FindsContactWhereDifferencesAreRounded) {
+  constexpr unsigned seed = 13;
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> coordinate(-(1 << 20), 1 << 20), exponent(30, 60);
+  for (int i = 0; i < 10000; ++i) {
+    Vec3 d(coordinate(random), coordinate(random), coordinate(random));
+    if (i % 2 == 0) d[i / 2 % 3] = 0;
+    const Vec3 near = std::ldexp(1, -exponent(random)) * d, far = std::ldexp(1, exponent(random)) * d;
+    const Vec3 aside(coordinate(random), coordinate(random), i % 2 == 0 ? 0 : coordinate(random));
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
+                 describe({near, d, far, aside}));
+    ASSERT_TRUE(vertex_touches_triangle(d, near, far, aside));
+    ASSERT_TRUE(vertex_touches_triangle(d, aside, near, far));
+    ASSERT_TRUE(segments_touch(near, far, d, aside));
+    ASSERT_TRUE(segment_touches_triangle(d, aside, near, far, aside));
+    ASSERT_TRUE(segment_touches_triangle(near, far, aside, d, aside));
+  }
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,196 @@
+#include "core/fast/cut/covers.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "core/base/random.h"
+#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/cut/seams.h"
+
+namespace cscd::fast {
+namespace {
+
+constexpr std::int32_t kReach = 6;  // rings of triangles about a seam that belong to its cluster
+constexpr std::int32_t kThin = 4;   // clusters without a triangle so many rings from its seams are merged
+
+// ---- Observers
+
+// Vertices of the triangles, few, with weights that make them the wanted point in the reference pose.
+FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                         std::span<const TriangleId> triangles, const Vec3& wanted) {
+  std::vector<VertexId> vertices;
+  for (const TriangleId t : triangles)
+    vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
+  std::mt19937 random(kPreparationSeed);
+  FollowingPoint best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int draw = 0; draw < 50; ++draw) {
+    for (std::size_t i = 0; i < count; ++i)
+      std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
+    const double n = static_cast<double>(count);
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) mean += positions[+vertices[i]] / n;
+    // The smallest change of equal weights that moves their mean to the wanted point.
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 x = positions[+vertices[i]] - mean;
+      spread += x * x.transpose();
+    }
+    const double extent = spread.trace();
+    spread += 1e-3 * extent * Eigen::Matrix3d::Identity();
+    const Vec3 slope = spread.inverse() * (wanted - mean);
+    if (!slope.allFinite()) continue;
+    FollowingPoint point;
+    Vec3 got = Vec3::Zero();
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double weight = 1 / n + slope.dot(positions[+vertices[i]] - mean);
+      point.add(vertices[i], static_cast<float>(weight));
+      got += weight * positions[+vertices[i]];
+      largest = std::max(largest, n * std::abs(weight));
+    }
+    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // it is far from these vertices
+    const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
+    if (!(cost < least)) continue;
+    least = cost;
+    best = point;
+  }
+  if (best.vertices().empty()) best.add(vertices.front(), 1);  // a cluster of no extent
+  return best;
+}
+
+// Numbers clusters from 0 and returns how many there are.
+std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
+  std::map<std::int32_t, std::int32_t> number;
+  for (std::int32_t& c : cluster_of)
+    if (c != kNone) c = number.try_emplace(c, static_cast<std::int32_t>(number.size())).first->second;
+  return number.size();
+}
+
+}  // namespace
+
+Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                 std::vector<std::int32_t> cluster_of) {
+  Cover cover{std::move(cluster_of), {}};
+  std::vector<std::vector<TriangleId>> members(renumbered(cover.cluster_of));
+  for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
+    if (cover.cluster_of[t] != kNone)
+      members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
+          TriangleId{static_cast<std::int32_t>(t)});
+  for (const std::vector<TriangleId>& triangles : members) {
+    std::vector<Face> faces;
+    for (const TriangleId t : triangles) faces.push_back(face_of(mesh, reference, t));
+    cover.observers.push_back(following(mesh, reference, triangles, best_viewpoint(faces)));
+  }
+  return cover;
+}
+
+namespace {
+
+// ---- Clusters
+
+template <class Take>
+void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Take& take) {
+  for (const VertexId v : mesh.corners(triangle))
+    for (const TriangleId other : mesh.triangles_at(v))
+      if (other != triangle) take(other);
+}
+
+// Rings from the seeds, breadth first, and the seed that came first. kNone where none came.
+struct Rings {
+  std::vector<std::int32_t> seed, distance;
+};
+Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds) {
+  Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
+              std::vector<std::int32_t>(mesh.triangle_count(), kNone)};
+  std::vector<TriangleId> queue;
+  for (std::size_t s = 0; s < seeds.size(); ++s)
+    for (const TriangleId t : seeds[s]) {
+      if (rings.seed[+t] != kNone) continue;
+      rings.seed[+t] = static_cast<std::int32_t>(s);
+      rings.distance[+t] = 0;
+      queue.push_back(t);
+    }
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const TriangleId t = queue[next];
+    for_each_neighbour(mesh, t, [&](TriangleId other) {
+      if (rings.seed[+other] != kNone) return;
+      rings.seed[+other] = rings.seed[+t];
+      rings.distance[+other] = rings.distance[+t] + 1;
+      queue.push_back(other);
+    });
+  }
+  return rings;
+}
+
+// Triangles on either side of the seam between each two clusters.
+using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
+Seams seams_of(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
+  Seams seams;
+  for_each_seam_edge(mesh, cluster_of, [&](TriangleId a, TriangleId b) {
+    std::vector<TriangleId>& seam = seams[std::minmax(cluster_of[+a], cluster_of[+b])];
+    seam.insert(seam.end(), {a, b});
+  });
+  return seams;
+}
+
+}  // namespace
+
+void merge_thin_clusters(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of) {
+  while (true) {
+    const Seams seams = seams_of(mesh, cluster_of);
+    std::vector<std::vector<TriangleId>> all(1);
+    std::map<std::int32_t, int> neighbours;
+    for (const auto& [clusters, triangles] : seams) {
+      all[0].insert(all[0].end(), triangles.begin(), triangles.end());
+      ++neighbours[clusters.first], ++neighbours[clusters.second];
+    }
+    const Rings rings = rings_from(mesh, all);
+    std::map<std::int32_t, std::int32_t> depth;
+    for (std::size_t t = 0; t < cluster_of.size(); ++t)
+      if (rings.distance[t] != kNone)
+        depth[cluster_of[t]] = std::max(depth[cluster_of[t]], rings.distance[t] + 1);
+    struct Merge {
+      std::int32_t depth = kThin;
+      std::size_t length = 0;
+      std::int32_t from = kNone, into = kNone;
+    } best;
+    for (const auto& [clusters, triangles] : seams) {
+      if (neighbours[clusters.first] > 2 || neighbours[clusters.second] > 2) continue;
+      const std::int32_t thinner = std::min(depth[clusters.first], depth[clusters.second]);
+      if (std::pair(thinner, best.length) < std::pair(best.depth, triangles.size()))
+        best = {thinner, triangles.size(), clusters.second, clusters.first};
+    }
+    if (best.from == kNone) return;
+    std::replace(cluster_of.begin(), cluster_of.end(), best.from, best.into);
+  }
+}
+
+std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
+  std::vector<bool> all(cluster_of.size());
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    all[t] = cluster_of[t] != kNone;
+    for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
+      if (cluster_of[+other] != cluster_of[t]) all[t] = false;
+    });
+  }
+  return all;
+}
+
+std::vector<std::int32_t> nearest_seams(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
+  std::vector<std::vector<TriangleId>> seeds;
+  for (auto& [clusters, triangles] : seams_of(mesh, cluster_of)) seeds.push_back(triangles);
+  Rings rings = rings_from(mesh, seeds);
+  for (std::size_t t = 0; t < rings.seed.size(); ++t)
+    if (rings.distance[t] > kReach) rings.seed[t] = kNone;
+  return std::move(rings.seed);
+}
+
+}  // namespace cscd::fast

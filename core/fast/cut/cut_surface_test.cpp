@@ -1,0 +1,85 @@
+#include "core/fast/cut/cut_surface.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <set>
+
+#include "core/fast/cut/test_body.h"
+
+namespace cscd::fast {
+namespace {
+
+// Mutation: the second cover takes the labels of the first.
+TEST(Covers, WhatLiesAtASeamOfOneLiesInsideTheOther) {
+  const test::Body body(0.01, 0);
+  const Covers covers = cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle).covers;
+  EXPECT_EQ(covers[0].observers.size(), 5u);
+  EXPECT_EQ(covers[1].observers.size(), 4u);
+  const std::vector<bool> first = inside(body.mesh, covers[0].cluster_of),
+                          second = inside(body.mesh, covers[1].cluster_of);
+  for (std::size_t t = 0; t < first.size(); ++t) EXPECT_TRUE(first[t] || second[t]);
+}
+
+// A slice of two rings between long ones is joined with one of them.
+TEST(Covers, ThinClustersAreMerged) {
+  const test::Body body(0.01, 0);
+  std::vector<BoneId> bone_of;
+  for (const Triangle& t : body.mesh.triangles()) {
+    const double x = body.shape.positions[+t[0]].x();
+    bone_of.push_back(BoneId{x < 6 ? 0 : x < 6.5 ? 1 : 2});
+  }
+  const radial::AtomicClusters atomic = radial::make_atomic_clusters(body.mesh, bone_of);
+  EXPECT_EQ(atomic.clusters.size(), 3u);
+  EXPECT_EQ(cut_surface(body.mesh, body.shape.positions, atomic.of_triangle).covers[0].observers.size(), 2u);
+}
+
+// Mutation: seeds spread over all triangles instead of over neighbours.
+TEST(Covers, Trap03NoClusterSpansTwoComponents) {
+  const test::Shape two = test::together(test::capped_tube(8, 30, 1, 10), test::icosphere(2, 12));
+  const TriangleMesh mesh = two.mesh();
+  std::vector<BoneId> bone_of;
+  for (const Triangle& t : mesh.triangles()) bone_of.push_back(BoneId{two.positions[+t[0]].x() < 5 ? 0 : 1});
+  const Covers covers =
+      cut_surface(mesh, two.positions, radial::make_atomic_clusters(mesh, bone_of).of_triangle).covers;
+  for (const Cover& cover : covers) {
+    std::map<std::int32_t, std::set<std::int32_t>> components;
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+      components[cover.cluster_of[t]].insert(mesh.component(TriangleId{static_cast<std::int32_t>(t)}));
+    for (const auto& [cluster, in] : components) {
+      EXPECT_TRUE(cluster == kNone || in.size() == 1);
+      EXPECT_LT(cluster, static_cast<std::int32_t>(cover.observers.size()));
+    }
+  }
+}
+
+// A sphere so small beside its one spike that the point from which it is seen best is far away from it, in
+// its own measure. Mutation: draws of any weights.
+TEST(Covers, ObserversStayWithinReachOfTheirVertices) {
+  test::Shape shape = test::icosphere(4, 1e-19);
+  shape.positions[17] = {1, 0, 0};
+  const TriangleMesh mesh = shape.mesh();
+  const Cover cover = make_cover(mesh, shape.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  ASSERT_EQ(cover.observers.size(), 1u);
+  float sum = 0;
+  for (const float weight : cover.observers[0].weights()) sum += std::abs(weight);
+  EXPECT_LE(sum, 1.001F * FollowingPoint::kMostWeight);
+}
+
+TEST(Covers, ObserversSeeAllOfATubeFromInside) {
+  const test::Body body(0, 0);
+  const Covers covers = cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle).covers;
+  for (const Cover& cover : covers)
+    for (const FollowingPoint& from : cover.observers) {
+      Vec3 q = Vec3::Zero();
+      double sum = 0;
+      for (std::size_t i = 0; i < from.vertices().size(); ++i) {
+        q += static_cast<double>(from.weights()[i]) * body.shape.positions[+from.vertices()[i]];
+        sum += static_cast<double>(from.weights()[i]);
+      }
+      EXPECT_NEAR(sum, 1, 1e-5);
+      EXPECT_LT(std::hypot(q.y(), q.z()), 0.6);
+    }
+}
+
+}  // namespace
+}  // namespace cscd::fast

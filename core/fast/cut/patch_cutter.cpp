@@ -1,0 +1,258 @@
+#include "core/fast/cut/patch_cutter.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+// Patches grow one beside the other; what is left over between them is joined; then small ones are emptied
+// into those beside them.
+namespace cscd::fast {
+namespace {
+
+constexpr std::size_t kMostSeeking = 300;  // triangles that are asked to move for one; more find little
+constexpr std::size_t kMostBeside = 8;     // patches that are asked for room; at edges of two there are three
+
+std::size_t index(std::int32_t patch) {
+  return static_cast<std::size_t>(patch);
+}
+
+}  // namespace
+
+PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid, std::size_t most)
+    : mesh_(mesh),
+      centroid_(centroid),
+      most_(most),
+      free_(mesh.triangle_count(), false),
+      free_at_(mesh.edge_count(), 0),
+      is_beside_(mesh.triangle_count(), false),
+      corners_taken_(mesh.triangle_count(), 0),
+      taken_(mesh.vertex_count(), false),
+      patch_of_(mesh.triangle_count(), -1),
+      seeks_(mesh.triangle_count(), false),
+      uses_(mesh.vertex_count(), 0) {}
+
+PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
+  Patches patches = pieces(cell);
+  join(patches);
+  empty_small(patches);
+  return patches;
+}
+
+std::vector<VertexId> PatchCutter::vertices_of(std::span<const TriangleId> patch) const {
+  std::vector<VertexId> vertices;
+  for (const TriangleId t : patch)
+    vertices.insert(vertices.end(), mesh_.corners(t).begin(), mesh_.corners(t).end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+void PatchCutter::set_free(TriangleId triangle, bool free) {
+  free_[+triangle] = free;
+  is_beside_[+triangle] = false;
+  for (const EdgeId e : mesh_.edges_of(triangle)) free_at_[+e] += free ? 1 : -1;
+}
+int PatchCutter::free_beside(TriangleId triangle) const {
+  int count = 0;
+  for (const EdgeId e : mesh_.edges_of(triangle)) count += free_at_[+e] - 1;
+  return count;
+}
+
+// Each begins beside those before it, at the triangle with the fewest free neighbours.
+PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
+  for (const TriangleId t : cell) set_free(t, true);
+  Patches patches;
+  std::vector<TriangleId> beside;
+  std::size_t next = 0;
+  while (true) {
+    std::erase_if(beside, [&](TriangleId t) { return !free_[+t]; });
+    TriangleId seed{-1};
+    if (!beside.empty()) {
+      int fewest = std::numeric_limits<int>::max();
+      for (const TriangleId t : beside) {
+        const int free = free_beside(t);
+        if (free >= fewest) continue;
+        fewest = free;
+        seed = t;
+        if (free == 0) break;
+      }
+    } else {
+      while (next < cell.size() && !free_[+cell[next]]) ++next;
+      if (next == cell.size()) return patches;
+      seed = cell[next];
+    }
+    patches.push_back(grow(seed));
+    std::sort(vertices_.begin(), vertices_.end());
+    for (const VertexId v : vertices_)
+      for (const TriangleId other : mesh_.triangles_at(v))
+        if (free_[+other] && !is_beside_[+other]) {
+          beside.push_back(other);
+          is_beside_[+other] = true;
+        }
+  }
+}
+
+// Next the triangle that needs the fewest new vertices and lies nearest to the others. One vertex in common
+// is enough: what hangs at a zigzag seam by its corners would else be patches of one triangle.
+std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
+  std::vector<TriangleId> patch;
+  Vec3 sum = Vec3::Zero();
+  const auto take = [&](TriangleId triangle) {
+    patch.push_back(triangle);
+    sum += centroid_[+triangle];
+    set_free(triangle, false);
+    for (const VertexId v : mesh_.corners(triangle)) {
+      if (taken_[+v]) continue;
+      taken_[+v] = true;
+      vertices_.push_back(v);
+      for (const TriangleId t : mesh_.triangles_at(v))
+        if (free_[+t] && corners_taken_[+t]++ == 0) touched_.push_back(t);
+    }
+  };
+  touched_.clear();
+  vertices_.clear();
+  take(seed);
+  while (patch.size() < most_) {
+    const Vec3 middle = sum / static_cast<double>(patch.size());
+    TriangleId best{-1};
+    std::pair<int, double> least{3, 0};  // all need fewer
+    for (const TriangleId t : touched_) {
+      const int needed = 3 - corners_taken_[+t];
+      if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > most_)
+        continue;
+      const std::pair cost{needed, (centroid_[+t] - middle).squaredNorm()};
+      if (cost < least) {
+        best = t;
+        least = cost;
+      }
+    }
+    if (best == TriangleId{-1}) break;
+    take(best);
+  }
+  for (const TriangleId t : touched_) corners_taken_[+t] = 0;
+  for (const VertexId v : vertices_) taken_[+v] = false;
+  return patch;
+}
+
+// The smallest with the largest that it touches and fits.
+void PatchCutter::join(Patches& patches) const {
+  std::stable_sort(patches.begin(), patches.end(),
+                   [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  std::vector<std::vector<VertexId>> vertices;
+  for (const auto& patch : patches) vertices.push_back(vertices_of(patch));
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const std::vector<VertexId>& own = vertices[i];
+    for (std::size_t j = patches.size(); j-- > i + 1;) {
+      if (patches[i].size() + patches[j].size() > most_) continue;
+      const std::vector<VertexId>& other = vertices[j];
+      std::vector<VertexId> both;
+      std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
+      if (both.size() > most_ || both.size() == own.size() + other.size()) continue;
+      patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
+      patches[i].clear();
+      vertices[j] = std::move(both);
+      break;
+    }
+  }
+  std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+}
+
+// Triangles of small patches, of the smallest first, move into patches beside them, as long as they find
+// room.
+void PatchCutter::empty_small(Patches& patches) {
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (const TriangleId t : patches[p]) patch_of_[+t] = static_cast<std::int32_t>(p);
+  for (std::size_t size = 1; size < most_; ++size)
+    for (const std::vector<TriangleId>& patch : patches) {
+      if (patch.size() != size) continue;
+      const std::vector<TriangleId> triangles = patch;
+      for (const TriangleId t : triangles)
+        if (!move(t, patches)) break;
+    }
+  for (const auto& patch : patches)
+    for (const TriangleId t : patch) patch_of_[+t] = -1;
+  std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+}
+
+// Into a patch that has room, or in place of a triangle that moves on in the same way: the fewest that have
+// to move. False if none of those asked finds room.
+bool PatchCutter::move(TriangleId triangle, Patches& patches) {
+  const auto seek = [&](TriangleId t, std::size_t for_whom) {
+    seeking_.push_back({t, for_whom});
+    seeks_[+t] = true;
+  };
+  seek(triangle, 0);
+  bool found = false;
+  for (std::size_t at = 0; at < std::min(seeking_.size(), kMostSeeking) && !found; ++at)
+    for (const std::int32_t p : patches_beside(seeking_[at].triangle)) {
+      if (is_left(p, at)) continue;
+      const Room room = room_for(seeking_[at].triangle, patches[index(p)]);
+      if (room.is_free) {
+        move_all(at, p, patches);
+        found = true;
+        break;
+      }
+      for (const TriangleId other : room.in_place_of)
+        if (!seeks_[+other]) seek(other, at);
+    }
+  for (const Seeking& s : seeking_) seeks_[+s.triangle] = false;
+  seeking_.clear();
+  return found;
+}
+
+// Those of the cell on the other side of its edges, some of them where there are many.
+std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
+  std::vector<std::int32_t> found;
+  for (const EdgeId e : mesh_.edges_of(triangle))
+    for (const TriangleId t : mesh_.triangles_at(e)) {
+      const std::int32_t patch = patch_of_[+t];
+      if (found.size() == kMostBeside) return found;
+      if (patch >= 0 && std::find(found.begin(), found.end(), patch) == found.end()) found.push_back(patch);
+    }
+  return found;
+}
+
+PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const TriangleId> patch) {
+  std::size_t vertices = 0;
+  const auto enter = [&](TriangleId t) {
+    for (const VertexId v : mesh_.corners(t)) vertices += uses_[+v]++ == 0;
+  };
+  const auto forget = [&](TriangleId t) {
+    for (const VertexId v : mesh_.corners(t)) uses_[+v] = 0;
+  };
+  const auto only_its_own = [&](TriangleId t) {
+    const Triangle& c = mesh_.corners(t);
+    return static_cast<std::size_t>(std::ranges::count_if(c, [&](VertexId v) { return uses_[+v] == 1; }));
+  };
+  enter(triangle);
+  std::ranges::for_each(patch, enter);
+  Room room{patch.size() < most_ && vertices <= most_, {}};
+  for (const TriangleId t : patch)
+    if (vertices - only_its_own(t) <= most_) room.in_place_of.push_back(t);
+  forget(triangle);
+  std::ranges::for_each(patch, forget);
+  return room;
+}
+
+// Whether the triangle of a patch is among those that move if this one does.
+bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
+  while (patch_of_[+seeking_[at].triangle] != patch) {
+    if (at == 0) return false;
+    at = seeking_[at].for_whom;
+  }
+  return true;
+}
+
+// That one into a patch, the one for whom it makes room into the patch that it leaves, and so on.
+void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
+  while (true) {
+    const auto [triangle, for_whom] = seeking_[at];
+    const std::int32_t from = std::exchange(patch_of_[+triangle], to);
+    std::erase(patches[index(from)], triangle);
+    patches[index(to)].push_back(triangle);
+    if (at == 0) return;
+    at = for_whom, to = from;
+  }
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,194 @@
+#include "core/fast/cut/patches.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <numeric>
+
+#include "core/fast/cut/patch_cutter.h"
+
+namespace cscd::fast {
+namespace {
+
+// Triangles that certificates treat alike are kept together: those of one cluster of the first cover and,
+// where that leaves enough of them, of one of the second, inside which all around them is or is not.
+std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const CuttingClusters& clusters,
+                                              std::size_t least) {
+  const std::vector<bool> all = inside(mesh, clusters.second);
+  std::map<std::int32_t, std::map<std::pair<std::int32_t, bool>, std::vector<TriangleId>>> members;
+  for (std::size_t t = 0; t < all.size(); ++t)
+    members[clusters.first[t]][{clusters.second[t], all[t]}].push_back(
+        TriangleId{static_cast<std::int32_t>(t)});
+
+  std::vector<std::vector<TriangleId>> cells;
+  for (auto& [first, parts] : members) {
+    std::vector<TriangleId> rest;
+    for (auto& [second, triangles] : parts)
+      if (triangles.size() >= least)
+        cells.push_back(std::move(triangles));
+      else
+        rest.insert(rest.end(), triangles.begin(), triangles.end());
+    if (!rest.empty()) cells.push_back(std::move(rest));
+  }
+  return cells;
+}
+
+using Triangles = std::array<TriangleId, kLanes16>;
+
+Triangles padded(std::span<const TriangleId> triangles) {
+  Triangles out;
+  for (std::size_t l = 0; l < kLanes16; ++l) out[l] = triangles[std::min(l, triangles.size() - 1)];
+  return out;
+}
+
+Patch make_patch(const TriangleMesh& mesh, const Triangles& triangles, std::size_t count) {
+  Patch patch{};
+  std::vector<VertexId> vertices;
+  for (std::size_t l = 0; l < kLanes16; ++l) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId v = mesh.corners(triangles[l])[k];
+      auto place = std::find(vertices.begin(), vertices.end(), v);
+      if (place == vertices.end()) place = vertices.insert(vertices.end(), v);
+      patch.corner[k][l] = static_cast<std::uint8_t>(place - vertices.begin());
+    }
+  }
+  for (std::size_t l = 0; l < kLanes16; ++l)
+    patch.vertex[l] = static_cast<std::int32_t>(vertices[std::min(l, vertices.size() - 1)]);
+  patch.lanes = static_cast<Mask16>((1U << count) - 1);
+  patch.cluster.fill(kNone);
+  return patch;
+}
+
+// The patches of one or several cells with their centre.
+struct Item {
+  std::vector<std::size_t> patches;
+  Vec3 centre = Vec3::Zero();
+};
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const std::vector<Patch>& patches, const std::vector<Triangles>& triangles,
+              const std::vector<Vec3>& centre, PatchTree& tree)
+      : patches_(patches), triangles_(triangles), centre_(centre), tree_(tree) {}
+
+  // Over clusters of the first cover, below over the cells of each, below over patches.
+  void build(std::size_t count, const std::vector<std::int32_t>& cluster,
+             const std::vector<std::int32_t>& cell) {
+    std::vector<std::size_t> all(count);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    tree_.nodes.push_back({0});
+    split(grouped(all, cluster), 0, [&](const Item& in_cluster, std::size_t cluster_node) {
+      split(grouped(in_cluster.patches, cell), cluster_node, [&](const Item& in_cell, std::size_t cell_node) {
+        std::vector<Item> single;
+        for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
+        split(single, cell_node, [&](const Item& patch, std::size_t leaf) {
+          tree_.nodes[leaf].child = ~static_cast<std::int32_t>(tree_.patches.size());
+          tree_.leaf.push_back(static_cast<std::int32_t>(leaf));
+          tree_.patches.push_back(patches_[patch.patches[0]]);
+          tree_.triangles.push_back(triangles_[patch.patches[0]]);
+        });
+      });
+    });
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n)
+      if (!tree_.nodes[n].is_leaf()) tree_.inner.push_back(static_cast<std::int32_t>(n));
+  }
+
+ private:
+  std::vector<Item> grouped(const std::vector<std::size_t>& patches,
+                            const std::vector<std::int32_t>& key) const {
+    std::map<std::int32_t, Item> groups;
+    for (const std::size_t p : patches) groups[key[p]].patches.push_back(p);
+    std::vector<Item> items;
+    for (auto& [k, item] : groups) {
+      for (const std::size_t p : item.patches)
+        item.centre += centre_[p] / static_cast<double>(item.patches.size());
+      items.push_back(std::move(item));
+    }
+    return items;
+  }
+
+  // Halves items at the median along the longest axis of the box of their centres.
+  using Leaf = std::function<void(const Item&, std::size_t node)>;
+  void split(std::span<Item> items, std::size_t node, const Leaf& leaf) {
+    if (items.size() == 1) return leaf(items[0], node);
+    Eigen::AlignedBox3d box;
+    for (const Item& item : items) box.extend(item.centre);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    std::stable_sort(items.begin(), items.end(),
+                     [&](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
+    const std::size_t left = tree_.nodes.size(), half = items.size() / 2;
+    tree_.nodes[node].child = static_cast<std::int32_t>(left);
+    tree_.nodes.resize(left + 2);
+    split(items.first(half), left, leaf);
+    split(items.subspan(half), left + 1, leaf);
+  }
+  void split(std::vector<Item> items, std::size_t node, const Leaf& leaf) {
+    split(std::span(items), node, leaf);
+  }
+
+  const std::vector<Patch>& patches_;
+  const std::vector<Triangles>& triangles_;
+  const std::vector<Vec3>& centre_;
+  PatchTree& tree_;
+};
+
+void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
+  struct Place {
+    std::int32_t patch, lane;
+  };
+  std::vector<Place> place_of(mesh.triangle_count());
+  for (std::size_t p = 0; p < tree.patches.size(); ++p)
+    for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
+      place_of[+tree.triangles[p][l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
+  tree.adjacent_offset.push_back(0);
+  for (const Patch& patch : tree.patches) {
+    std::map<std::int32_t, Common> touching;
+    for_each_lane(patch.corners_of(patch.lanes), [&](std::size_t v) {
+      for (const TriangleId t : mesh.triangles_at(VertexId{patch.vertex[v]}))
+        touching[place_of[+t].patch].at[v] |= static_cast<Mask16>(1U << place_of[+t].lane);
+    });
+    for (const auto& [other, common] : touching) {
+      tree.adjacent.push_back(other);
+      tree.common.push_back(common);
+    }
+    tree.adjacent_offset.push_back(static_cast<std::int32_t>(tree.adjacent.size()));
+  }
+  tree.adjacent.shrink_to_fit();
+  tree.common.shrink_to_fit();
+}
+
+}  // namespace
+
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                       const CuttingClusters& clusters, std::size_t least_cell) {
+  std::vector<Vec3> centroid;
+  for (const Triangle& c : mesh.triangles())
+    centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
+
+  std::vector<Patch> patches;
+  std::vector<Triangles> triangles;
+  std::vector<Vec3> centre;
+  std::vector<std::int32_t> cluster, cell_number;
+  PatchCutter cutter(mesh, centroid, kLanes16);
+  std::int32_t number = 0;
+  for (const std::vector<TriangleId>& cell : cells_of(mesh, clusters, least_cell)) {
+    for (const std::vector<TriangleId>& patch : cutter.cut(cell)) {
+      triangles.push_back(padded(patch));
+      patches.push_back(make_patch(mesh, triangles.back(), patch.size()));
+      Vec3 sum = Vec3::Zero();
+      for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
+      centre.push_back(sum);
+      cluster.push_back(clusters.first[+cell[0]]);
+      cell_number.push_back(number);
+    }
+    ++number;
+  }
+  PatchTree tree;
+  TreeBuilder(patches, triangles, centre, tree).build(patches.size(), cluster, cell_number);
+  find_adjacent(mesh, tree);
+  tree.inside.resize(tree.patches.size());
+  return tree;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "core/fast/cut/covers.h"
+#include "core/geometry/lanes16.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::fast {
+
+// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
+// All belong to one cluster in each cover, or to none.
+struct alignas(64) Patch {
+  std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
+  std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
+  std::array<std::int32_t, kCovers> cluster;  // in each cover
+  Mask16 lanes;                               // those that are triangles
+
+  // Places of the corners of some of its triangles.
+  Mask16 corners_of(unsigned triangles) const {
+    unsigned places = 0;
+    for_each_lane(triangles, [&](std::size_t lane) {
+      for (const Places16& place : corner) places |= 1U << place[lane];
+    });
+    return static_cast<Mask16>(places);
+  }
+};
+static_assert(sizeof(Patch) == 2 * 64);
+
+// Which triangles of another patch have each vertex of this one.
+struct Common {
+  std::array<Mask16, kLanes16> at;
+
+  // Triangles that have a corner of one triangle of this patch.
+  Mask16 beside(const Patch& patch, std::size_t lane) const {
+    return static_cast<Mask16>(at[patch.corner[0][lane]] | at[patch.corner[1][lane]] |
+                               at[patch.corner[2][lane]]);
+  }
+
+  // Triangles that have one of the vertices at some places. All places at once: which of them are asked for
+  // no processor foresees.
+  Mask16 lanes(Mask16 places) const { return any_of(((Rows{} + places) & kPlace) != 0 ? rows() : Rows{}); }
+  // Places of the vertices that some of the triangles have.
+  Mask16 places(Mask16 lanes) const { return any_of((rows() & lanes) != 0 ? kPlace : Rows{}); }
+
+ private:
+  using Rows = Mask16 __attribute__((vector_size(2 * kLanes16)));
+  static constexpr Rows kPlace = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
+                                  1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
+  Rows rows() const {
+    Rows rows;
+    std::memcpy(&rows, at.data(), sizeof rows);
+    return rows;
+  }
+  static Mask16 any_of(Rows rows) {
+    std::uint64_t fours[4];
+    std::memcpy(fours, &rows, sizeof fours);
+    std::uint64_t any = (fours[0] | fours[1]) | (fours[2] | fours[3]);
+    any |= any >> 32;
+    return static_cast<Mask16>(any | any >> 16);
+  }
+};
+
+// The surface cut into patches, and a binary tree over them, built once in the reference pose. The children
+// of a node stand side by side and after it.
+struct PatchTree {
+  struct Node {
+    std::int32_t child;  // inner node: its left child, before the right one; leaf: ~patch
+    bool is_leaf() const { return child < 0; }
+    std::size_t patch() const { return static_cast<std::size_t>(~child); }
+    std::size_t left() const { return static_cast<std::size_t>(child); }
+    std::size_t right() const { return left() + 1; }
+  };
+  std::vector<Node> nodes;
+  std::vector<std::int32_t> leaf;   // node of each patch
+  std::vector<std::int32_t> inner;  // the other nodes, ascending: children after their parents
+  std::vector<Patch> patches;
+  // Of each patch; a short one repeats its last. Apart, as few patches are asked for them in an interval.
+  std::vector<std::array<TriangleId, kLanes16>> triangles;
+  std::span<const TriangleId> triangles_of(std::size_t patch) const {
+    return std::span(triangles[patch]).first(static_cast<std::size_t>(std::bit_width(patches[patch].lanes)));
+  }
+
+  // Children before their parents. (Not by way of all nodes: which of them are leaves no processor foresees.)
+  template <class Take>  // (node, its entry)
+  void for_each_inner_upwards(const Take& take) const {
+    for (std::size_t i = inner.size(); i-- > 0;)
+      take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
+  }
+
+  // Of each patch and cover: triangles whose corners' triangles all belong to the patch's cluster.
+  std::vector<std::array<Mask16, kCovers>> inside;
+
+  // The patches that touch a patch, itself among them, in compressed rows.
+  std::vector<std::int32_t> adjacent_offset, adjacent;
+  std::vector<Common> common;
+  template <class Take>  // (patch, common)
+  void for_each_adjacent(std::size_t p, const Take& take) const {
+    const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
+    for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
+      take(static_cast<std::size_t>(adjacent[i]), common[i]);
+  }
+  // Null where the two do not touch.
+  const Common* common_of(std::size_t p, std::size_t q) const {
+    const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
+    for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
+      if (static_cast<std::size_t>(adjacent[i]) == q) return &common[i];
+    return nullptr;
+  }
+};
+
+// The clusters of the first two covers, as the surface is cut along their seams: [triangles] each.
+struct CuttingClusters {
+  std::span<const std::int32_t> first, second;
+};
+
+// Cuts the surface into patches and builds the tree over them. No patch crosses a seam of the first clusters.
+// A patch crosses a seam of the second clusters only where that seam would cut fewer than `least_cell`
+// triangles out of a first cluster. The patches belong to no cluster yet, and no triangle is marked as inside
+// one: cut_surface.h enters both.
+PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                       const CuttingClusters& clusters, std::size_t least_cell);
+
+}  // namespace cscd::fast

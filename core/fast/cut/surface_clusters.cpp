@@ -1,0 +1,202 @@
+#include "core/fast/cut/surface_clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <map>
+#include <queue>
+#include <set>
+
+#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/cut/seams.h"
+
+namespace cscd::fast {
+namespace {
+
+constexpr double kShare = 0.8;        // of a piece's triangles that have to be seen well from one point:
+constexpr double kHalvedUntil = 0.5;  // cosines between ray and normal that are well enough not to halve,
+constexpr double kMergedUntil = 0.3;  // and to merge
+constexpr std::size_t kSmall = 100;   // triangles of a piece, and
+constexpr std::size_t kMany = 500;    // pieces at most by which a surface is judged too large for that
+constexpr std::size_t kSample = 512;  // triangles of a piece at most that are looked at
+constexpr int kStraightened = 3;      // times
+
+using Triangles = std::vector<TriangleId>;
+using Pair = std::pair<std::int32_t, std::int32_t>;
+
+class Pieces {
+ public:
+  Pieces(const TriangleMesh& mesh, std::span<const Vec3> positions)
+      : mesh_(mesh), piece_(mesh.triangle_count()), path_(mesh.triangle_count()) {
+    for (std::size_t t = 0; t < piece_.size(); ++t) {
+      all_.push_back(TriangleId{static_cast<std::int32_t>(t)});
+      faces_.push_back(face_of(mesh, positions, all_[t]));
+      piece_[t] = mesh.component(all_[t]);
+    }
+  }
+
+  // Halves along the length, until enough of each piece is seen well or it is small.
+  void halve() {
+    std::vector<Triangles> open = members();
+    auto count = static_cast<std::int32_t>(open.size());
+    const std::size_t small = std::max(kSmall, piece_.size() / kMany);
+    while (!open.empty()) {
+      const Triangles piece = std::move(open.back());
+      open.pop_back();
+      if (piece.size() < 2 * small || seen_well(piece, kHalvedUntil)) continue;
+      const TriangleId one = farthest_from(piece, piece[0]), other = farthest_from(piece, one);
+      std::vector<double> to_one;
+      for (const TriangleId t : piece) to_one.push_back(path_[+t]);
+      flood(piece, {other}, false);
+      std::array<Triangles, 2> halves;
+      for (std::size_t i = 0; i < piece.size(); ++i)
+        halves[path_[+piece[i]] < to_one[i] ? 1 : 0].push_back(piece[i]);
+      if (halves[0].empty() || halves[1].empty()) continue;  // of no extent
+      for (const TriangleId t : halves[1]) piece_[+t] = count;
+      ++count;
+      for (Triangles& half : halves) open.push_back(std::move(half));
+    }
+  }
+
+  // Merges neighbours while enough of both is seen well from one point: first those with the longest seam
+  // for their size. Halves of a limb become rings again, and a hub with stumps of many limbs one piece.
+  void merge() {
+    std::vector<Triangles> members = this->members();
+    std::map<Pair, std::size_t> seams;  // in edges
+    std::vector<std::size_t> border(members.size());
+    for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) {
+      ++seams[std::minmax(piece_[+a], piece_[+b])];
+      ++border[index(piece_[+a])], ++border[index(piece_[+b])];
+    });
+    std::set<Pair> refused;
+    const auto best = [&] {
+      Pair found{-1, -1};
+      double most = 0;
+      for (const auto& [pair, length] : seams) {
+        const auto& [a, b] = pair;
+        const double share =
+            static_cast<double>(length) / static_cast<double>(std::min(border[index(a)], border[index(b)]));
+        if (share <= most || refused.contains(pair)) continue;
+        most = share;
+        found = pair;
+      }
+      return found;
+    };
+    for (Pair pair = best(); pair.first >= 0; pair = best()) {
+      const std::int32_t into = pair.first, from = pair.second;
+      Triangles both = members[index(into)];
+      both.insert(both.end(), members[index(from)].begin(), members[index(from)].end());
+      if (!seen_well(both, kMergedUntil)) {
+        refused.insert(pair);
+        continue;
+      }
+      for (const TriangleId t : members[index(from)]) piece_[+t] = into;
+      members[index(into)] = std::move(both);
+      border[index(into)] += border[index(from)] - 2 * seams[pair];
+      seams.erase(pair);
+      std::map<Pair, std::size_t> left;
+      for (const auto& [other, length] : seams)
+        left[std::minmax(other.first == from ? into : other.first,
+                         other.second == from ? into : other.second)] += length;
+      seams = std::move(left);
+      std::erase_if(refused, [&](const Pair& p) {
+        return p.first == into || p.second == into || p.first == from || p.second == from;
+      });
+    }
+  }
+
+  // Lets the pieces grow anew from their middles, so that seams run halfway between them: round a limb, not
+  // up and down.
+  void straighten() {
+    Triangles seam, middle;
+    for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
+    if (seam.empty()) return;
+    flood(all_, seam, false);
+    std::map<std::int32_t, double> deepest;
+    for (std::size_t t = 0; t < piece_.size(); ++t)
+      deepest[piece_[t]] = std::max(deepest[piece_[t]], path_[t]);
+    std::copy_if(all_.begin(), all_.end(), std::back_inserter(middle),
+                 [&](TriangleId t) { return path_[+t] >= deepest[piece_[+t]] / 2; });
+    flood(all_, middle, true);
+  }
+
+  std::vector<std::int32_t> numbered() const {
+    std::map<std::int32_t, std::int32_t> number;
+    std::vector<std::int32_t> out;
+    for (const std::int32_t p : piece_)
+      out.push_back(number.try_emplace(p, static_cast<std::int32_t>(number.size())).first->second);
+    return out;
+  }
+
+ private:
+  static std::size_t index(std::int32_t piece) { return static_cast<std::size_t>(piece); }
+
+  std::vector<Triangles> members() const {
+    std::vector<Triangles> members(index(*std::max_element(piece_.begin(), piece_.end())) + 1);
+    for (const TriangleId t : all_) members[index(piece_[+t])].push_back(t);
+    return members;
+  }
+
+  bool seen_well(const Triangles& piece, double cosine) const {
+    std::vector<Face> sample;
+    const std::size_t stride = (piece.size() + kSample - 1) / kSample;
+    for (std::size_t i = 0; i < piece.size(); i += stride) sample.push_back(faces_[+piece[i]]);
+    const Vec3 from = best_viewpoint(sample);
+    const auto well = std::count_if(sample.begin(), sample.end(), [&](const Face& f) {
+      const Vec3 ray = f.centre - from;
+      return f.normal.dot(ray) > cosine * ray.norm();
+    });
+    return static_cast<double>(well) >= kShare * static_cast<double>(sample.size());
+  }
+
+  TriangleId farthest_from(const Triangles& piece, TriangleId from) {
+    flood(piece, {from}, false);
+    return *std::max_element(piece.begin(), piece.end(),
+                             [&](TriangleId a, TriangleId b) { return path_[+a] < path_[+b]; });
+  }
+
+  // Lengths of shortest paths from the seeds, over neighbours in the same piece; or over all, which then
+  // belong to the piece of their seed. Takes the triangles that can be reached.
+  void flood(const Triangles& reached, const Triangles& seeds, bool take) {
+    for (const TriangleId t : reached) path_[+t] = std::numeric_limits<double>::infinity();
+    using Step = std::pair<double, TriangleId>;
+    std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
+    for (const TriangleId seed : seeds) {
+      path_[+seed] = 0;
+      queue.emplace(0, seed);
+    }
+    while (!queue.empty()) {
+      const auto [length, t] = queue.top();
+      queue.pop();
+      if (length > path_[+t]) continue;
+      for (const EdgeId e : mesh_.edges_of(t))
+        for (const TriangleId next : mesh_.triangles_at(e)) {
+          if (!take && piece_[+next] != piece_[+t]) continue;
+          const double through = length + (faces_[+next].centre - faces_[+t].centre).norm();
+          if (!(through < path_[+next])) continue;
+          path_[+next] = through;
+          if (take) piece_[+next] = piece_[+t];
+          queue.emplace(through, next);
+        }
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  Triangles all_;
+  std::vector<Face> faces_;
+  std::vector<std::int32_t> piece_;  // of each triangle
+  std::vector<double> path_;         // length of the shortest path to each triangle, of the last flood
+};
+
+}  // namespace
+
+std::vector<std::int32_t> surface_clusters(const TriangleMesh& mesh, std::span<const Vec3> reference) {
+  Pieces pieces(mesh, reference);
+  pieces.halve();
+  pieces.merge();
+  for (int i = 0; i < kStraightened; ++i) pieces.straighten();
+  return pieces.numbered();
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,195 @@
+#include "core/fast/descend/patch_descent.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace cscd::fast {
+
+PatchDescent::PatchDescent(const DescentInput& input)
+    : input_(input),
+      nodes_(input.tree.nodes),
+      patches_(input.tree.patches),
+      star_(input.positions.records().size()),
+      triangle_bounds_(input.tree.patches.size()) {}
+
+void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid) {
+  bounds_ = bounds;
+  grid_ = grid;
+  tests_ = 0;
+  triangle_bounds_.start_interval();
+  std::fill(star_.begin(), star_.end(), Star::unknown);
+}
+
+void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
+  sink_ = &sink;
+  visit<Depth::all>(at);
+  pass_on_waiting();
+}
+
+void PatchDescent::open(NodePair at, std::vector<NodePair>& below) {
+  opened_ = &below;
+  visit<Depth::one>(at);
+}
+
+// Two different nodes have been tested against each other.
+template <PatchDescent::Depth kDepth>
+void PatchDescent::visit(NodePair at) {
+  const auto [a, b] = at;
+  if (a == b) return visit_self<kDepth>(a);
+  const PatchTree::Node first = nodes_[a], second = nodes_[b];
+  if (!first.is_leaf() && !second.is_leaf()) return step<kDepth, 2, 2>(first.left(), second.left());
+  if (!first.is_leaf()) return step<kDepth, 2, 1>(first.left(), b);
+  if (!second.is_leaf()) return step<kDepth, 1, 2>(a, second.left());
+  between(a, b);
+}
+
+template <PatchDescent::Depth kDepth>
+void PatchDescent::visit_self(std::size_t n) {
+  if (input_.certificates.skip(n, n)) return;
+  const PatchTree::Node node = nodes_[n];
+  if (node.is_leaf()) return inside(node.patch());
+  found<kDepth>({node.left(), node.left()});
+  found<kDepth>({node.right(), node.right()});
+  step<kDepth, 1, 1>(node.left(), node.right());
+}
+
+// One node or two siblings against one or two. All are tested before any is descended into.
+template <PatchDescent::Depth kDepth, std::size_t kA, std::size_t kB>
+void PatchDescent::step(std::size_t a, std::size_t b) {
+  unsigned open = 0;
+  for (std::size_t i = 0; i < kA; ++i)
+    for (std::size_t j = 0; j < kB; ++j) {
+      const bool asked = !input_.certificates.skip(a + i, b + j);
+      tests_ += asked;
+      open |= static_cast<unsigned>(asked & !apart(bounds_[a + i], bounds_[b + j])) << (i * kB + j);
+    }
+  for_each_lane(open, [&](std::size_t k) { found<kDepth>({a + k / kB, b + k % kB}); });
+}
+
+template <PatchDescent::Depth kDepth>
+void PatchDescent::found(NodePair below) {
+  if constexpr (kDepth == Depth::all)
+    visit<kDepth>(below);
+  else
+    opened_->push_back(below);
+}
+
+// Pairs inside one patch.
+inline void PatchDescent::inside(std::size_t p) {
+  const Certificates::Shared shared = input_.certificates.shared(p, p);
+  const Common* common = input_.tree.common_of(p, p);
+  const Mask16 lanes = patches_[p].lanes;
+  for (std::size_t lane = 0; lanes >> lane > 1; ++lane)
+    row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), common);
+}
+
+// Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
+inline void PatchDescent::between(std::size_t a, std::size_t b) {
+  std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
+  Certificates::Shared shared = input_.certificates.shared(p, q);
+  Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;
+  for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
+    if (shared.q[s] == patches_[q].lanes) rows &= static_cast<Mask16>(~shared.p[s]);
+    if (shared.p[s] == patches_[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
+  }
+  if (rows == 0 || columns == 0) return;
+  rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
+  if (rows == 0) return;
+  columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);
+  if (columns == 0) return;
+  if (std::popcount(columns) < std::popcount(rows)) {  // the fewer, the less work
+    std::swap(p, q), std::swap(rows, columns);
+    shared = shared.turned(patches_[q].lanes);
+  }
+  const Common* common = input_.tree.common_of(p, q);
+  for_each_lane(rows, [&](std::size_t lane) {
+    row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), common);
+  });
+}
+
+// One triangle of patch p against some of patch q.
+inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
+                              const Common* common) {
+  if (wanted == 0) return;
+  Mask16 left = 0;
+  if (common != nullptr) {
+    wanted = not_flat(p, lane, wanted, *common);
+    left = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));  // they always overlap
+    wanted &= static_cast<Mask16>(~left);
+  }
+  if (wanted != 0) {
+    tests_ += static_cast<unsigned>(std::popcount(wanted));
+    left |= near_triangle(q, wanted, p, lane);
+  }
+  if (left != 0) pass_on(p, lane, q, left);
+}
+
+// Without the pairs that the star of a common corner proves apart.
+inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common) {
+  if (input_.stars == nullptr) return wanted;
+  const Patch& patch = patches_[p];
+  for (const Places16& place : patch.corner) {
+    const Mask16 sharing = common.at[place[lane]];
+    if ((wanted & sharing) != 0 && flat(VertexId{patch.vertex[place[lane]]}))
+      wanted &= static_cast<Mask16>(~sharing);
+  }
+  return wanted;
+}
+
+// One triangle of patch p and some of patch q. Rare, hence not in the caller.
+[[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
+  const Patch &first = patches_[p], &second = patches_[q];
+  for_each_lane(lanes, [&](std::size_t other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      waiting_vertices_.first[k][waiting_count_] = first.vertex[first.corner[k][lane]];
+      waiting_vertices_.second[k][waiting_count_] = second.vertex[second.corner[k][other]];
+    }
+    waiting_[waiting_count_++] = {input_.tree.triangles[p][lane], input_.tree.triangles[q][other]};
+    if (waiting_count_ == waiting_.size()) pass_on_waiting();
+  });
+}
+
+// Those that no plane parts, in the order in which they were found.
+void PatchDescent::pass_on_waiting() {
+  if (waiting_count_ == 0) return;
+  unsigned left = (1U << waiting_count_) - 1;
+  if (input_.planes && input_.positions.known())
+    left &= not_parted(input_.positions.records(), waiting_vertices_, input_.positions.error());
+  for_each_lane(left, [&](std::size_t k) { sink_->add(waiting_[k].a, waiting_[k].b); });
+  waiting_count_ = 0;
+}
+
+inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,
+                                         const NodeBounds& other) {
+  if (!input_.positions.known()) return mask;
+  tests_ += static_cast<unsigned>(std::popcount(mask));
+  return near(triangles, mask, other);
+}
+
+// Which of some triangles of patch q are not proven apart from triangle `lane` of patch p.
+inline Mask16 PatchDescent::near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane) {
+  if (!input_.positions.known()) return wanted;
+  // Of p first: made after those of q they might take their place. Where those of q take theirs, they are
+  // made once more, elsewhere.
+  bounds_of_triangles(p);
+  const TriangleBounds& triangles = bounds_of_triangles(q);
+  return near(triangles, wanted, bounds_of_triangles(p), lane);
+}
+
+const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
+  return triangle_bounds_.of(p, [&] {
+    const TriangleBounds bounds =
+        grid_.bounds_of_triangles(load(input_.positions.records(), patches_[p].vertex), patches_[p]);
+    return input_.time_linear ? bounds : swept(bounds);
+  });
+}
+
+inline bool PatchDescent::flat(VertexId vertex) {
+  Star& star = star_[+vertex];
+  if (star == Star::unknown)
+    star = input_.stars->flat(vertex, input_.positions) ? Star::flat : Star::uncertain;
+  return star == Star::flat;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "core/detect/culler.h"
+#include "core/fast/look/grid_bounds.h"
+#include "core/fast/prove/certificates.h"
+#include "core/fast/prove/parting.h"
+#include "core/fast/prove/stars.h"
+
+namespace cscd::fast {
+
+// Two nodes of a tree over patches: all pairs of triangles, one below each; the same twice: pairs below it.
+struct NodePair {
+  std::size_t a, b;
+};
+
+// What descents of one interval read, several at a time.
+struct DescentInput {
+  const PatchTree& tree;
+  const LocalPositions& positions;
+  const Certificates& certificates;
+  const Stars* stars;  // null: none
+  bool time_linear;
+  bool planes;  // whether pairs are parted by them
+};
+
+// What an interval makes of few patches, when it is asked for: of the last of them, as a descent stays near
+// where it is. What it meets again later is made anew, which takes less time than to write and read memory
+// that others have driven from the caches.
+template <class T>
+class OnDemand {
+  static_assert(std::is_trivially_destructible_v<T>);
+
+ public:
+  explicit OnDemand(std::size_t patches) : at_(patches, kNone), made_(kMost), patch_(kMost, kNone) {}
+  void start_interval() {
+    for (std::int32_t& patch : patch_) forget(patch);
+  }
+  // The next that is made may take the place of the reference.
+  template <class Make>
+  const T& of(std::size_t patch, const Make& make) {
+    std::int32_t& at = at_[patch];
+    if (at == kNone) {
+      forget(patch_[next_]);
+      patch_[next_] = static_cast<std::int32_t>(patch);
+      at = static_cast<std::int32_t>(next_);
+      ::new (&made_[next_]) T(make());  // in place: they are large
+      next_ = (next_ + 1) % kMost;
+    }
+    return made_[static_cast<std::size_t>(at)];
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;  // fit the second cache, and so many are seldom made anew
+
+  void forget(std::int32_t& patch) {
+    if (patch != kNone) at_[static_cast<std::size_t>(patch)] = kNone;
+    patch = kNone;
+  }
+
+  std::vector<std::int32_t> at_;  // of each patch: where among those made
+  std::vector<T> made_;
+  std::vector<std::int32_t> patch_;  // of which each is
+  std::size_t next_ = 0;
+};
+
+// The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
+// triangles, and which stars are flat. It meets what no cover certifies.
+class alignas(64) PatchDescent {  // no cache line with another thread's
+ public:
+  // What `input` names must outlive the descent.
+  explicit PatchDescent(const DescentInput& input);
+
+  // `bounds`, of each node in steps of `grid`, must stay until the last descent of the interval.
+  void start_interval(std::span<const NodeBounds> bounds, const Grid& grid);
+  // Passes on what is not proven apart.
+  void descend(NodePair at, TrianglePairSink& sink);
+  // Whether there are nodes below one of the two.
+  bool can_open(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
+  // Appends the pairs of nodes into which a descent from two that can be opened falls apart, in its order.
+  void open(NodePair at, std::vector<NodePair>& below);
+  // Overlap tests in this interval.
+  std::uint64_t tests() const { return tests_; }
+
+ private:
+  enum class Star : std::uint8_t { unknown, flat, uncertain };
+
+  enum class Depth { one, all };
+
+  template <Depth kDepth>
+  void visit(NodePair at);
+  template <Depth kDepth>
+  void visit_self(std::size_t n);
+  template <Depth kDepth, std::size_t kA, std::size_t kB>
+  void step(std::size_t a, std::size_t b);
+  template <Depth kDepth>
+  void found(NodePair below);
+  void inside(std::size_t p);
+  void between(std::size_t a, std::size_t b);
+  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Common* common);
+  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common);
+  bool flat(VertexId vertex);
+  void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
+  void pass_on_waiting();
+  Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);
+  Mask16 near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane);
+  const TriangleBounds& bounds_of_triangles(std::size_t p);
+
+  const DescentInput input_;
+  const std::span<const PatchTree::Node> nodes_;
+  const std::span<const Patch> patches_;
+  std::span<const NodeBounds> bounds_;
+  Grid grid_{1};
+  std::vector<Star> star_;  // of each vertex
+  OnDemand<TriangleBounds> triangle_bounds_;
+  TrianglePairSink* sink_ = nullptr;
+  // Pairs that wait until planes are asked about sixteen. Behind them stand those of before.
+  std::array<TrianglePair, kLanes16> waiting_{};
+  PairLanes waiting_vertices_;
+  std::size_t waiting_count_ = 0;
+  std::vector<NodePair>* opened_ = nullptr;
+  std::uint64_t tests_ = 0;
+};
+
+}  // namespace cscd::fast

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <deque>
+
+#include "core/base/team.h"
+#include "core/fast/descend/patch_descent.h"
+
+namespace cscd::fast {
+
+// The descent of one interval by a team: opened to pairs of nodes, in the order of the descent, ranges of
+// which are shared out. Each thread has its own scratch, each range its own list of pairs; the lists are
+// joined in order, so the sink sees the same pairs in the same order, and the counters are the same, however
+// many threads there are.
+class SharedDescent {
+ public:
+  // What `input` names, and the team, must outlive the descent.
+  SharedDescent(const DescentInput& input, const Team& team);
+
+  // Returns the number of overlap tests. `bounds`, of each node, are in steps of `grid`.
+  std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink);
+
+ private:
+  class Kept : public TrianglePairSink {
+   public:
+    Kept() : TrianglePairSink(1 << 9) {}
+    std::vector<TrianglePair> pairs;
+
+   private:
+    void take(const std::vector<TrianglePair>& block) override {
+      pairs.insert(pairs.end(), block.begin(), block.end());
+    }
+  };
+  void bring_near() const;
+  void open();
+  void join(TrianglePairSink& sink);
+
+  const DescentInput input_;
+  const Team& team_;
+  std::vector<PatchDescent> by_thread_;
+  std::deque<Kept> kept_;  // of each range
+  std::vector<NodePair> opened_, next_;
+  std::uint64_t tests_ = 0;  // of the last interval
+};
+
+}  // namespace cscd::fast

@@ -1,0 +1,32 @@
+#include "core/fast/drvbc_fast.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/stage_clock.h"
+#include "core/detect/compose.h"
+#include "core/fast/trial.h"
+
+namespace cscd {
+
+Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
+  if (!options.complete) require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
+  if (setup.threads < 1)
+    throw InputError("strategy " + std::string(options.name) + ": " + std::to_string(setup.threads) +
+                     " threads; give at least one");
+  StageClock clock;
+  clock.enter(Stage::decomposition);
+  fast::Candidate best = fast::best_candidate(setup, options, clock);
+  clock.stop();
+  Preparation preparation;
+  if (clock.milliseconds(Stage::distance_and_heat) > 0)
+    preparation.distance_and_heat_ms = clock.milliseconds(Stage::distance_and_heat);
+  preparation.decomposition_ms = clock.milliseconds(Stage::decomposition);
+  preparation.atomic_clusters = 1 + *std::max_element(best.cluster_of.begin(), best.cluster_of.end());
+  preparation.atomic_cluster = std::move(best.cluster_of);
+  preparation.threads = setup.threads;
+  return {compose(std::move(best.culler), setup.mesh, setup.elementary), preparation};
+}
+
+}  // namespace cscd

@@ -1,0 +1,70 @@
+#include "core/fast/drvbc_fast.h"
+
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/base/error.h"
+#include "core/elementary/catalogue.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+// A long tube, and itself bent with so much noise that neighbours may run into each other.
+struct Scene {
+  test::Shape shape = test::uneven_tube(12, 400, 90, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); });
+  TriangleMesh mesh = shape.mesh();
+  std::vector<Vec3> end;
+
+  explicit Scene(double noise) {
+    std::mt19937 random(1);
+    const auto dice = [&] { return noise * (static_cast<double>(random() >> 8) * 0x1p-23 - 1); };
+    for (const Vec3& p : shape.positions)
+      end.push_back(p + Vec3(dice(), std::sin(p.x() / 3) + dice(), dice()));
+  }
+  Setup setup(int threads) const {
+    return {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact"), threads};
+  }
+  Motion motion() const { return Motion(shape.positions, end); }
+};
+
+// Mutations: lists of pairs joined from the last; tests counted of one thread alone; a pair of nodes that
+// can be opened passed on twice; the last range of nodes not looked at; the largest of one range alone.
+TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
+  for (const auto& [noise, complete] : {std::pair(0.0, false), {0.1, false}, {0.3, false}, {0.1, true}}) {
+    const Scene scene(noise);
+    ContactSet alone, found;
+    Report report;
+    for (const int threads : {1, 2, 3, 7}) {
+      const std::unique_ptr<Detector> detector =
+          make_drvbc_fast(scene.setup(threads), {.complete = complete}).detector;
+      for (int again = 0; again < 2; ++again) {
+        const Report now = detector->detect(scene.motion(), nullptr, found);
+        if (threads == 1) alone = found, report = now;
+        EXPECT_EQ(now.cull.bvot, report.cull.bvot) << threads << " threads";
+        EXPECT_EQ(now.cull.pctp, report.cull.pctp);
+        EXPECT_EQ(now.cull.radial->positive, report.cull.radial->positive);
+        EXPECT_EQ(now.cull.radial->uncertain, report.cull.radial->uncertain);
+        EXPECT_EQ(now.pairs.feature_pairs, report.pairs.feature_pairs);
+        EXPECT_EQ(now.pairs.elementary_tests, report.pairs.elementary_tests);
+        // In the order of the descent.
+        ASSERT_EQ(found.contacts.size(), alone.contacts.size());
+        for (std::size_t i = 0; i < found.contacts.size(); ++i) {
+          ASSERT_EQ(found.contacts[i].pair, alone.contacts[i].pair) << threads << " threads, contact " << i;
+          ASSERT_EQ(found.contacts[i].time, alone.contacts[i].time);
+        }
+      }
+    }
+    EXPECT_GT(report.cull.bvot, 500u);
+    EXPECT_EQ(alone.contacts.size() > 1000, noise > 0.2);
+    EXPECT_EQ(alone.contacts.empty(), noise == 0);
+  }
+}
+
+TEST(DrvbcFast, NeedsAThread) {
+  const Scene scene(0);
+  for (const int threads : {0, -1}) EXPECT_THROW(make_drvbc_fast(scene.setup(threads)), InputError);
+}
+
+}  // namespace
+}  // namespace cscd

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/team.h"
+#include "core/detect/culler.h"
+#include "core/detect/strategy.h"
+#include "core/fast/cut/cut_surface.h"
+#include "core/fast/descend/shared_descent.h"
+#include "core/fast/look/grid_bounds.h"
+#include "core/fast/options.h"
+#include "core/fast/prove/certificates.h"
+#include "core/fast/prove/stars.h"
+
+namespace cscd::fast {
+
+// The culler behind `drvbc_fast` and `drvbc_fast_complete`. An interval takes one pass over all vertices
+// (refit), one pass over all patches (classify), and a descent to the pairs of triangles that nothing proves
+// apart (cull), all three on as many threads as the set-up asks for.
+class FastCuller : public Culler {
+ public:
+  // `cluster_of`, [triangles], is what the surface is cut along (cut/cut_surface.h).
+  FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, std::size_t least_cell,
+             const DrvbcFastOptions& options);
+
+  // From the next interval on, looks from the first `count` covers alone, at least one.
+  void use_covers(std::size_t count) { certificates_.use_covers(count); }
+
+  void refit(const Motion& motion) override;
+  // Makes bounds too, because a patch is loaded once for its bounds and its orientations.
+  bool classify(const Motion& motion, const Rig::Interval* bones) override;
+  CullCounts cull(TrianglePairSink& sink) override;
+  RadialView radial_view() const override { return certificates_.view(); }
+
+  std::size_t patch_count() const { return cut_.tree.patches.size(); }
+  // How often a patch is looked at in an interval, from one cover each.
+  std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
+
+ private:
+  void look(std::size_t patch);
+  void fetch(std::size_t patch) const;
+
+  CutSurface cut_;
+  DrvbcFastOptions options_;
+  LocalPositions positions_;
+  Certificates certificates_;
+  Stars stars_;
+  Team team_;
+  SharedDescent descent_;
+  Grid grid_{1};
+  std::vector<NodeBounds> bounds_;  // [nodes]
+};
+
+}  // namespace cscd::fast

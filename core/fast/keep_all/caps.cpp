@@ -1,0 +1,205 @@
+#include "core/fast/keep_all/caps.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+
+namespace cscd::fast {
+namespace {
+
+constexpr std::size_t kFollowed = 8;  // vertices at most that an apex follows
+
+using Loop = std::vector<VertexId>;  // each before the next, the last before the first
+
+// The edges of a cluster's contour as its triangles go along them, chained to loops. Where several pass
+// through one vertex, which of them are chained to which does not matter.
+std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
+  std::vector<Loop> loops;
+  while (!edges.empty()) {
+    Loop loop = {edges.begin()->first};
+    while (true) {
+      const auto next = edges.find(loop.back());
+      const VertexId to = next->second;
+      edges.erase(next);
+      if (to == loop.front()) break;
+      loop.push_back(to);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+FollowingPoint middle(const Loop& loop) {
+  const std::size_t count = std::min(kFollowed, loop.size());
+  FollowingPoint point;
+  for (std::size_t i = 0; i < count; ++i)
+    point.add(loop[i * loop.size() / count], 1 / static_cast<float>(count));
+  return point;
+}
+
+// A fan over a loop about an apex, and below it triangles that cut off vertices which would make the fan
+// turn back. Of two that are seen in the wrong order the one farther from the apex is cut off, as then the
+// triangle that does so mostly fills a notch of the cluster and is positive.
+class Fan {
+ public:
+  Fan(const Loop& loop, std::span<const Vec3> positions, const Vec3& from, const Vec3& apex) : loop_(loop) {
+    const Vec3 axis = (apex - from).normalized();
+    const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
+    for (const VertexId v : loop) {
+      const Vec3 to = (positions[+v] - from).normalized();
+      seen_.emplace_back(to.dot(x), to.dot(y));
+      nearness_.push_back(to.dot(axis));
+    }
+    const std::size_t n = loop.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      next_.push_back((i + 1) % n);
+      previous_.push_back((i + n - 1) % n);
+    }
+    cut_off();
+  }
+  std::vector<Triangle> triangles() const {
+    std::vector<Triangle> all = cut_;
+    std::size_t i = start_;
+    do {
+      all.push_back({kApex, loop_[next_[i]], loop_[i]});
+      i = next_[i];
+    } while (i != start_);
+    return all;
+  }
+  static constexpr VertexId kApex{-1};
+
+ private:
+  // The loop goes round the axis clockwise.
+  bool in_order(std::size_t i) const {
+    const auto &a = seen_[next_[i]], &b = seen_[i];
+    const double wanted = std::numbers::pi / 2 / static_cast<double>(loop_.size());  // a quarter of the mean
+    return a.x() * b.y() - a.y() * b.x() > wanted * a.norm() * b.norm();
+  }
+  void cut_off() {
+    std::vector<bool> gone(loop_.size(), false);
+    std::size_t left = loop_.size(), in_row = 0, i = 0;
+    while (left > 3 && in_row <= left) {
+      const std::size_t n = next_[i];
+      if (in_order(i)) {
+        ++in_row;
+        i = n;
+        continue;
+      }
+      const std::size_t off = nearness_[i] < nearness_[n] ? i : n;
+      const std::size_t before = previous_[off], after = next_[off];
+      cut_.push_back({loop_[before], loop_[after], loop_[off]});
+      next_[before] = after;
+      previous_[after] = before;
+      start_ = i = before;
+      in_row = 0;
+      --left;
+    }
+  }
+
+  const Loop& loop_;
+  std::vector<Eigen::Vector2d> seen_;
+  std::vector<double> nearness_;
+  std::vector<std::size_t> next_, previous_;
+  std::size_t start_ = 0;
+  std::vector<Triangle> cut_;
+};
+
+// Sixteen triangles or vertices, with the apex, in each.
+std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
+  constexpr std::uint8_t kApexPlace = kLanes16 - 1;
+  std::vector<Patch> patches;
+  std::vector<VertexId> vertices;
+  std::size_t lane = kLanes16;
+  const auto missing = [&](const Triangle& t) {
+    return static_cast<std::size_t>(std::count_if(t.begin(), t.end(), [&](VertexId v) {
+      return v != Fan::kApex && std::find(vertices.begin(), vertices.end(), v) == vertices.end();
+    }));
+  };
+  for (const Triangle& t : triangles) {
+    if (lane == kLanes16 || vertices.size() + missing(t) > kApexPlace) {
+      patches.emplace_back();
+      patches.back().cluster.fill(kNone);
+      vertices.clear();
+      lane = 0;
+    }
+    Patch& patch = patches.back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto place =
+          static_cast<std::size_t>(std::find(vertices.begin(), vertices.end(), t[k]) - vertices.begin());
+      if (t[k] == Fan::kApex)
+        place = kApexPlace;
+      else if (place == vertices.size())
+        vertices.push_back(t[k]);
+      // What follows repeats the last.
+      for (std::size_t l = lane; l < kLanes16; ++l) patch.corner[k][l] = static_cast<std::uint8_t>(place);
+    }
+    for (std::size_t i = 0; i < kLanes16; ++i)
+      patch.vertex[i] = static_cast<std::int32_t>(vertices[std::min(i, vertices.size() - 1)]);
+    patch.lanes |= static_cast<Mask16>(1U << lane);
+    ++lane;
+  }
+  return patches;
+}
+
+// How many triangles of a fan about that apex are seen from behind.
+std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const Vec3& from,
+                        const Vec3& apex) {
+  std::ptrdiff_t count = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    count +=
+        (apex - from).cross(positions[+loop[(i + 1) % loop.size()]] - from).dot(positions[+loop[i]] - from) >
+        0;
+  return count;
+}
+
+// `all`: vertices of the cluster.
+Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const Vec3> reference,
+        const Vec3& from) {
+  Cap best{};
+  Vec3 apex;
+  std::ptrdiff_t most = -1;
+  for (const auto& [towards, opposite] :
+       {std::pair(middle(loop), false), std::pair(middle(loop), true), std::pair(middle(all), true)}) {
+    const Vec3 point = towards.at(reference), candidate = opposite ? 2 * from - point : point;
+    const std::ptrdiff_t count = positive(loop, reference, from, candidate);
+    if (count <= most) continue;
+    most = count;
+    apex = candidate;
+    best = {cluster, towards, opposite, {}};
+  }
+  best.fans = packed(Fan(loop, reference, from, apex).triangles());
+  return best;
+}
+
+}  // namespace
+
+std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover) {
+  // Of each cluster: how much more often its triangles go along an edge from its first end than from its
+  // second. That is 0 inside, and whatever is left is a sum of loops, on any surface.
+  std::map<std::int32_t, std::map<std::pair<VertexId, VertexId>, int>> passed;
+  std::map<std::int32_t, Loop> vertices;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::int32_t own = cover.cluster_of[t];
+    if (own == kNone) continue;
+    const Triangle& corners = mesh.triangles()[t];
+    vertices[own].push_back(corners[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId from = corners[k], to = corners[(k + 1) % 3];
+      passed[own][std::minmax(from, to)] += from < to ? 1 : -1;
+    }
+  }
+  std::vector<Cap> caps;
+  for (const auto& [number, edges] : passed) {
+    std::multimap<VertexId, VertexId> contour;
+    for (const auto& [edge, times] : edges)
+      for (int i = 0; i < std::abs(times); ++i)
+        contour.emplace(times > 0 ? edge.first : edge.second, times > 0 ? edge.second : edge.first);
+    const auto cluster = static_cast<std::size_t>(number);
+    for (const Loop& loop : chained(std::move(contour)))
+      caps.push_back(cap(cluster, loop, vertices[number], reference, cover.observers[cluster].at(reference)));
+  }
+  return caps;
+}
+
+}  // namespace cscd::fast

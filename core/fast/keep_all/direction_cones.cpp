@@ -1,0 +1,105 @@
+#include "core/fast/keep_all/direction_cones.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Rounding. u = 2^-24, d = `error`. A vector r from the viewpoint is off by d + u |r| in each component, its
+// direction by less than 4 d / |r| + 4 u, and the cosine of its angle with the axis by that and a few u.
+// What of lengths near one is computed of cosines and sines below is off by less than kRounding.
+namespace cscd::fast {
+namespace {
+
+constexpr float kRounding = 4e-6F;
+constexpr float kLeastCosine = 0.1F;
+constexpr float kLeastLength = 100;  // in errors
+
+Float16 dot(const Float16 (&a)[3], const Float16 (&b)[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+struct Directions {
+  PatchLanes to;     // each vertex, of unit length
+  Float16 nearness;  // the reciprocal of the shorter distance
+};
+Directions directions(const PatchLanes& lanes, const Viewpoint& viewpoint) {
+  Directions out;
+  for (int end = 0; end < 2; ++end) {
+    Float16 r[3];
+    for (int i = 0; i < 3; ++i) r[i] = lanes.at[end][i] - viewpoint.at[end][i];
+    const Float16 reciprocal = 1 / square_root(dot(r, r));
+    out.nearness = end == 0 ? reciprocal : larger(out.nearness, reciprocal);
+    for (int i = 0; i < 3; ++i) out.to.at[end][i] = r[i] * reciprocal;
+  }
+  return out;
+}
+
+}  // namespace
+
+Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
+  const auto [direction, nearness] = directions(lanes, viewpoint);
+  Cones cones;
+  for (int i = 0; i < 3; ++i) {
+    const Float16 both = direction.at[0][i] + direction.at[1][i];
+    cones.axis[i] =
+        permuted(both, patch.corner[0]) + permuted(both, patch.corner[1]) + permuted(both, patch.corner[2]);
+  }
+  const Float16 reciprocal = 1 / square_root(dot(cones.axis, cones.axis));
+  for (Float16& component : cones.axis) component *= reciprocal;
+
+  cones.known = 0xffff;
+  cones.cosine = all_lanes(1);
+  for (const Places16& corner : patch.corner) {
+    const Float16 near = permuted(nearness, corner);
+    const Float16 slack = 4.1F * error * near + kRounding;
+    cones.known &= above(all_lanes(1 / (kLeastLength * error)), near);
+    for (int end = 0; end < 2; ++end) {
+      Float16 r[3];
+      for (int i = 0; i < 3; ++i) r[i] = permuted(direction.at[end][i], corner);
+      cones.cosine = smaller(cones.cosine, dot(cones.axis, r) - slack);
+    }
+  }
+  cones.sine = square_root((1 - cones.cosine) * (1 + cones.cosine));
+  // Not a number where an axis vanishes: that compares as false.
+  cones.known &= above(cones.cosine, all_lanes(kLeastCosine));
+  return cones;
+}
+
+std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& viewpoint, float error) {
+  Float16 sum[3] = {};
+  for (const PatchLanes& some : lanes) {
+    const Directions d = directions(some, viewpoint);
+    for (int i = 0; i < 3; ++i) sum[i] += d.to.at[0][i] + d.to.at[1][i];
+  }
+  Cone cone{};
+  float square = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (std::size_t l = 0; l < kLanes16; ++l) cone.axis[i] += sum[i][l];
+    square += cone.axis[i] * cone.axis[i];
+  }
+  if (!(square > 0)) return std::nullopt;  // nor where it is not a number
+  for (float& component : cone.axis) component /= std::sqrt(square);
+  cone.cosine = 1;
+  for (const PatchLanes& some : lanes) {
+    const Directions d = directions(some, viewpoint);
+    const Float16 slack = 4.1F * error * d.nearness + kRounding;
+    if (above(all_lanes(1 / (kLeastLength * error)), d.nearness) != 0xffff) return std::nullopt;
+    for (int end = 0; end < 2; ++end) {
+      const Float16 cosine = cone.axis[0] * d.to.at[end][0] + cone.axis[1] * d.to.at[end][1] +
+                             cone.axis[2] * d.to.at[end][2] - slack;
+      for (std::size_t l = 0; l < kLanes16; ++l) cone.cosine = std::min(cone.cosine, cosine[l]);
+    }
+  }
+  if (!(cone.cosine > kLeastCosine)) return std::nullopt;
+  cone.sine = std::sqrt((1 - cone.cosine) * (1 + cone.cosine));
+  return cone;
+}
+
+Mask16 apart(const Cones& cones, const Cone& other) {
+  const Float16 between =
+      cones.axis[0] * other.axis[0] + cones.axis[1] * other.axis[1] + cones.axis[2] * other.axis[2];
+  // Angles below a right one each, so that the sum of both is one that a cosine tells.
+  const Float16 together = cones.cosine * other.cosine - cones.sine * other.sine;
+  return above(together - kRounding, between) & cones.known;
+}
+
+}  // namespace cscd::fast

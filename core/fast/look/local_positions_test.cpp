@@ -1,0 +1,63 @@
+#include "core/fast/look/local_positions.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "core/fast/cut/test_body.h"
+#include "core/radial/exact_orientation.h"
+
+namespace cscd::fast {
+namespace {
+
+// Mutations: the error without its summand for rounding; the difference taken in float.
+TEST(LocalPositions, EveryCoordinateIsWithinItsError) {
+  for (const auto& [origin, scale] : {std::pair<Vec3, double>{{0, 0, 0}, 1},
+                                      {{1e7, -3e6, 123.456}, 1},
+                                      {{0, 0, 0}, 1e-20},
+                                      {{1e30, 0, 0}, 1e25}}) {
+    const test::Body body(0.05, 2, origin, scale);
+    LocalPositions local(body.start);
+    local.update(body.motion());
+    ASSERT_TRUE(local.known());
+    // The scale is a power of two, so that it shows in any coordinate.
+    const test::Exact3 first = test::exact(body.start[0]);
+    double unit = 0;
+    for (std::size_t v = 1; unit == 0; ++v)
+      if (const double way = (body.start[v] - body.start[0]).x(); std::abs(way) > scale)
+        unit = std::exp2(std::round(std::log2(static_cast<double>(local.records()[v].at[0]) / way)));
+    for (std::size_t v = 0; v < body.start.size(); ++v)
+      for (const auto& [points, at] : {std::pair{&body.start, 0U}, std::pair{&body.end, 4U}})
+        for (std::size_t i = 0; i < 3; ++i) {
+          const mpq_class exact = (test::exact((*points)[v])[i] - first[i]) * mpq_class(unit);
+          const mpq_class off = exact - mpq_class(local.records()[v].at[at + i]);
+          EXPECT_LE(abs(off), mpq_class(local.error()));
+        }
+    EXPECT_LT(local.error(), 4e-7F) << "the body is about one unit large";
+  }
+}
+
+TEST(LocalPositions, AMotionOutOfRangeIsNotKnown) {
+  test::Body body(0, 1);
+  LocalPositions local(body.start);
+  body.end[7].y() = 1e200;
+  local.update(body.motion());
+  EXPECT_FALSE(local.known());
+  body.end[7].y() = -1e308;
+  body.start[0].y() = 1e308;
+  local.update(body.motion());
+  EXPECT_FALSE(local.known());
+}
+
+// In any coordinate. Mutation: a maximum that passes over what is no number.
+TEST(LocalPositions, WhatIsNoNumberIsNotKnown) {
+  for (const Eigen::Index i : {0, 1, 2}) {
+    test::Body body(0, 1);
+    LocalPositions local(body.start);
+    body.end[7][i] = std::numeric_limits<double>::quiet_NaN();
+    local.update(body.motion());
+    EXPECT_FALSE(local.known());
+  }
+}
+
+}  // namespace
+}  // namespace cscd::fast

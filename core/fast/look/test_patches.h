@@ -1,0 +1,51 @@
+#pragma once
+
+// For tests only: bodies cut into patches, far from the origin and in small units too.
+
+#include <cmath>
+#include <vector>
+
+#include "core/fast/cut/cut_surface.h"
+#include "core/fast/cut/test_body.h"
+#include "core/fast/look/local_positions.h"
+#include "core/radial/exact_orientation.h"
+
+namespace cscd::test {
+
+// The origin and the unit keep viewpoints of few bits exact in world coordinates.
+struct Patches : Body, fast::CutSurface {
+  Vec3 shift;
+  double unit;  // of local lengths in the world
+  fast::LocalPositions local;
+
+  Patches(double noise, double bend, const Vec3& origin, double scale, int seed)
+      : Body(noise, bend, origin, scale, seed),
+        fast::CutSurface(fast::cut_surface(mesh, shape.positions, atomic.of_triangle)),
+        local(start) {
+    local.update(motion());
+    shift = start[0];
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : start) box.extend(p);
+    unit = std::ldexp(1.0, std::ilogb(box.sizes().maxCoeff()));
+  }
+  // In local units, exactly, times 1.
+  Exact3 exact_local(const Vec3& p) const {
+    const Exact3 at = exact(p), from = exact(shift);
+    Exact3 out;
+    for (std::size_t i = 0; i < 3; ++i) out[i] = (at[i] - from[i]) / mpq_class(unit);
+    return out;
+  }
+};
+
+inline std::vector<Patches> patches() {
+  constexpr struct {
+    double noise, bend, origin, scale;
+  } kBodies[] = {{0.02, 1, 0, 1}, {0.1, 2, 1e6, 1}, {0.05, 3, 1e9, 1e-3}, {0.1, 1, 0.5, 1e-15}};
+  std::vector<Patches> all;
+  for (const auto& b : kBodies)
+    all.emplace_back(b.noise, b.bend, Vec3(b.origin, -b.origin / 2, b.origin / 4), b.scale,
+                     1 + static_cast<int>(all.size()));
+  return all;
+}
+
+}  // namespace cscd::test

@@ -1,0 +1,31 @@
+#include "core/fast/look/viewpoint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/geometry/lanes16.h"
+
+namespace cscd::fast {
+
+float reach_of(const Viewpoint& viewpoint, float error) {
+  float largest = 0;
+  for (const auto& end : viewpoint.at)
+    for (const float coordinate : end) largest = std::max(largest, std::abs(coordinate));
+  return 1.0001F * (0x1p24F * error + largest);  // the rest pays for roundings and for twice the error
+}
+
+Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {
+  Float8 sum = {};
+  for (std::size_t i = 0; i < point.vertices().size(); ++i) {
+    Float8 record;
+    std::memcpy(&record, records[+point.vertices()[i]].at, sizeof record);
+    sum += point.weights()[i] * record;
+  }
+  Viewpoint out;
+  for (std::size_t end = 0; end < 2; ++end)
+    for (std::size_t k = 0; k < 3; ++k) out.at[end][k] = sum[4 * end + k];
+  return out;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,210 @@
+#include "core/fast/prove/certificates.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+// Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
+// exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
+namespace cscd::fast {
+namespace {
+
+std::uint64_t count(unsigned mask) {
+  return static_cast<std::uint64_t>(std::popcount(mask));
+}
+
+constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states looked at
+
+}  // namespace
+
+Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped)
+    : tree_(tree),
+      covers_(covers),
+      certified_(tree.patches.size()),
+      own_(tree.patches.size()),
+      state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
+      label_(tree.nodes.size(), Label{} + kNone),
+      capped_(std::move(capped)),
+      crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
+  // The first cover holds every triangle: `look` takes that for granted.
+  assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
+  for (const Patch& patch : tree_.patches)
+    cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
+  use_covers(kCovers);
+}
+
+void Certificates::use_covers(std::size_t count) {
+  assert(0 < count && count <= kCovers);
+  covers_used_ = count;
+  counts_ = {};
+  for (std::size_t c = 0; c < kCovers; ++c) {
+    viewpoint_[c].resize(c < count ? covers_[c].observers.size() : 0);
+    counts_.clusters += viewpoint_[c].size();
+  }
+  forget();
+}
+
+// Nothing is certain of any patch until it is looked at.
+void Certificates::forget() {
+  std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
+  std::fill_n(state_.begin(), cell_.size(), State::spoiled);
+}
+
+std::size_t Certificates::looks_per_interval() const {
+  std::size_t looks = 0;
+  for (const Cell& cell : cell_)
+    for (std::size_t c = 0; c < covers_used_; ++c) looks += cell.cluster[c] != kNone;
+  return looks;
+}
+
+void Certificates::start(const LocalPositions& positions) {
+  positions_ = &positions;
+  place_viewpoints(positions.records());
+  for (std::size_t c = 0; c < std::min(covers_used_, capped_.size()); ++c)
+    capped_[c].start(positions, viewpoint_[c]);
+}
+
+void Certificates::finish() {
+  if (capped_.empty())
+    certify_all_round();
+  else
+    certify_clear();
+  if (!positions_->known()) forget();
+  label_nodes();
+}
+
+void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    for (std::size_t i = 0; i < viewpoint_[c].size(); ++i) {
+      Viewpoint& viewpoint = viewpoint_[c][i];
+      viewpoint = placed(covers_[c].observers[i], records);
+      viewpoint.reach = reach_of(viewpoint, positions_->error());
+    }
+}
+
+void Certificates::look(std::size_t p, const PatchLanes& lanes) {
+  const Patch& patch = tree_.patches[p];
+  const Viewpoint* from[kCovers] = {};
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
+  Signs seen[kCovers];
+  orientations(lanes, patch, from, positions_->error(), seen);
+  for (std::size_t c = 0; c < capped_.size(); ++c)
+    if (from[c] != nullptr)
+      crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
+  bool usual = capped_.empty();
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    usual &= from[c] == nullptr || (patch.lanes & ~static_cast<unsigned>(seen[c].positive)) == 0;
+  if (usual) return make_usual(p);
+  state_[p] = State::seen;
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    if (from[c] != nullptr)
+      own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
+                    static_cast<Mask16>(patch.lanes & seen[c].negative)};
+  // The first cover holds every triangle. The others are certified unless `finish` finds something around.
+  certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive), own_[p][0].negative};
+  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+}
+
+void Certificates::make_usual(std::size_t p) {
+  if (state_[p] == State::usual) return;
+  state_[p] = State::unlabelled;
+  own_[p] = {};
+  certified_[p] = {};
+  certified_[p][0].positive = cell_[p].lanes;
+  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c].positive = cell_[p].inside[c];
+}
+
+template <class Take>
+void Certificates::for_each_unusual(const Take& take) const {
+  for (std::size_t first = 0; first < state_.size(); first += kTogether) {
+    std::uint64_t states = 0;
+    std::memcpy(&states, &state_[first], sizeof states);
+    if (states == 0) continue;
+    for (std::size_t p = first; p < first + kTogether; ++p)
+      if (state_[p] != State::usual) take(p);
+  }
+}
+
+void Certificates::certify_all_round() {
+  for_each_unusual([&](std::size_t p) {
+    if (state_[p] == State::seen) look_round(p);
+  });
+}
+
+// Of a patch that by itself is not all positive, in all covers but the first, whose triangles go by
+// themselves.
+void Certificates::look_round(std::size_t p) {
+  const Patch& patch = tree_.patches[p];
+  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
+  unsigned any = 0;
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    any |= corners[c] = patch.corners_of(own_[p][c].not_positive);
+  if (any == 0) return;
+  tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
+    if (state_[q] != State::seen) state_[q] = State::spoiled;
+    for (std::size_t c = 1; c < covers_used_; ++c) {
+      certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners[c]));
+      not_negative[c] |= common.places(static_cast<Mask16>(~own_[q][c].negative));
+    }
+  });
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
+      if ((patch.corners_of(1U << lane) & not_negative[c]) == 0)
+        certified_[p][c].negative |= static_cast<Mask16>(1U << lane);
+    });
+}
+
+void Certificates::certify_clear() {
+  const auto for_each_seen = [&](const auto& take) {
+    for (std::size_t p = 0; p < certified_.size(); ++p)
+      for (std::size_t c = 0; c < covers_used_; ++c)
+        if (cell_[p].cluster[c] != kNone)
+          take(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own_[p][c].not_positive)));
+  };
+  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
+    if (positive != cell_[p].lanes || crosses_ray_[p][c]) capped_[c].take(tree_.patches[p], positive);
+  });
+  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
+    certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive), 0};
+  });
+}
+
+void Certificates::label_nodes() {
+  counts_.positive = covers_[0].cluster_of.size();
+  counts_.negative = counts_.uncertain = 0;
+  for_each_unusual([&](std::size_t p) {
+    const Cell& patch = cell_[p];
+    unsigned some = 0;
+    Label label = Label{} + kNone;
+    for (std::size_t c = 0; c < kCovers; ++c) {
+      const Signs& signs = certified_[p][c];
+      label[c] = patch.cluster[c] == kNone       ? kNone
+                 : signs.positive == patch.lanes ? 2 * patch.cluster[c]
+                 : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
+                                                 : kNone;
+      some |= signs.positive | signs.negative;
+    }
+    label_[static_cast<std::size_t>(tree_.leaf[p])] = label;
+    counts_.positive -= count(patch.lanes & ~static_cast<unsigned>(certified_[p][0].positive));
+    counts_.negative += count(certified_[p][0].negative);
+    counts_.uncertain += count(patch.lanes & ~some);
+    if (state_[p] == State::unlabelled) state_[p] = State::usual;
+  });
+  // Of all inner nodes, though few differ from the last interval's: the descent soon asks for many.
+  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+    const Label left = label_[node.left()], right = label_[node.right()];
+    label_[n] = left == right ? left : Label{} + kNone;
+  });
+}
+
+RadialView Certificates::view() const {
+  RadialView view{covers_[0].cluster_of, std::vector<bool>(covers_[0].cluster_of.size())};
+  for (std::size_t p = 0; p < certified_.size(); ++p)
+    for_each_lane(certified_[p][0].positive,
+                  [&](std::size_t lane) { view.positive[+tree_.triangles[p][lane]] = true; });
+  return view;
+}
+
+}  // namespace cscd::fast

@@ -1,0 +1,345 @@
+#include "core/fast/prove/certificates.h"
+
+#include <gtest/gtest.h>
+
+#include "core/fast/cut/cut_surface.h"
+#include "core/fast/cut/test_body.h"
+#include "core/radial/orientation.h"
+
+namespace cscd::fast {
+namespace {
+
+using radial::Orientation;
+
+// One interval of a body, and what the rule of the theorem says about its triangles, in double precision and
+// by looking at every triangle: the twin of what certificates gather from patches.
+struct Scene : test::Body {
+  Covers covers;
+  PatchTree tree;
+  LocalPositions local;
+  Certificates certificates;
+  // Of each triangle and cover: its sign towards the observer of its cluster; the one that all triangles with
+  // a common vertex have towards the observer of the cluster that all of them belong to, uncertain where they
+  // do not.
+  std::vector<std::array<Orientation, kCovers>> own, all_round;
+
+  enum class Bones { chain, sixths };  // sixths: seams of both covers meet
+
+  explicit Scene(double noise, double bend, int seed, bool inside_out = false, Bones bones = Bones::chain)
+      : test::Body(noise, bend, {3, -2, 1}, 1, seed),
+        local(start),
+        certificates(prepared(inside_out, bones)) {
+    local.update(motion());
+    certify();
+    find_all_round();
+  }
+  void certify() {
+    certificates.start(local);
+    for (std::size_t p = 0; p < tree.patches.size(); ++p)
+      certificates.look(p, load(local.records(), tree.patches[p].vertex));
+    certificates.finish();
+  }
+  std::int32_t cluster(std::size_t c, std::size_t triangle) const { return covers[c].cluster_of[triangle]; }
+  // What certificates are to say: the first cover of a triangle alone, the others of all round it.
+  Orientation certain(std::size_t c, TriangleId t) const { return (c == 0 ? own : all_round)[+t][c]; }
+  // Whether one cover has both triangles on one side of one observer, with what it has to look at besides.
+  bool one_field(TriangleId t, TriangleId u) const {
+    for (std::size_t c = 0; c < kCovers; ++c)
+      if (cluster(c, +t) == cluster(c, +u) && certain(c, t) != Orientation::uncertain &&
+          certain(c, t) == certain(c, u))
+        return true;
+    return false;
+  }
+  // Whether one cover has all of these on one side of one observer: what the theorem asks of the triangles at
+  // a feature pair that is dropped.
+  bool one_field(std::span<const TriangleId> at, std::span<const TriangleId> also_at) const {
+    for (std::size_t c = 0; c < kCovers; ++c) {
+      const auto as_first = [&](TriangleId t) {
+        return cluster(c, +t) == cluster(c, +at[0]) && own[+t][c] == own[+at[0]][c];
+      };
+      if (own[+at[0]][c] != Orientation::uncertain && std::all_of(at.begin(), at.end(), as_first) &&
+          std::all_of(also_at.begin(), also_at.end(), as_first))
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  Certificates prepared(bool inside_out, Bones bones) {
+    if (bones == Bones::sixths) {
+      std::vector<BoneId> bone_of;
+      for (const Triangle& t : mesh.triangles()) {
+        const Vec3& p = shape.positions[+t[0]];
+        bone_of.push_back(BoneId{2 * (p.x() < 5 ? 0 : p.x() < 10 ? 1 : 2) + (p.y() < 0 ? 0 : 1)});
+      }
+      atomic = radial::make_atomic_clusters(mesh, bone_of);
+    }
+    if (inside_out) {
+      std::vector<Triangle> flipped(mesh.triangles().begin(), mesh.triangles().end());
+      for (Triangle& t : flipped) std::swap(t[1], t[2]);
+      mesh = TriangleMesh(flipped, mesh.vertex_count());
+    }
+    // Observers of the surface as it was: that all of it is then seen from behind is the aim.
+    covers = cut_surface(shape.mesh(), shape.positions, atomic.of_triangle).covers;
+    tree = cut_surface(mesh, shape.positions, atomic.of_triangle).tree;
+    return Certificates(tree, covers);
+  }
+  // A point of the body in the coordinates of the records, hardly rounded.
+  MovingPoint at(VertexId v) const {
+    const double unit = scale();
+    return {(start[+v] - start[0]) * unit, (end[+v] - start[0]) * unit};
+  }
+  double scale() const {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : start) box.extend(p);
+    return std::ldexp(1.0, -std::ilogb(box.sizes().maxCoeff()));
+  }
+  radial::Observer observer(const FollowingPoint& from) const {
+    float sum[8] = {};
+    for (std::size_t i = 0; i < from.vertices().size(); ++i)
+      for (std::size_t k = 0; k < 8; ++k)
+        sum[k] += from.weights()[i] * local.records()[+from.vertices()[i]].at[k];
+    return radial::Observer::point({Vec3(sum[0], sum[1], sum[2]), Vec3(sum[4], sum[5], sum[6])});
+  }
+  void find_all_round() {
+    own.resize(mesh.triangle_count());
+    for (std::size_t t = 0; t < own.size(); ++t)
+      for (std::size_t c = 0; c < kCovers; ++c) {
+        own[t][c] = Orientation::uncertain;
+        if (cluster(c, t) == kNone) continue;
+        const Triangle& corner = mesh.triangles()[t];
+        own[t][c] =
+            radial::orientation({at(corner[0]), at(corner[1]), at(corner[2])},
+                                observer(covers[c].observers[static_cast<std::size_t>(cluster(c, t))]));
+      }
+    all_round = own;
+    for (std::size_t t = 0; t < own.size(); ++t)
+      for (std::size_t c = 0; c < kCovers; ++c)
+        for (const VertexId v : mesh.triangles()[t])
+          for (const TriangleId near : mesh.triangles_at(v))
+            if (own[+near][c] != own[t][c] || cluster(c, +near) != cluster(c, t))
+              all_round[t][c] = Orientation::uncertain;
+  }
+};
+
+template <class Visit>
+void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
+  const std::vector<Patch>& patches = scene.tree.patches;
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t q = 0; q < patches.size(); ++q)
+      for (std::size_t i = 0; patches[p].lanes >> i != 0; ++i) {
+        const Mask16 needed = scene.certificates.shared(p, q).needed(i);
+        for (std::size_t j = 0; patches[q].lanes >> j != 0; ++j)
+          visit(scene.tree.triangles[p][i], scene.tree.triangles[q][j], (needed >> j & 1) != 0);
+      }
+}
+
+struct Case {
+  bool inside_out;
+  Scene::Bones bones;
+};
+constexpr Case kCases[] = {{false, Scene::Bones::chain},
+                           {true, Scene::Bones::chain},
+                           {false, Scene::Bones::sixths},
+                           {true, Scene::Bones::sixths}};
+
+// Mutations: look_round clears the lane that is not positive instead of all round it; needed compares signs
+// whatever the cluster, or drops what different covers certify; look_round asks no neighbour for negatives.
+TEST(Certificates, APairIsDroppedOnlyByOneField) {
+  for (const auto& [inside_out, bones] : kCases)
+    for (int seed = 1; seed <= 2; ++seed) {
+      const Scene scene(0.04 * seed, 3, seed, inside_out, bones);
+      EXPECT_EQ(scene.covers[2].observers.empty(), bones == Scene::Bones::chain);
+      std::size_t dropped = 0, needed_though_each_is_certified = 0, certain = 0;
+      for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+        certain += scene.one_field(t, u);
+        if (!needed) {
+          ++dropped;
+          EXPECT_TRUE(scene.one_field(t, u)) << +t << " and " << +u << ", seed " << seed;
+          return;
+        }
+        const auto by_some = [&](TriangleId triangle) {
+          for (std::size_t c = 0; c < kCovers; ++c)
+            if (scene.certain(c, triangle) != Orientation::uncertain) return true;
+          return false;
+        };
+        needed_though_each_is_certified += by_some(t) && by_some(u);
+      });
+      EXPECT_GT(needed_though_each_is_certified, 1000u) << "else mixing covers would change nothing";
+      EXPECT_GT(dropped, certain * 9 / 10) << "float bounds cost little";
+      EXPECT_LT(certain, scene.mesh.triangle_count() * scene.mesh.triangle_count() / 2);
+    }
+}
+
+// A feature pair is dropped where all triangle pairs that carry it are. Mutations: the second cover, too,
+// does not look around (positive); the same of negative.
+TEST(Certificates, Trap14AFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
+  for (const auto& [inside_out, bones] : kCases) {
+    const Scene scene(0.08, 3, 2, inside_out, bones);
+    const TriangleMesh& mesh = scene.mesh;
+    std::vector<std::vector<bool>> needed(mesh.triangle_count(), std::vector<bool>(mesh.triangle_count()));
+    for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool is) { needed[+t][+u] = is; });
+    std::size_t dropped = 0;
+    const auto look = [&](std::span<const TriangleId> at, std::span<const TriangleId> also_at) {
+      for (const TriangleId t : at)
+        for (const TriangleId u : also_at)
+          if (needed[+t][+u]) return;
+      ++dropped;
+      EXPECT_TRUE(scene.one_field(at, also_at)) << +at[0] << " and " << +also_at[0];
+    };
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const TriangleId triangle{static_cast<std::int32_t>(t)};
+      const Triangle& corners = mesh.corners(triangle);
+      for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+        const VertexId vertex{static_cast<std::int32_t>(v)};
+        if (std::find(corners.begin(), corners.end(), vertex) == corners.end())
+          look(mesh.triangles_at(vertex), std::span(&triangle, 1));
+      }
+    }
+    for (std::size_t e = 0; e < mesh.edge_count(); ++e)
+      for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
+        const EdgeId one{static_cast<std::int32_t>(e)}, other{static_cast<std::int32_t>(f)};
+        const Edge &a = mesh.ends(one), &b = mesh.ends(other);
+        if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
+          look(mesh.triangles_at(one), mesh.triangles_at(other));
+      }
+    EXPECT_GT(dropped, 100'000u);
+  }
+}
+
+// Mutation: label_nodes takes the left child's label.
+TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
+  const Scene scene(0.04, 3, 1);
+  std::vector<std::vector<std::size_t>> below(scene.tree.nodes.size());
+  for (std::size_t n = below.size(); n-- > 0;) {
+    const PatchTree::Node& node = scene.tree.nodes[n];
+    if (node.is_leaf()) {
+      below[n] = {node.patch()};
+      continue;
+    }
+    below[n] = below[node.left()];
+    const std::vector<std::size_t>& right = below[node.right()];
+    below[n].insert(below[n].end(), right.begin(), right.end());
+  }
+  std::size_t skipped_inner = 0;
+  for (std::size_t a = 0; a < below.size(); ++a)
+    for (std::size_t b = a; b < below.size(); ++b) {
+      if (!scene.certificates.skip(a, b)) continue;
+      skipped_inner += below[a].size() > 1;
+      for (const std::size_t p : below[a])
+        for (const std::size_t q : below[b])
+          for (std::size_t i = 0; scene.tree.patches[p].lanes >> i != 0; ++i)
+            ASSERT_EQ(scene.certificates.shared(p, q).needed(i), 0) << "nodes " << a << " and " << b;
+    }
+  EXPECT_GT(skipped_inner, 10u);
+}
+
+// Mutations: what other covers certified before stays; looks counts every cover.
+TEST(Certificates, CoversThatAreNotUsedDropNothing) {
+  Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
+  const std::size_t looks = scene.certificates.looks_per_interval();
+  EXPECT_EQ(
+      scene.certificates.counts().clusters,
+      scene.covers[0].observers.size() + scene.covers[1].observers.size() + scene.covers[2].observers.size());
+  scene.certificates.use_covers(1);
+  EXPECT_EQ(scene.certificates.looks_per_interval(), scene.tree.patches.size());
+  EXPECT_GT(looks, scene.tree.patches.size() * 3 / 2);
+  EXPECT_EQ(scene.certificates.counts().clusters, scene.covers[0].observers.size());
+  scene.certify();
+  std::size_t dropped = 0;
+  for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+    dropped += !needed;
+    EXPECT_TRUE(needed || scene.cluster(0, +t) == scene.cluster(0, +u)) << +t << " and " << +u;
+  });
+  EXPECT_GT(dropped, 10'000u);
+}
+
+// Takes intervals of a scene, one after the other, by certificates that have seen those before and by fresh
+// ones, which are to say the same.
+class FreshBesideUsed {
+ public:
+  explicit FreshBesideUsed(Scene& scene) : scene_(scene) {}
+
+  // `mirrored`: patches that are seen from the other side, whatever their neighbours are.
+  void take(const Motion& motion, const std::vector<bool>& mirrored, std::size_t covers) {
+    scene_.local.update(motion);
+    look(scene_.certificates, mirrored);
+    Certificates fresh(scene_.tree, scene_.covers);
+    fresh.use_covers(covers);
+    look(fresh, mirrored);
+    for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p)
+      for (std::size_t q = 0; q < scene_.tree.patches.size(); ++q) {
+        const Certificates::Shared found = scene_.certificates.shared(p, q), expected = fresh.shared(p, q);
+        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
+      }
+    for (std::size_t a = 0; a < scene_.tree.nodes.size(); ++a)
+      for (std::size_t b = a; b < scene_.tree.nodes.size(); ++b)
+        ASSERT_EQ(scene_.certificates.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
+    const RadialCounts &found = scene_.certificates.counts(), &expected = fresh.counts();
+    ASSERT_EQ(found.positive, expected.positive);
+    ASSERT_EQ(found.negative, expected.negative);
+    ASSERT_EQ(found.uncertain, expected.uncertain);
+    positive.push_back(found.positive);
+  }
+  std::vector<std::uint64_t> positive;
+
+ private:
+  void look(Certificates& certificates, const std::vector<bool>& mirrored) {
+    const std::span<const LocalPositions::Record> records = scene_.local.records();
+    float sum = 0;
+    for (const LocalPositions::Record& r : records) sum += r.at[1];
+    const float twice_middle = 2 * sum / static_cast<float>(records.size());
+    certificates.start(scene_.local);
+    for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p) {
+      PatchLanes lanes = load(records, scene_.tree.patches[p].vertex);
+      if (!mirrored.empty() && mirrored[p])
+        for (Float16(&end)[3] : lanes.at) end[1] = twice_middle - end[1];
+      certificates.look(p, lanes);
+    }
+    certificates.finish();
+  }
+  Scene& scene_;
+};
+
+// Nothing stays of the intervals before (trap 12), whether all was positive in them, or negative, or next to
+// nothing. Mutations: what was seen otherwise by itself, what was spoiled, or what it was labelled stays
+// where a patch is usual again; what is above a label stays; nothing is forgotten where the motion leaves the
+// range or other covers are used.
+TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
+  Scene scene(0.04, 3, 1);
+  const Scene other(0.06, 2, 7);
+  const auto scaled = [](std::vector<Vec3> points, double by) {
+    for (Vec3& p : points) p *= by;
+    return points;
+  };
+  const std::vector<Vec3>&rest = scene.shape.positions, opposite = scaled(rest, -1), far = scaled(rest, 1e10);
+  const Motion intervals[] = {scene.motion(), Motion(rest, rest), other.motion(), Motion(rest, opposite),
+                              Motion(far, far)};
+  FreshBesideUsed both(scene);
+  for (const std::size_t covers : {kCovers, std::size_t{1}, kCovers}) {
+    scene.certificates.use_covers(covers);
+    for (const std::size_t i : {0, 1, 2, 1, 3, 1, 4, 0, 4, 2, 0, 3, 2})
+      ASSERT_NO_FATAL_FAILURE(both.take(intervals[i], {}, covers)) << "interval " << i;
+  }
+  std::mt19937 random(1);
+  std::vector<bool> mirrored(scene.tree.patches.size());
+  for (int i = 0; i < 12; ++i) {
+    for (std::size_t p = 0; p < mirrored.size(); ++p) mirrored[p] = i % 2 == 0 || random() % 4 == 0;
+    ASSERT_NO_FATAL_FAILURE(both.take(intervals[1], mirrored, kCovers)) << "mirrored " << i;
+  }
+  EXPECT_EQ(*std::min_element(both.positive.begin(), both.positive.end()), 0u);
+  EXPECT_EQ(*std::max_element(both.positive.begin(), both.positive.end()), scene.mesh.triangle_count());
+}
+
+TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
+  Scene scene(0.01, 1, 1);
+  for (Vec3& p : scene.start) p *= 1e10;  // as certain as before, but for the range
+  for (Vec3& p : scene.end) p *= 1e10;
+  scene.local.update(scene.motion());
+  ASSERT_FALSE(scene.local.known());
+  scene.certify();
+  for_each_pair_of_lanes(scene, [](TriangleId, TriangleId, bool needed) { EXPECT_TRUE(needed); });
+}
+
+}  // namespace
+}  // namespace cscd::fast

@@ -1,0 +1,192 @@
+#include "core/fast/prove/stars.h"
+
+#include <gtest/gtest.h>
+
+#include "core/detect/carried_pairs.h"
+#include "core/detect/start/embedding.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/cut/test_body.h"
+#include "core/mesh/adjacency.h"
+
+namespace cscd::fast {
+namespace {
+
+const ElementaryTest& exact() {
+  return *find_elementary_test("exact");
+}
+
+// Contacts of triangles at the vertex among each other.
+std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, VertexId vertex) {
+  std::size_t contacts = 0;
+  const std::span<const TriangleId> star = mesh.triangles_at(vertex);
+  for (std::size_t i = 0; i < star.size(); ++i)
+    for (std::size_t j = i + 1; j < star.size(); ++j)
+      for_each_carried(mesh, TrianglePair{star[i], star[j]}, [&](const FeaturePair& pair) {
+        contacts += ask(exact(), mesh, motion, pair).verdict != Verdict::apart;
+      });
+  return contacts;
+}
+
+// Noise up to where neighbours run into each other. Mutations: the bound zero on flat surfaces; the
+// direction's sign; the end not looked at.
+TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
+  std::size_t flat = 0, others_with_contacts = 0, embedded = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const double noise = 0.02 * seed;
+    test::Body body(0, 1);
+    const test::Body noisy(noise, 1, {100, -50, 25}, 1, seed);
+    for (std::size_t v = 0; v < body.start.size(); ++v) body.start[v] += Vec3(100, -50, 25);
+    body.end = noisy.end;
+    embedded += EmbeddingTest(body.mesh, body.start).embedded(body.start);
+    LocalPositions local(body.start);
+    local.update(body.motion());
+    const Stars stars(body.mesh);
+    for (std::size_t v = 0; v < body.mesh.vertex_count(); v += 3) {
+      const VertexId vertex{static_cast<std::int32_t>(v)};
+      const std::size_t contacts = contacts_in_star(body.mesh, body.motion(), vertex);
+      if (stars.flat(vertex, local)) {
+        ++flat;
+        EXPECT_EQ(contacts, 0u) << "seed " << seed << ", vertex " << v;
+      } else {
+        others_with_contacts += contacts > 0;
+      }
+    }
+  }
+  EXPECT_EQ(embedded, 12u);
+  EXPECT_GT(flat, 500u);
+  EXPECT_GT(others_with_contacts, 20u);
+}
+
+// A tip that is turned inside out is no graph all the time. Mutation: only the ends are looked at.
+TEST(Stars, ATipThatTurnsOverIsNotFlat) {
+  test::Shape shape = test::octahedron();
+  std::vector<Vec3> end = shape.positions;
+  end[4] = {0, 0, -0.5};
+  const TriangleMesh mesh = shape.mesh();
+  LocalPositions local(shape.positions);
+  local.update(Motion(shape.positions, end));
+  const Stars stars(mesh);
+  EXPECT_TRUE(stars.flat(VertexId{4}, local)) << "it stays a graph over its base";
+  EXPECT_FALSE(stars.flat(VertexId{0}, local));
+}
+
+// Triangles of no area prove nothing.
+TEST(Stars, DegenerateTrianglesAreNotFlat) {
+  test::Shape shape = test::octahedron();
+  shape.positions[4] = shape.positions[0];
+  const TriangleMesh mesh = shape.mesh();
+  LocalPositions local(shape.positions);
+  local.update(Motion(shape.positions, shape.positions));
+  const Stars stars(mesh);
+  for (const int v : {0, 2, 3, 4}) EXPECT_FALSE(stars.flat(VertexId{v}, local));
+  EXPECT_TRUE(stars.flat(VertexId{1}, local));
+}
+
+// Mutation: turns not counted.
+TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
+  for (const int turns : {1, 2}) {
+    test::Shape star{{{0, 0, 0}}, {}};
+    constexpr int kCorners = 12;
+    for (int i = 0; i < kCorners; ++i) {
+      const double angle = 2 * std::numbers::pi * turns * i / kCorners;
+      const double wave = std::cos(angle / turns), r = 1 + 0.2 * wave;
+      star.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), 0.1 * wave);
+      star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % kCorners));
+    }
+    const TriangleMesh mesh = star.mesh();
+    std::vector<Vec3> end = star.positions;
+    for (Vec3& p : end) p.z() = -p.z();
+    const Motion motion(star.positions, end);
+    LocalPositions local(star.positions);
+    local.update(motion);
+    EXPECT_EQ(contacts_in_star(mesh, motion, VertexId{0}) > 0, turns == 2);
+    EXPECT_EQ(Stars(mesh).flat(VertexId{0}, local), turns == 1);
+  }
+}
+
+// Goes round twice. The half-line that is looked for in each triangle is the middle of the first one, and
+// that is seen 1e-5 from along the direction of the graph: its cross product with the direction is rounding.
+// Mutation: steepness not compared with the lengths of what it was made of.
+TEST(Stars, OneThatGoesRoundTwiceIsNotFlatThoughItsFirstTriangleIsSteep) {
+  const test::Shape star{{{0, 0, 0},
+                          {0x1.366f6cdbc7008p+0, 0x1.35b6052755bdp-4, 0x1.356d878345b19p-1},
+                          {0x1.8e8275e05a704p-2, 0x1.4dbbc23c065c8p-1, -0x1.1ff156d7a51dep+0},
+                          {0x1.599abe689d6e8p-2, 0x1.24ca7364082f2p+0, 0x1.c2480c9349aap-3},
+                          {0x1.5a470666d66eep+0, -0x1.8164ddf34ed78p-2, -0x1.897c3532aaa44p-1},
+                          {0x1.94d96cfb0358cp-3, 0x1.e9510f478002ap-2, -0x1.c2687261135d9p-1},
+                          {0x1.3f8bb60c30954p-2, 0x1.6a386675acdb6p-1, -0x1.3d8770d5f6b8p-7}},
+                         {test::corners(0, 1, 2), test::corners(0, 2, 3), test::corners(0, 3, 4),
+                          test::corners(0, 4, 5), test::corners(0, 5, 6), test::corners(0, 6, 1)}};
+  const TriangleMesh mesh = star.mesh();
+  std::vector<Vec3> end = star.positions;
+  for (const std::size_t v : {2, 5, 6}) end[v] *= 2;
+  const Motion motion(star.positions, end);
+  LocalPositions local(star.positions);
+  local.update(motion);
+  ASSERT_GT(contacts_in_star(mesh, motion, VertexId{0}), 0u);
+  EXPECT_FALSE(Stars(mesh).flat(VertexId{0}, local));
+}
+
+// Half a turn in straight lines, on which one corner goes past the centre early: flat at both ends, and not
+// in between. Mutation: the middle control vectors not looked at.
+TEST(Stars, OneThatFoldsInBetweenIsNotFlat) {
+  test::Shape star{{{0, 0, 0}}, {}};
+  std::vector<Vec3> end = star.positions;
+  constexpr int kCorners = 6;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners, r = i == 0 ? 1.8 : 0.5;
+    star.positions.emplace_back(std::cos(angle), std::sin(angle), 0.1 * std::cos(angle));
+    end.emplace_back(-r * std::cos(angle), -r * std::sin(angle), 0.05 * std::sin(angle));
+    star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % kCorners));
+  }
+  const TriangleMesh mesh = star.mesh();
+  const Motion motion(star.positions, end);
+  const Stars stars(mesh);
+  const auto flat = [&](const Motion& of) {
+    LocalPositions local(star.positions);
+    local.update(of);
+    return stars.flat(VertexId{0}, local);
+  };
+  EXPECT_TRUE(flat(Motion(star.positions, star.positions)));
+  EXPECT_TRUE(flat(Motion(end, end)));
+  EXPECT_GT(contacts_in_star(mesh, motion, VertexId{0}), 0u);
+  EXPECT_FALSE(flat(motion));
+}
+
+// What is one fan is flat; nothing is said of others. Mutations: the first of two fans taken for all; an open
+// fan closed by a triangle that is not there.
+TEST(Stars, OneOfTwoFansIsNotFlat) {
+  constexpr int kCorners = 6;
+  for (const int fan : {kCorners, kCorners - 1})
+    for (const int standing : {0, 1, 3}) {
+      test::Shape star{{{0, 0, 0}}, {}};
+      for (int i = 0; i < kCorners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kCorners;
+        star.positions.emplace_back(std::cos(angle), std::sin(angle), 0);
+      }
+      for (int i = 0; i < fan; ++i) star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % kCorners));
+      for (int i = 0; i < 3; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 3;
+        star.positions.emplace_back(0.3 * std::cos(angle), 0.3 * std::sin(angle), 1);
+      }
+      for (int i = 0; i < standing; ++i)
+        star.triangles.push_back(test::corners(0, 1 + kCorners + i, 1 + kCorners + (i + 1) % 3));
+      LocalPositions local(star.positions);
+      local.update(Motion(star.positions, star.positions));
+      EXPECT_EQ(Stars(star.mesh()).flat(VertexId{0}, local), fan == kCorners && standing == 0)
+          << fan << " triangles, and " << standing;
+    }
+}
+
+TEST(Stars, AnOpenOneIsNotFlat) {
+  const test::Shape strip = test::ramp(8, 0.5, 1, 2, 0);
+  const TriangleMesh mesh = strip.mesh();
+  LocalPositions local(strip.positions);
+  local.update(Motion(strip.positions, strip.positions));
+  const Stars stars(mesh);
+  for (std::int32_t v = 0; v < 27; ++v)
+    EXPECT_EQ(stars.flat(VertexId{v}, local), v % 3 == 1 && v > 2 && v < 24) << v;
+}
+
+}  // namespace
+}  // namespace cscd::fast

@@ -1,0 +1,106 @@
+#include "core/fast/trial.h"
+
+#include <gtest/gtest.h>
+
+#include "core/elementary/catalogue.h"
+#include "core/fast/cut/test_body.h"
+#include "core/fast/drvbc_fast.h"
+
+namespace cscd::fast {
+namespace {
+
+// A bone as long as the tube sees little of it; fifteen see it well. Mutation: the trial takes always the
+// one or the other.
+TEST(Trial, DecidesWhichClustersAreTaken) {
+  using Clusters = DrvbcFastOptions::Clusters;
+  const test::Body tube(0, 0);
+  const auto clusters = [](const test::Body& body, const Rig& rig, Clusters wanted) {
+    const cscd::Setup setup{body.mesh, body.shape.positions, &rig, elementary_tests().front()};
+    return make_drvbc_fast(setup, {.clusters = wanted}).preparation.atomic_cluster;
+  };
+  for (const int bones : {1, 15}) {
+    const Rig rig = test::straight_chain(bones, {0.5, 0, 0}, {14.5, 0, 0});
+    const auto of_bones = clusters(tube, rig, Clusters::of_bones);
+    const auto of_surface = clusters(tube, rig, Clusters::of_surface);
+    EXPECT_NE(of_bones, of_surface);
+    EXPECT_EQ(clusters(tube, rig, Clusters::by_trial), bones == 1 ? of_surface : of_bones) << bones;
+  }
+}
+
+// A spike on each face of a sphere, with a bone.
+struct Spikes {
+  test::Shape shape;
+  Rig rig;
+
+  explicit Spikes(int rings) {
+    const test::Shape sphere = test::icosphere(1);
+    shape.positions = sphere.positions;
+    for (const Triangle& face : sphere.triangles) {
+      const Vec3 middle =
+          (sphere.positions[+face[0]] + sphere.positions[+face[1]] + sphere.positions[+face[2]]) / 3;
+      const Vec3 tip = 3 * middle;
+      rig.parent.push_back(BoneId{-1});
+      rig.reference.push_back({0.8 * middle, tip});
+      int below[3] = {static_cast<int>(face[0]), static_cast<int>(face[1]), static_cast<int>(face[2])};
+      for (int r = 1; r < rings; ++r) {
+        const auto next = static_cast<int>(shape.positions.size());
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec3& foot = sphere.positions[+face[k]];
+          shape.positions.push_back(foot + (tip - foot) * r / rings);
+        }
+        for (int k = 0; k < 3; ++k) {
+          const int l = (k + 1) % 3;
+          shape.triangles.push_back(test::corners(below[k], below[l], next + l));
+          shape.triangles.push_back(test::corners(below[k], next + l, next + k));
+        }
+        for (int k = 0; k < 3; ++k) below[k] = next + k;
+      }
+      shape.positions.push_back(tip);
+      for (int k = 0; k < 3; ++k)
+        shape.triangles.push_back(
+            test::corners(below[k], below[(k + 1) % 3], static_cast<int>(shape.positions.size()) - 1));
+    }
+  }
+};
+
+// Where clusters are a few patches, seams are everywhere, and other covers cost more than they save.
+// Mutation: all of them are used always.
+TEST(Trial, DecidesHowManyCoversAreUsed) {
+  const auto observers = [](const test::Shape& shape, const Rig& rig, DrvbcFastOptions options) {
+    const TriangleMesh mesh = shape.mesh();
+    const cscd::Setup setup{mesh, shape.positions, &rig, elementary_tests().front()};
+    ContactSet found;
+    return make_drvbc_fast(setup, options)
+        .detector->detect(Motion(shape.positions, shape.positions), nullptr, found)
+        .cull.radial->clusters;
+  };
+  const Spikes spikes(7);
+  EXPECT_EQ(observers(spikes.shape, spikes.rig, {}), observers(spikes.shape, spikes.rig, {.covers = 1}));
+  EXPECT_GT(observers(spikes.shape, spikes.rig, {.clusters = DrvbcFastOptions::Clusters::of_bones}), 100u)
+      << "there are others";
+  const test::Body tube(0, 0);
+  EXPECT_GT(observers(tube.shape, tube.rig, {}), observers(tube.shape, tube.rig, {.covers = 1}));
+}
+
+// Where limbs are short, seams of the second cover cut them into too many patches. Mutations: they always cut
+// as much; no trial of less.
+TEST(Trial, DecidesHowMuchSeamsCut) {
+  const Spikes spikes(12);
+  const TriangleMesh mesh = spikes.shape.mesh();
+  std::vector<Vec3> end;
+  for (const Vec3& p : spikes.shape.positions)
+    end.push_back(p + 0.05 * Vec3(std::sin(3 * p.y()), std::sin(2 * p.z()), std::sin(4 * p.x())));
+  const auto tests = [&](DrvbcFastOptions options) {
+    const cscd::Setup setup{mesh, spikes.shape.positions, &spikes.rig, elementary_tests().front()};
+    ContactSet found;
+    return *make_drvbc_fast(setup, options)
+                .detector->detect(Motion(spikes.shape.positions, end), nullptr, found)
+                .cull.bvot;
+  };
+  using Clusters = DrvbcFastOptions::Clusters;
+  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_bones}));
+  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_surface}));
+}
+
+}  // namespace
+}  // namespace cscd::fast

@@ -1,0 +1,32 @@
+#include "scenes/shape/rows.h"
+
+#include <string>
+
+#include "core/base/error.h"
+#include "scenes/shape/box.h"
+#include "scenes/shape/limbed_sphere.h"
+#include "scenes/shape/tube.h"
+
+namespace cscd::scenes {
+
+std::span<const ShapeRow> shapes() {
+  static const ShapeRow rows[] = {tube_row(), box_row(), limbed_sphere_row()};
+  return rows;
+}
+
+Shape make_shape(std::string_view name, const Parameters& parameters) {
+  const ShapeRow& row = shape_row(name, parameters);
+  check(parameters, row.parameters);
+  return row.make(parameters);
+}
+
+const ShapeRow& shape_row(std::string_view name, const Parameters& parameters) {
+  std::string known;
+  for (const ShapeRow& row : shapes()) {
+    if (row.name == name) return row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw InputError(parameters.where() + ": unknown shape " + std::string(name) + "; known are: " + known);
+}
+
+}  // namespace cscd::scenes
