@@ -11,7 +11,7 @@
 // vertex, of which a hierarchy yields hundreds of thousands, none need be looked at if the few feature pairs
 // that no other triangle pair carries, the orphans, are listed once and tested at every interval.
 //
-// Trap 1 is about this method. It is sound here because the bounds alone cull: the representative of a pair
+// Rule any-carrier is about this method. It is sound here because the bounds alone cull: the representative of a pair
 // in contact are two triangles that touch, so their bounds overlap whatever other pairs are dropped. Under
 // culling by orientation it would lose contacts. A "no" proves that the swept bounds are disjoint.
 //

@@ -24,7 +24,7 @@ test::Shape odd_pieces() {
 }
 
 // With the orphans, the triangle pairs without a common vertex bring every feature pair exactly once. So as
-// long as bounds alone cull, none is lost (trap 1).
+// long as bounds alone cull, none is lost (rule any-carrier).
 TEST(RepresentativeTriangles, AndOrphansCoverEveryFeaturePairExactlyOnce) {
   for (const test::Shape& shape : {test::octahedron(), test::box(), test::icosphere(1), test::torus(7, 5),
                                    test::capped_tube(3, 3, 1, 3), test::ramp(5, 0.5, 1, 2, 1), open_ball(),

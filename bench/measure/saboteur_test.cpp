@@ -131,8 +131,8 @@ TEST(Saboteurs, RadialStrategiesThatLoseFirstContactsAreCaughtWithSegments) {
   expect_radial_saboteurs_are_caught<radial::ObserverKind::bone_segment>(400);
 }
 
-// Trap 14: several observers may each certify pairs, but one must certify all triangles round both of a pair.
-TEST(Saboteurs, Trap14OverlappingCoversThatCertifyTooLittleAreCaught) {
+// Rule one-field: several observers may each certify pairs, but one must certify all triangles round both of a pair.
+TEST(Saboteurs, RuleOneFieldOverlappingCoversThatCertifyTooLittleAreCaught) {
   const Strategy strategies[] = {
       first_contact("sound", test::make_many_covers<Flaw::none>),
       first_contact("covers_mixed", test::make_many_covers<Flaw::covers_mixed>),

@@ -40,7 +40,7 @@ void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, const 
 }
 
 // For strategies in which not every triangle pair is tested for all that it carries. Whatever it leaves out
-// must be tested for another pair that the same culler passes on, or always (trap 1).
+// must be tested for another pair that the same culler passes on, or always (rule any-carrier).
 class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;

@@ -139,7 +139,7 @@ std::vector<FeaturePair> all_feature_pairs(const TriangleMesh& mesh) {
   return pairs;
 }
 
-// Trap 1: all triangle pairs carry all feature pairs, each is tested once, however often it is carried and in
+// Rule any-carrier: all triangle pairs carry all feature pairs, each is tested once, however often it is carried and in
 // however many blocks.
 TEST(Compose, TestsEachFeaturePairOnceOverManyBlocks) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
@@ -227,7 +227,7 @@ TEST(Compose, ALostTrianglePairIsNoticed) {
   EXPECT_NE(digest(whole), digest(lost));
 }
 
-// Trap 12: one detector, any order of intervals, the answers of fresh detectors.
+// Rule fresh-detector: one detector, any order of intervals, the answers of fresh detectors.
 TEST(Compose, KeepsNothingBetweenIntervals) {
   const Crumple a(1), b(2);
   const ElementaryTest& exact = *find_elementary_test("exact");

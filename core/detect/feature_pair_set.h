@@ -10,7 +10,7 @@
 namespace cscd {
 
 // The feature pairs tested in this interval, so that each is tested once however many triangle pairs carry
-// it. This keeps trap 1 shut: no triangle owns a feature, the first surviving triangle pair brings it.
+// it. This is rule any-carrier: no triangle owns a feature, the first surviving triangle pair brings it.
 //
 // Open addressing with linear probing. An entry carries the interval's number in its top bits, so a new
 // interval forgets the old entries without touching them.

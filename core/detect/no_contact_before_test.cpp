@@ -68,7 +68,7 @@ std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& 
   return found;
 }
 
-// Trap 7, sizes at which single precision rounds, underflows and overflows. Mutations: no bound on rounding;
+// Rule certain-sign, sizes at which single precision rounds, underflows and overflows. Mutations: no bound on rounding;
 // a gap counts though it is below 0 at the start; one end's corners seen from the other's.
 TEST(FirstOnly, NothingTouchesBeforeTheBoundAndTheBoundIsOfUse) {
   const ElementaryTest& exact = *find_elementary_test("exact");

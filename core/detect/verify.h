@@ -12,7 +12,7 @@
 namespace cscd {
 
 // One interval's judgement of a strategy, against a complete reference, both with an elementary test that is
-// always right. Comparing numbers of contacts would be wrong (trap 13): a strategy may report fewer
+// always right. Comparing numbers of contacts would be wrong (rule fair-comparison): a strategy may report fewer
 // where its guarantee allows it.
 struct Verification {
   bool ok = true;

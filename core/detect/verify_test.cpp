@@ -33,7 +33,7 @@ TEST(Verify, EqualSetsPassUnderEveryGuarantee) {
     }
 }
 
-// Trap 13 (a).
+// Rule fair-comparison (a).
 TEST(Verify, CompleteMustNotLoseAnyPair) {
   for (std::size_t lost = 0; lost < 4; ++lost)
     for (const bool embedded : {false, true}) {
@@ -53,7 +53,7 @@ TEST(Verify, AFailureNamesThePairAndTheTime) {
   EXPECT_NE(v.failure.find("vertex 1, triangle 2 at t = 0.75"), std::string::npos) << v.failure;
 }
 
-// Trap 13 (b).
+// Rule fair-comparison (b).
 TEST(Verify, FirstContactMayLoseLaterPairsAndAllButOneOfTheFirst) {
   for (const Contact& kept : {ee(3, 4, 0.25), vf(9, 1, 0.25)}) {
     const Verification v = verify(kReference, set_of({kept}), Guarantee::first_contact, true);
@@ -70,7 +70,7 @@ TEST(Verify, FirstContactMustNotLoseAllOfTheFirstTime) {
   EXPECT_FALSE(verify(kReference, {}, Guarantee::first_contact, true).ok);
 }
 
-// Trap 10.
+// Rule embedded-start.
 TEST(Verify, WithoutAnEmbeddedStartFirstContactPromisesNothing) {
   EXPECT_TRUE(verify(kReference, {}, Guarantee::first_contact, false).ok);
   EXPECT_TRUE(verify(kReference, set_of({vf(1, 2, 0.75)}), Guarantee::first_contact, false).ok);

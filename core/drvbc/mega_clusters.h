@@ -18,7 +18,7 @@ namespace cscd {
 // joint that the first two clusters share.
 //
 // Differences to the text. The order of seeds is a fixed shuffle instead of a random one, so that results
-// depend on the interval alone (trap 12). The cost D is computed for the seed as well when its observer moves
+// depend on the interval alone (rule fresh-detector). The cost D is computed for the seed as well when its observer moves
 // to the joint: the paper looks at the candidate only and may turn any number of the seed's triangles
 // non-positive unnoticed.
 class MegaClusters {

@@ -241,7 +241,7 @@ TEST(MegaClusters, NothingMergesWithoutToleranceAndAStraightTubeMergesWithAll) {
 }
 
 // Mutations: suspects_ decide alone; label_ is not reset.
-TEST(MegaClusters, Trap12TheCacheChangesNothingInAnyOrderOfIntervals) {
+TEST(MegaClusters, RuleFreshDetectorTheCacheChangesNothingInAnyOrderOfIntervals) {
   for (const bool branching : {false, true}) {
     const Body body(branching, 0.3);
     constexpr unsigned kIntervals = 24;

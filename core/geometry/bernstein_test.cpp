@@ -208,7 +208,7 @@ TEST(CertainSign, NeedsMoreThanTheError) {
   }
 }
 
-// Trap 4: what overflowed is not known.
+// Rule error-bound: what overflowed is not known.
 TEST(CertainSign, NotANumberAndInfinityAreNeverCertain) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0})
@@ -226,7 +226,7 @@ TEST(CertainSign, NotANumberAndInfinityAreNeverCertain) {
     }
 }
 
-// Trap 4: the cross product overflows although the product of all three sizes is moderate.
+// Rule error-bound: the cross product overflows although the product of all three sizes is moderate.
 TEST(CertainSign, IsNotMisledByAnOverflowThatASmallThirdVectorHides) {
   const double big = 1.2e154, small = 1e-20;
   Random random(4);
@@ -266,7 +266,7 @@ TEST(TripleProduct, NotANumberInAnyInputLeavesNothingCertain) {
   }
 }
 
-// Trap 7: coplanar throughout, in every way that makes the cubic zero.
+// Rule certain-sign: coplanar throughout, in every way that makes the cubic zero.
 TEST(CertainSign, ZeroCubicIsNotCertain) {
   const MovingVector x{{1, 0, 0}, {2, 0, 0}}, y{{0, 1, 0}, {0, 3, 0}}, z{{0, 0, 1}, {0, 0, 1}};
   const MovingVector zero{Vec3::Zero(), Vec3::Zero()};

@@ -40,7 +40,7 @@ std::vector<Vec3> assorted_points() {
   return points;
 }
 
-// Trap 5.
+// Rule outward-rounding.
 TEST(Kdop, EveryBoundIsTheTightestFloatOutwardOfTheExactProjection) {
   for (const Vec3& p : assorted_points()) {
     const Kdop16 volume = kdop_of(p);

@@ -10,7 +10,7 @@
 namespace cscd::radial {
 
 // A partition of the triangles. No cluster spans two components of the mesh: along a ray the orientations
-// alternate for one connected surface only (soundness, trap 3).
+// alternate for one connected surface only (rule component).
 struct AtomicClusters {
   struct Cluster {
     BoneId bone;

@@ -22,7 +22,7 @@
 // Soundness: the theorem asks that a dropped feature pair has all its incident triangles certified by one
 // field. A feature pair is tested as soon as one triangle pair carrying it is passed on, and all triangle
 // pairs of a dropped one were either apart in their bounds (no contact) or in one cluster with one sign.
-// Clusters never span two connected components (trap 3).
+// Clusters never span two connected components (rule component).
 namespace cscd::radial {
 
 class ClusterHierarchy {

@@ -145,7 +145,7 @@ TEST(ClusterHierarchy, CullsExactlyTheSameSignPairsOfOneLabelAndNoOther) {
 
 // Two covers of the surface may each drop a pair; one pair of triangles may not be dropped because each is
 // positive for a field of its own. Mutation: cluster_pair compares signs whatever the labels.
-TEST(ClusterHierarchy, Trap14SignsTowardsDifferentObserversDropNothing) {
+TEST(ClusterHierarchy, RuleOneFieldSignsTowardsDifferentObserversDropNothing) {
   Scene scene(test::icosphere(2), 3, 6);
   scene.hierarchy.refit(Motion(scene.start, scene.end));
   scene.set_classes(0, 0);
@@ -176,7 +176,7 @@ TEST(ClusterHierarchy, Trap14SignsTowardsDifferentObserversDropNothing) {
 }
 
 // Mutation: refit or finish_classes left out for the second interval.
-TEST(ClusterHierarchy, Trap12AnIntervalLeavesNothingBehind) {
+TEST(ClusterHierarchy, RuleFreshDetectorAnIntervalLeavesNothingBehind) {
   Scene used(test::icosphere(2), 4, 4), fresh(test::icosphere(2), 4, 4);
   const std::vector<std::int32_t> labels(used.clusters.clusters.size(), 0);
   Collector before;

@@ -6,12 +6,12 @@
 
 // Idea: towards a point q the orientation of a triangle is the sign of normal(t) . (p(t) - q(t)) for any one
 // corner p, a cubic in t whose Bernstein coefficients prove a sign when they exceed their forward error bound
-// (trap 4).
+// (rule error-bound).
 //
 // Towards a segment the viewing position q(u) slides with the projection u of each point, clamped to [0, 1].
 // The dot product is linear in u, and u is monotone in the projection, which over a triangle is extreme at a
 // corner. So with [low, high] enclosing the clamped projections of all three corners over the interval, one
-// sign at both q(low) and q(high) holds at every viewing position in use (trap 2). Two cubics, instead of the
+// sign at both q(low) and q(high) holds at every viewing position in use (rule three-vertices). Two cubics, instead of the
 // paper's rational function of degree five at one arbitrary vertex.
 //
 // A sign is a proof; `uncertain` is not. About 40 operations a triangle and point observer, vectorised.

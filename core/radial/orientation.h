@@ -30,11 +30,11 @@ struct Observer {
 };
 
 // From which corners a triangle is seen from a segment. The paper looks at one arbitrary corner, which proves
-// nothing (trap 2); here to count what that costs and loses.
+// nothing (rule three-vertices); here to count what that costs and loses.
 enum class SegmentTest { all_corners, first_corner };
 
 // How the sign of the cubic behind a class is told. The others are there to measure what certainty costs and
-// what it leaves: a plain sign, without its error bound, proves nothing (trap 4); `halved` cuts [0, 1] once
+// what it leaves: a plain sign, without its error bound, proves nothing (rule error-bound); `halved` cuts [0, 1] once
 // where the whole is not certain.
 enum class SignTest { certain, plain, halved };
 

@@ -121,7 +121,7 @@ TEST(PointObserver, HalvesProveMoreAndNothingWrong) {
 }
 
 // Mutation: kTripleProductError set to zero.
-TEST(Orientation, Trap04SignsBeneathTheErrorBoundAreUncertain) {
+TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
   Dice dice(3);
   int wrong_without_bound = 0, certain = 0;
   for (int i = 0; i < 12000; ++i) {
@@ -149,7 +149,7 @@ TEST(Orientation, Trap04SignsBeneathTheErrorBoundAreUncertain) {
 }
 
 // Mutation: coefficients that are zero or positive count as positive.
-TEST(Orientation, Trap04TangentTrianglesAreUncertainNearAndFar) {
+TEST(Orientation, RuleErrorBoundTangentTrianglesAreUncertainNearAndFar) {
   for (const double offset : {0.0, 1e3, 1e9, 1e15}) {
     const Vec3 o(offset, -offset, offset);
     const auto still = [&](double x, double y, double z) -> MovingPoint {
@@ -267,7 +267,7 @@ TEST(SegmentObserver, OfLengthZeroIsThePoint) {
 
 // The literature's example: seen from the points nearest to its three corners, the dot product is +30, -15
 // and +7.5. Mutation: viewing_range looks at corner[0] alone - positive or negative, whichever comes first.
-TEST(SegmentObserver, Trap02AllThreeVerticesDecide) {
+TEST(SegmentObserver, RuleThreeVerticesAllThreeVerticesDecide) {
   const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const MovingPoint vertices[3] = {still(0, 1, 1), still(5, 0.25, 4), still(10, -0.5, 1)};
   const Observer bone = Observer::segment(still(0, 0, 0), still(10, 0, 0));
@@ -280,7 +280,7 @@ TEST(SegmentObserver, Trap02AllThreeVerticesDecide) {
   }
 }
 
-TEST(SegmentObserver, Trap02OneVertexWouldOftenBeWrong) {
+TEST(SegmentObserver, RuleThreeVerticesOneVertexWouldOftenBeWrong) {
   Dice dice(9);
   int mixed = 0;
   for (int i = 0; i < 1500; ++i) {
@@ -371,7 +371,7 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
   }
 }
 
-// Merging decides with either twin (trap 12), so they have to agree on triangles at the very bound, too.
+// Merging decides with either twin (rule fresh-detector), so they have to agree on triangles at the very bound, too.
 TEST(OrientationTable, EqualsItsScalarTwinWhereTheErrorBoundDecides) {
   Dice dice(11);
   for (const double height : {3e-14, 6e-14, 1e-13, 3e-13}) {

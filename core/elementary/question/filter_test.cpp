@@ -43,7 +43,7 @@ TEST(Filter, DropsOnlyWhatTheRefereeCallsApart) {
   expect_many(expect_proofs<MovingEdgeEdge>(10'000, [&](int) { return make.lattice(3); }));
 }
 
-// Trap 7: touching in rounded coordinates, in the interior and at borders, at the ends of the interval, far
+// Rule certain-sign: touching in rounded coordinates, in the interior and at borders, at the ends of the interval, far
 // from the origin, tiny and huge. The cubic at the time of contact is rounding noise.
 TEST(Filter, KeepsWhatTouchesWithinRounding) {
   QueryMaker make(2);
@@ -77,7 +77,7 @@ MovingPoint still(double x, double y, double z) {
   return {{x, y, z}, {x, y, z}};
 }
 
-// Trap 7: zero throughout excludes nothing; a volume that stays away from zero does.
+// Rule certain-sign: zero throughout excludes nothing; a volume that stays away from zero does.
 TEST(Filter, KnowsZeroFromApart) {
   const MovingPoint a = still(0, 0, 0), b = still(4, 0, 0), c = still(0, 4, 0);
   EXPECT_FALSE(never_coplanar(MovingVertexFace{still(1, 1, 0), {a, b, c}}));
@@ -93,7 +93,7 @@ TEST(Filter, KnowsZeroFromApart) {
   EXPECT_TRUE(never_coplanar(MovingEdgeEdge{{a, b}, {still(1, -1, 1), still(1, 1, 1)}}));
 }
 
-// Trap 7: exactly on an edge, or crossing at an end of one, at an end of the interval; coordinates of few
+// Rule certain-sign: exactly on an edge, or crossing at an end of one, at an end of the interval; coordinates of few
 // bits, so that this is exact and the directions are not. Tiny enough for products to underflow, too.
 // Mutations: no bound on rounding; the bound at any size.
 TEST(Filter, KeepsWhatTouchesABorderExactly) {

@@ -13,7 +13,7 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 
-// Trap 6: two triangles, a corner of one on the other at t = 1/2, exactly: all coordinates are small
+// Rule relative-motion: two triangles, a corner of one on the other at t = 1/2, exactly: all coordinates are small
 // multiples of a power of two, the common motion and offset too.
 TEST(RelativeBox, NeverSeparatesTrianglesThatTouch) {
   QueryMaker make(1);

@@ -34,7 +34,7 @@ TEST(Covers, ThinClustersAreMerged) {
 }
 
 // Mutation: seeds spread over all triangles instead of over neighbours.
-TEST(Covers, Trap03NoClusterSpansTwoComponents) {
+TEST(Covers, RuleComponentNoClusterSpansTwoComponents) {
   const test::Shape two = test::together(test::capped_tube(8, 30, 1, 10), test::icosphere(2, 12));
   const TriangleMesh mesh = two.mesh();
   std::vector<BoneId> bone_of;

@@ -50,7 +50,7 @@ TEST(SurfaceClusters, ATorusIsCut) {
 }
 
 // Mutation: the first pieces are not the components. Far apart, one inside the other, and both small.
-TEST(SurfaceClusters, Trap03NoClusterSpansTwoComponents) {
+TEST(SurfaceClusters, RuleComponentNoClusterSpansTwoComponents) {
   for (const test::Shape& both : {test::together(test::capped_tube(12, 90, 1, 30), test::icosphere(3, 2)),
                                   test::together(test::icosphere(3, 3), test::icosphere(3, 1)),
                                   test::together(test::octahedron(2), test::octahedron(1))}) {

@@ -38,7 +38,7 @@ TEST(NodeBounds, ApartMeansOnOneSideAllTheTime) {
 
 // As far as the rounding says. Mutations: bounds of nodes or of triangles that do not give way; a triangle's
 // sums rounded before; one end twice.
-TEST(GridBounds, Trap05ContainTheExactPositionsAtBothEnds) {
+TEST(GridBounds, RuleOutwardRoundingContainTheExactPositionsAtBothEnds) {
   for (const test::Patches& scene : test::patches()) {
     const Grid grid(scene.local.error());
     const mpq_class steps(grid.steps());

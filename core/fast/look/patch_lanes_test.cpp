@@ -26,7 +26,7 @@ TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
 // Every certified sign is the exact one, far from the origin and in any unit; and nearly all are certified.
 // Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle
 // coefficients not looked at.
-TEST(PatchLanes, Trap04CertifiedSignsAreExact) {
+TEST(PatchLanes, RuleErrorBoundCertifiedSignsAreExact) {
   std::size_t certified = 0, all = 0, negative = 0;
   int turn = 0;
   for (const test::Patches& scene : test::patches())

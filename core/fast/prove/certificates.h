@@ -24,7 +24,7 @@ namespace cscd::fast {
 // that is at either feature. If none does, the first drops all of them: any triangle at one feature lies in
 // one cluster with any at the other, and has its sign. (One triangle at both has no area when they touch:
 // it has no sign, so its pairs with the others are not dropped.) Between two covers neither of which looks at
-// what surrounds a triangle that would not hold: each might drop some of the pairs (trap 14). With capped
+// what surrounds a triangle that would not hold: each might drop some of the pairs (rule one-field). With capped
 // clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:

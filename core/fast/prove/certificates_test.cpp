@@ -173,7 +173,7 @@ TEST(Certificates, APairIsDroppedOnlyByOneField) {
 
 // A feature pair is dropped where all triangle pairs that carry it are. Mutations: the second cover, too,
 // does not look around (positive); the same of negative.
-TEST(Certificates, Trap14AFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
+TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
   for (const auto& [inside_out, bones] : kCases) {
     const Scene scene(0.08, 3, 2, inside_out, bones);
     const TriangleMesh& mesh = scene.mesh;
@@ -301,7 +301,7 @@ class FreshBesideUsed {
   Scene& scene_;
 };
 
-// Nothing stays of the intervals before (trap 12), whether all was positive in them, or negative, or next to
+// Nothing stays of the intervals before (rule fresh-detector), whether all was positive in them, or negative, or next to
 // nothing. Mutations: what was seen otherwise by itself, what was spoiled, or what it was labelled stays
 // where a patch is usual again; what is above a label stays; nothing is forgotten where the motion leaves the
 // range or other covers are used.

@@ -74,9 +74,9 @@ TEST(Parting, NoPairThatTouchesIsParted) {
   for (const std::size_t count : by_shared) EXPECT_GT(count, 1000u);
 }
 
-// Trap 7: corners on whole numbers, so that many lie exactly in the plane of another triangle; in every other
+// Rule certain-sign: corners on whole numbers, so that many lie exactly in the plane of another triangle; in every other
 // round so far from the first vertex that the numbers round. Mutation: no bound on rounding.
-TEST(Parting, Trap07WhatTouchesExactlyIsNotParted) {
+TEST(Parting, RuleCertainSignWhatTouchesExactlyIsNotParted) {
   std::mt19937 random(5);
   std::size_t met = 0, apart = 0;
   const std::vector<Triangle> triangles = {test::corners(0, 1, 2), test::corners(3, 4, 5),

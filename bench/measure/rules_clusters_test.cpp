@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "bench/testing/trap_case.h"
+#include "bench/testing/rule_case.h"
 #include "core/detect/verify.h"
 #include "scenes/random/surface.h"
 
@@ -50,7 +50,7 @@ class OnePair : public Culler {
 };
 
 // Mutation: compose::expand meets only the features that have their triangle as the first one at them.
-TEST(Traps, Trap01AnyTrianglePairThatCarriesAFeaturePairHasItTested) {
+TEST(Traps, RuleAnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
   for (const Case& scene : {colliding_silhouettes(), fingertip_on_face()}) {
     const ContactSet truth = scene.ask(all_pairs());
     ASSERT_FALSE(truth.contacts.empty());
@@ -72,7 +72,7 @@ TEST(Traps, Trap01AnyTrianglePairThatCarriesAFeaturePairHasItTested) {
 }
 
 // Mutation: as above.
-TEST(Traps, Trap01RepresentativeTrianglesLoseWhatOtherTrianglesShow) {
+TEST(Traps, RuleAnyCarrierRepresentativeTrianglesLoseWhatOtherTrianglesShow) {
   for (const Case& scene : {colliding_silhouettes(), fingertip_on_face()}) {
     ASSERT_TRUE(scene.embedded());
     const ContactSet truth = scene.ask(all_pairs());
@@ -85,7 +85,7 @@ TEST(Traps, Trap01RepresentativeTrianglesLoseWhatOtherTrianglesShow) {
 }
 
 // Mutation: viewing_range in orientation.cpp looks at the first corner alone.
-TEST(Traps, Trap02AFingerOverASegmentObserverIsFound) {
+TEST(Traps, RuleThreeVerticesAFingerOverASegmentObserverIsFound) {
   scenes::Surface surface;
   scenes::append_hooked_finger(surface);
   const Shape shape{surface.positions, surface.triangles};
@@ -104,7 +104,7 @@ TEST(Traps, Trap02AFingerOverASegmentObserverIsFound) {
 }
 
 // Mutation: make_atomic_clusters keys its clusters by bone alone.
-TEST(Traps, Trap03AShellThatClosesOnAnotherIsFound) {
+TEST(Traps, RuleComponentAShellThatClosesOnAnotherIsFound) {
   const Shape shape = test::together(test::octahedron(3), test::octahedron(1));
   std::vector<Vec3> end = shape.positions;
   for (std::size_t i = 0; i < 6; ++i) end[i] /= 6;
@@ -121,7 +121,7 @@ TEST(Traps, Trap03AShellThatClosesOnAnotherIsFound) {
 // A thin flap goes through a positive face: the vertices of its underside first, reported; its upper vertex
 // later, positive against positive, which the guarantee allows to be lost. Mutations: verify compares numbers
 // of contacts; any contact will do for the first.
-TEST(Traps, Trap13FewerContactsAreNoFailureWhileTheFirstIsKept) {
+TEST(Traps, RuleFairComparisonFewerContactsAreNoFailureWhileTheFirstIsKept) {
   const Shape flap{
       {{-0.5, -2, 1.5}, {0.5, -2, 1.5}, {0, -1, 1.5}, {0, -1.6, 1.55}},
       {test::corners(0, 2, 1), test::corners(0, 1, 3), test::corners(1, 2, 3), test::corners(2, 0, 3)}};

@@ -11,7 +11,7 @@
 // What the tests of the soundness contract's traps share: one interval of a mesh with one bone, asked of any
 // strategy with the exact referee. One test for each way in which the contract is broken silently, on whole
 // strategies; more of the same stand beside the units. "Mutation" says which change to the house made the
-// test fail when it was tried. Trap 4 is in core/radial/orientation_test.cpp, trap 14 in
+// test fail when it was tried. Rule error-bound is in core/radial/orientation_test.cpp, rule one-field in
 // core/radial/cluster_hierarchy_test.cpp.
 namespace cscd::bench::trap {
 
