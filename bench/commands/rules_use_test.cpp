@@ -19,7 +19,7 @@
 namespace cscd::bench {
 namespace {
 
-using namespace trap;
+using namespace rules;
 
 class Folder {
  public:
@@ -42,7 +42,7 @@ nlohmann::json query(const std::filesystem::path& input, const std::filesystem::
 }
 
 // Mutation: query never falls back (`may_fall_back` false).
-TEST(Traps, RuleEmbeddedStartAnOverlappingStartIsAnsweredByACompleteStrategy) {
+TEST(Rules, EmbeddedStartAnOverlappingStartIsAnsweredByACompleteStrategy) {
   Shape shape = test::together(test::octahedron(), test::moved(test::octahedron(), {0.5, 0.4, 0.3}));
   std::vector<Vec3> end = shape.positions;
   for (std::size_t i = 6; i < 12; ++i)
@@ -78,7 +78,7 @@ TEST(Traps, RuleEmbeddedStartAnOverlappingStartIsAnsweredByACompleteStrategy) {
 
 // Mutation: require_closed_and_oriented, or the test for bones, left out of require_radial_setup; the former
 // left out of make_drvbc_fast.
-TEST(Traps, RuleClosedMeshSurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
+TEST(Rules, ClosedMeshSurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
   const Shape ball = test::icosphere(1);
   Shape open = ball, flipped = ball, doubled = ball, fin = ball;
   open.triangles.pop_back();
@@ -110,7 +110,7 @@ TEST(Traps, RuleClosedMeshSurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
   }
 }
 
-TEST(Traps, RuleClosedMeshMissingBonesAreRefusedByThoseThatNeedThem) {
+TEST(Rules, ClosedMeshMissingBonesAreRefusedByThoseThatNeedThem) {
   const Shape ball = test::icosphere(1);
   const TriangleMesh mesh = ball.mesh();
   const Rig none;
@@ -147,7 +147,7 @@ std::vector<std::uint64_t> counters(const Report& report) {
 
 // Mutations: MegaClusters::regrow does not reset its labels; `fits` accepts once the suspects have passed;
 // FeaturePairSet's epoch stays; finish_classes or the refit of the vertices happens once only.
-TEST(Traps, RuleFreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
+TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
   const ElementaryTest& newton = elementary_test_named("newton");
   for (std::uint64_t seed = 1; seed <= 22; ++seed) {
     const scenes::RandomInterval random = scenes::make_random_interval(seed);

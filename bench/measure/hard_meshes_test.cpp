@@ -1,4 +1,4 @@
-// Hard cases of whole meshes that stand in no trap of the soundness contract: every strategy that promises
+// Hard cases of whole meshes that no rule of core/soundness.md names: every strategy that promises
 // something is held to it against all pairs, with an exact test behind it.
 #include <cmath>
 #include <gtest/gtest.h>

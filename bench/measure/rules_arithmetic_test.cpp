@@ -8,15 +8,15 @@
 #include "core/geometry/kdop.h"
 #include "scenes/random/random_interval.h"
 
-// Traps 5 to 9: bounds, relative boxes, signs and roots.
+// Rules outward-rounding to closed-interval: bounds, relative boxes, signs and roots.
 namespace cscd::bench {
 namespace {
 
-using namespace trap;
+using namespace rules;
 
 // Mutations of vertex_bounds.cpp: rounded to the nearest float (only this test notices: rounding is monotone,
 // so bodies that touch still overlap); rounded up; the start alone bounded.
-TEST(Traps, RuleOutwardRoundingBoundsContainTheExactMotionAtBothEnds) {
+TEST(Rules, OutwardRoundingBoundsContainTheExactMotionAtBothEnds) {
   constexpr int kDirection[8][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
                                     {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
   for (std::uint64_t seed = 1; seed <= 33; ++seed) {
@@ -42,7 +42,7 @@ TEST(Traps, RuleOutwardRoundingBoundsContainTheExactMotionAtBothEnds) {
 }
 
 // Mutations of vertex_bounds.cpp: rounded up; the start alone bounded.
-TEST(Traps, RuleOutwardRoundingBodiesThatTouchExactlyAreFound) {
+TEST(Rules, OutwardRoundingBodiesThatTouchExactlyAreFound) {
   std::size_t touching = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const scenes::RandomInterval random = scenes::make_random_interval(seed);
@@ -64,7 +64,7 @@ TEST(Traps, RuleOutwardRoundingBodiesThatTouchExactlyAreFound) {
 
 // Two triangles rush by together, far away, and touch at the very end in one exact point. Mutation:
 // relative_boxes_apart compares start + ((end - start) - mean) instead of end - mean.
-TEST(Traps, RuleRelativeMotionRelativeBoxesKeepTrianglesThatTouchInFastCommonMotion) {
+TEST(Rules, RelativeMotionRelativeBoxesKeepTrianglesThatTouchInFastCommonMotion) {
   std::mt19937_64 random(6);
   const auto uniform = [&](double half) {
     return half * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
@@ -108,7 +108,7 @@ std::vector<Vec3> second_moved(std::vector<Vec3> positions, const Vec3& by) {
 }
 
 // Mutation: certain_sign compares with >= and an error of zero, so that four zeros share a sign.
-TEST(Traps, RuleCertainSignCoplanarForAllTimeIsNotApart) {
+TEST(Rules, CertainSignCoplanarForAllTimeIsNotApart) {
   const std::vector<Vec3> start = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {5, 0.5, 0}, {7, 0.25, 0}, {7, 1.5, 0}};
   const ContactSet found = contacts_of_two(start, second_moved(start, {-8, 0, 0}));
   ASSERT_FALSE(found.contacts.empty());
@@ -117,7 +117,7 @@ TEST(Traps, RuleCertainSignCoplanarForAllTimeIsNotApart) {
 }
 
 // Mutation: exact::first_contact answers "apart" for the zero polynomial.
-TEST(Traps, RuleDegenerateDegenerateFeaturesStillTouch) {
+TEST(Rules, DegenerateDegenerateFeaturesStillTouch) {
   const std::vector<Vec3> flat = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   const auto with = [&](std::vector<Vec3> second) {
     second.insert(second.begin(), flat.begin(), flat.end());
@@ -152,7 +152,7 @@ TEST(Traps, RuleDegenerateDegenerateFeaturesStillTouch) {
 }
 
 // Mutation: roots_in_unit_interval leaves out roots at 0 and 1; even roots dropped.
-TEST(Traps, RuleClosedIntervalRootsAtTheEndsAndDoubleRootsCount) {
+TEST(Rules, ClosedIntervalRootsAtTheEndsAndDoubleRootsCount) {
   const std::vector<Vec3> flat = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   const auto with = [&](std::vector<Vec3> second) {
     second.insert(second.begin(), flat.begin(), flat.end());

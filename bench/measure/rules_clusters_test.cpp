@@ -5,12 +5,13 @@
 #include "core/detect/verify.h"
 #include "scenes/random/surface.h"
 
-// Traps 1, 2, 3 and 13: what a cluster may drop. Counter-examples: two octahedra and a fingertip against
-// representative triangles, a finger over a segment observer, nested shells, a thin flap.
+// Rules any-carrier, three-vertices, component and fair-comparison: what a cluster may drop.
+// Counter-examples: two octahedra and a fingertip against representative triangles, a finger over a segment
+// observer, nested shells, a thin flap.
 namespace cscd::bench {
 namespace {
 
-using namespace trap;
+using namespace rules;
 
 // Two octahedra whose silhouette edges towards a point far below collide, crosswise. The first faces at these
 // edges are positive.
@@ -50,7 +51,7 @@ class OnePair : public Culler {
 };
 
 // Mutation: compose::expand meets only the features that have their triangle as the first one at them.
-TEST(Traps, RuleAnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
+TEST(Rules, AnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
   for (const Case& scene : {colliding_silhouettes(), fingertip_on_face()}) {
     const ContactSet truth = scene.ask(all_pairs());
     ASSERT_FALSE(truth.contacts.empty());
@@ -72,7 +73,7 @@ TEST(Traps, RuleAnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
 }
 
 // Mutation: as above.
-TEST(Traps, RuleAnyCarrierRepresentativeTrianglesLoseWhatOtherTrianglesShow) {
+TEST(Rules, AnyCarrierRepresentativeTrianglesLoseWhatOtherTrianglesShow) {
   for (const Case& scene : {colliding_silhouettes(), fingertip_on_face()}) {
     ASSERT_TRUE(scene.embedded());
     const ContactSet truth = scene.ask(all_pairs());
@@ -85,7 +86,7 @@ TEST(Traps, RuleAnyCarrierRepresentativeTrianglesLoseWhatOtherTrianglesShow) {
 }
 
 // Mutation: viewing_range in orientation.cpp looks at the first corner alone.
-TEST(Traps, RuleThreeVerticesAFingerOverASegmentObserverIsFound) {
+TEST(Rules, ThreeVerticesAFingerOverASegmentObserverIsFound) {
   scenes::Surface surface;
   scenes::append_hooked_finger(surface);
   const Shape shape{surface.positions, surface.triangles};
@@ -104,7 +105,7 @@ TEST(Traps, RuleThreeVerticesAFingerOverASegmentObserverIsFound) {
 }
 
 // Mutation: make_atomic_clusters keys its clusters by bone alone.
-TEST(Traps, RuleComponentAShellThatClosesOnAnotherIsFound) {
+TEST(Rules, ComponentAShellThatClosesOnAnotherIsFound) {
   const Shape shape = test::together(test::octahedron(3), test::octahedron(1));
   std::vector<Vec3> end = shape.positions;
   for (std::size_t i = 0; i < 6; ++i) end[i] /= 6;
@@ -121,7 +122,7 @@ TEST(Traps, RuleComponentAShellThatClosesOnAnotherIsFound) {
 // A thin flap goes through a positive face: the vertices of its underside first, reported; its upper vertex
 // later, positive against positive, which the guarantee allows to be lost. Mutations: verify compares numbers
 // of contacts; any contact will do for the first.
-TEST(Traps, RuleFairComparisonFewerContactsAreNoFailureWhileTheFirstIsKept) {
+TEST(Rules, FairComparisonFewerContactsAreNoFailureWhileTheFirstIsKept) {
   const Shape flap{
       {{-0.5, -2, 1.5}, {0.5, -2, 1.5}, {0, -1, 1.5}, {0, -1.6, 1.55}},
       {test::corners(0, 2, 1), test::corners(0, 1, 3), test::corners(1, 2, 3), test::corners(2, 0, 3)}};

@@ -8,12 +8,12 @@
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
 
-// What the tests of the soundness contract's traps share: one interval of a mesh with one bone, asked of any
+// What the tests of the soundness rules share: one interval of a mesh with one bone, asked of any
 // strategy with the exact referee. One test for each way in which the contract is broken silently, on whole
 // strategies; more of the same stand beside the units. "Mutation" says which change to the house made the
 // test fail when it was tried. Rule error-bound is in core/radial/orientation_test.cpp, rule one-field in
 // core/radial/cluster_hierarchy_test.cpp.
-namespace cscd::bench::trap {
+namespace cscd::bench::rules {
 
 using radial::ObserverKind;
 using test::Flaw;
@@ -77,4 +77,4 @@ inline std::vector<Vec3> shifted(std::vector<Vec3> positions, std::size_t first,
 
 inline const Bone kFarBelow{{-0.1, 0, -20}, {0.1, 0, -20}};
 
-}  // namespace cscd::bench::trap
+}  // namespace cscd::bench::rules

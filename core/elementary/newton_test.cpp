@@ -113,7 +113,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
   }
 }
 
-// Traps 8 and 9: small integer coordinates meet every degenerate case.
+// Rules degenerate and closed-interval: small integer coordinates meet every degenerate case.
 TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
   Tally vf, ee;
   for (int i = 0; i < 12'000; ++i) {
