@@ -14,8 +14,8 @@
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
-// Traps 10 to 12: an overlapping start, a surface without an inside, state kept from one interval to the
-// next.
+// Rules embedded-start, closed-mesh and fresh-detector: an overlapping start, a surface without an inside,
+// state kept from one interval to the next.
 namespace cscd::bench {
 namespace {
 
@@ -23,7 +23,7 @@ using namespace rules;
 
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("cscd-traps-" + std::to_string(::getpid()))) {
+  Folder() : path_(std::filesystem::temp_directory_path() / ("cscd-rules-" + std::to_string(::getpid()))) {
     std::filesystem::create_directory(path_);
   }
   ~Folder() { std::filesystem::remove_all(path_); }

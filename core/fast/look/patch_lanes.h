@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/fast/cut/patches.h"
-#include "core/fast/look/local_positions.h"
+#include "core/fast/look/viewpoint.h"
 #include "core/geometry/triple_product16.h"
 
 // What is computed of one patch at a time, all of its vertices and triangles side by side.

@@ -1,7 +1,9 @@
 #include "scenes/import/gltf/buffers.h"
 
 #include <charconv>
+#include <tiny_gltf.h>
 
+#include "core/base/error.h"
 #include "scenes/import/gltf/extensions.h"
 
 namespace cscd::scenes::gltf {
