@@ -9,6 +9,7 @@
 #include "bench/commands/model_options.h"
 #include "bench/input/input.h"
 #include "bench/measure/contestant.h"
+#include "bench/measure/footprint.h"
 #include "bench/measure/timing.h"
 #include "bench/measure/verification.h"
 #include "bench/output/json_text.h"

@@ -25,7 +25,7 @@ function(cscd_build_info room)
             -P ${PROJECT_SOURCE_DIR}/scripts/cmake/commit.cmake
     BYPRODUCTS ${generated}/commit.h
     COMMENT "")
-  target_include_directories(${room} PRIVATE ${generated})
+  target_include_directories(${room} PUBLIC ${generated})
   add_dependencies(${room} cscd_commit)
 endfunction()
 
