@@ -18,7 +18,7 @@
 namespace cscd {
 
 Prepared make_aabb(const Setup& setup) {
-  return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup), {}};
 }
 
 }  // namespace cscd

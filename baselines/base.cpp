@@ -6,7 +6,7 @@
 namespace cscd {
 
 Prepared make_base(const Setup& setup) {
-  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
 }
 
 }  // namespace cscd

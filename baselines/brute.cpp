@@ -24,7 +24,7 @@ class BruteCuller : public Culler {
 
 Prepared make_brute(const Setup& setup) {
   auto culler = std::make_unique<BruteCuller>(static_cast<std::int32_t>(setup.mesh.triangle_count()));
-  return {compose(std::move(culler), setup.mesh, setup.elementary), {}};
+  return {compose(std::move(culler), setup), {}};
 }
 
 }  // namespace cscd

@@ -83,7 +83,7 @@ Prepared make_rvbc(const Setup& setup, const RvbcOptions& options) {
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
-  return {compose(std::move(culler), setup.mesh, setup.elementary, {options.relative_boxes}), preparation};
+  return {compose(std::move(culler), setup, {options.relative_boxes}), preparation};
 }
 
 }  // namespace cscd

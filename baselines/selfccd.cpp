@@ -11,9 +11,10 @@
 // vertex, of which a hierarchy yields hundreds of thousands, none need be looked at if the few feature pairs
 // that no other triangle pair carries, the orphans, are listed once and tested at every interval.
 //
-// Rule any-carrier is about this method. It is sound here because the bounds alone cull: the representative of a pair
-// in contact are two triangles that touch, so their bounds overlap whatever other pairs are dropped. Under
-// culling by orientation it would lose contacts. A "no" proves that the swept bounds are disjoint.
+// Rule any-carrier is about this method. It is sound here because the bounds alone cull: the representative
+// of a pair in contact are two triangles that touch, so their bounds overlap whatever other pairs are
+// dropped. Under culling by orientation it would lose contacts. A "no" proves that the swept bounds are
+// disjoint.
 //
 // Fidelity: own code after descriptions of the published one. The representative is found by a rule instead
 // of a table, as in the published code: the first triangle at the vertex that shares no vertex with the face;
@@ -90,9 +91,7 @@ std::unique_ptr<const FeatureAssignment> representative_triangles(const Triangle
 Prepared make_selfccd(const Setup& setup) {
   PairOptions options;
   options.assignment = representative_triangles(setup.mesh);
-  return {compose(std::make_unique<PlainCuller<Kdop16, false>>(setup), setup.mesh, setup.elementary,
-                  std::move(options)),
-          {}};
+  return {compose(std::make_unique<PlainCuller<Kdop16, false>>(setup), setup, std::move(options)), {}};
 }
 
 }  // namespace cscd

@@ -65,7 +65,7 @@ class CgalBoxesCuller : public Culler {
 }  // namespace
 
 Prepared make_cgal_boxes(const Setup& setup) {
-  return {compose(std::make_unique<CgalBoxesCuller>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<CgalBoxesCuller>(setup), setup), {}};
 }
 
 }  // namespace cscd

@@ -114,7 +114,7 @@ class EmbreeCuller : public Culler {
 }  // namespace
 
 Prepared make_embree(const Setup& setup) {
-  return {compose(std::make_unique<EmbreeCuller>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<EmbreeCuller>(setup), setup), {}};
 }
 
 }  // namespace cscd

@@ -141,6 +141,9 @@ class FclDetector : public Detector {
 }  // namespace
 
 Prepared make_fcl(const Setup& setup) {
+  if (setup.first_only)
+    throw InputError(
+        "strategy fcl: tests pairs by itself and finds all contacts; do not ask it for the first alone");
   return {std::make_unique<FclDetector>(setup), {}};
 }
 

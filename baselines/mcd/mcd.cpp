@@ -93,7 +93,7 @@ class McdCuller : public Culler {
 }  // namespace
 
 Prepared make_mcd(const Setup& setup) {
-  return {compose(std::make_unique<McdCuller>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<McdCuller>(setup), setup), {}};
 }
 
 }  // namespace cscd

@@ -72,11 +72,8 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
 }
 
 Answerer::Row Answerer::make(const Strategy& strategy) const {
-  Prepared prepared = strategy.make(input_.setup(elementary_));
-  // With pairs left out, the earliest contact may be one of theirs, and then later ones are asked for.
-  if (options_.first && left_out_.empty() && !prepared.detector->look_for_first_only())
-    throw InputError("--first: strategy " + std::string(strategy.name) +
-                     " tests pairs by itself and finds all; leave one of the two out");
+  // With pairs left out, the earliest contact may be one of theirs, and then later contacts are asked for.
+  Prepared prepared = strategy.make(input_.setup(elementary_, options_.first && left_out_.empty()));
   return {&strategy, std::move(prepared.detector), prepared.preparation.threads};
 }
 

@@ -8,7 +8,7 @@
 #include "bench/commands/command.h"
 #include "bench/commands/model_options.h"
 #include "bench/input/input.h"
-#include "bench/measure/verification.h"
+#include "bench/measure/interval_choice.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"

@@ -74,7 +74,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
       options.strategy.empty() ? default_strategy(input) : strategy_named(options.strategy);
   // Bones spare the default strategy a little work in every interval, and preparing for them takes longer
   // than they spare in a clip of some hundred frames.
-  input.use_bones = !options.strategy.empty() || strategy.needs_rig;
+  input.use_bones = !options.strategy.empty() || strategy.needs.bones;
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
   const double patience = options.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);

@@ -97,7 +97,7 @@ TEST(Rules, ClosedMeshSurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
         EXPECT_EQ(digest(scene.ask(strategy)), digest(truth)) << strategy.name;
         continue;
       }
-      if (!strategy.needs_rig && strategy.guarantee == Guarantee::heuristic) continue;  // takes any surface
+      if (!strategy.needs.closed_mesh) continue;
       try {
         strategy.make(scene.setup());
         ADD_FAILURE() << strategy.name << " took it";
@@ -117,7 +117,7 @@ TEST(Rules, ClosedMeshMissingBonesAreRefusedByThoseThatNeedThem) {
   for (const Strategy& strategy : strategies())
     for (const Rig* rig : {static_cast<const Rig*>(nullptr), &none}) {
       const cscd::Setup setup{mesh, ball.positions, rig, exact()};
-      if (!strategy.needs_rig) {
+      if (!strategy.needs.bones) {
         EXPECT_NO_THROW(strategy.make(setup));
         continue;
       }

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <set>
 
 #include "bench/commands/command.h"
 #include "bench/commands/model_options.h"
 #include "bench/input/input.h"
 #include "bench/measure/contestant.h"
 #include "bench/measure/footprint.h"
+#include "bench/measure/interval_choice.h"
 #include "bench/measure/timing.h"
 #include "bench/measure/verification.h"
 #include "bench/output/json_text.h"
@@ -32,7 +32,7 @@ constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 struct RunOptions {
   std::string scene = "rope", elementary = "newton", frames, output;
   std::vector<std::string> strategies;
-  std::size_t repetitions = 5, count_every = 1, time_every = 1, verify_every = 1;
+  std::size_t repetitions = 5, count_every = 1, time_every = 1, time_contacts = 3, verify_every = 1;
   std::uint64_t seed = 2014;
   int threads = 1;
   bool smoke = false, force = false;
@@ -47,18 +47,30 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
                                       const IntervalRange& range, bool is_model) {
   std::string names;
   for (const Contestant& c : contestants) names += (names.empty() ? "" : ",") + std::string(c.strategy->name);
-  std::vector<std::string> words = {
-      "cscd",           "run",
-      "--scene",        options.scene,
-      "--strategy",     names,
-      "--elementary",   options.elementary,
-      "--frames",       std::to_string(range.first) + ":" + std::to_string(range.last),
-      "--repetitions",  std::to_string(options.repetitions),
-      "--count-every",  std::to_string(options.count_every),
-      "--time-every",   std::to_string(options.time_every),
-      "--verify-every", std::to_string(options.verify_every),
-      "--seed",         std::to_string(options.seed),
-      "--threads",      std::to_string(options.threads)};
+  std::vector<std::string> words = {"cscd",
+                                    "run",
+                                    "--scene",
+                                    options.scene,
+                                    "--strategy",
+                                    names,
+                                    "--elementary",
+                                    options.elementary,
+                                    "--frames",
+                                    std::to_string(range.first) + ":" + std::to_string(range.last),
+                                    "--repetitions",
+                                    std::to_string(options.repetitions),
+                                    "--count-every",
+                                    std::to_string(options.count_every),
+                                    "--time-every",
+                                    std::to_string(options.time_every),
+                                    "--time-contacts",
+                                    std::to_string(options.time_contacts),
+                                    "--verify-every",
+                                    std::to_string(options.verify_every),
+                                    "--seed",
+                                    std::to_string(options.seed),
+                                    "--threads",
+                                    std::to_string(options.threads)};
   if (is_model) {
     const std::vector<std::string> model = to_arguments(options.model.import);
     words.insert(words.end(), model.begin(), model.end());
@@ -124,10 +136,40 @@ void print(const VerificationRecord& v, const std::string& timed) {
       static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
-std::vector<std::size_t> united(const std::vector<std::vector<std::size_t>>& sets) {
-  std::set<std::size_t> all;
-  for (const std::vector<std::size_t>& set : sets) all.insert(set.begin(), set.end());
-  return {all.begin(), all.end()};
+// Every K-th interval of the range, and intervals with contacts beside them, by the fastest complete
+// strategy.
+std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& range,
+                                           const RunOptions& options) {
+  const std::vector<std::size_t> regular = every_kth(range, options.time_every);
+  if (options.time_contacts == 0) return regular;
+  const Prepared fastest = complete_stand_in().make(input.setup(elementary_test_named("filtered_exact")));
+  return with_contacts(regular, intervals_with_contacts(input, *fastest.detector, range),
+                       options.time_contacts);
+}
+
+// Judges, counts and times the contestants, and keeps what came of it in the record's strategies. Times are
+// missing where a strategy failed.
+VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contestants,
+                                      const ElementaryTest& exact, const ElementaryTest& timed,
+                                      std::span<const std::size_t> to_verify, const RunOptions& options,
+                                      Record& record) {
+  Verifier verifier(input, contestants, exact, timed);
+  verifier.judge(to_verify);
+  if (!verifier.record().ok()) return verifier.record();
+  const WarmUp counted = warm_up(input, contestants, record.counted_intervals, verifier, record.strategies);
+  verifier.judge(counted.disagreeing);
+  std::optional<Unrepeatable> void_times = counted.unrepeatable;
+  if (!void_times && verifier.record().ok()) {
+    const TimingPlan plan{record.timed_intervals, options.repetitions, options.seed};
+    void_times = time_contestants(input, contestants, plan, verifier, counted, record.strategies);
+    for (StrategyRecord& strategy : record.strategies)
+      strategy.footprint =
+          measure_footprint(input, strategy_named(strategy.name), timed, record.timed_intervals);
+  }
+  VerificationRecord verified = verifier.record();
+  verified.disagreeing = counted.disagreeing;
+  if (void_times) verified.strategies[void_times->contestant].failures.push_back(void_times->failure);
+  return verified;
 }
 
 // Whether every strategy kept its promise.
@@ -144,6 +186,7 @@ bool run_one(RunOptions options, OutputFile& output) {
     range.last = std::min(range.last, range.first + kSmokeIntervals);
     options.repetitions = kSmokeRepetitions;
     options.verify_every = options.time_every = kSmokeEvery;
+    options.time_contacts = std::min<std::size_t>(options.time_contacts, 1);
   }
   const std::vector<const Strategy*> strategies = chosen_strategies(input, options.strategies);
   if (strategies.empty())
@@ -156,29 +199,20 @@ bool run_one(RunOptions options, OutputFile& output) {
   record.seed = options.seed;
   record.elementary = timed.name;
   record.intervals = range.last - range.first;
-  record.timed_intervals = every_kth(range, options.time_every);
-  const std::vector<std::size_t> to_verify = every_kth(range, options.verify_every);
-  record.counted_intervals =
-      united({every_kth(range, options.count_every), record.timed_intervals, to_verify});
+  record.timed_intervals = intervals_to_time(input, range, options);
+  // Whatever is timed is verified.
+  const std::vector<std::size_t> to_verify =
+      united(std::vector{every_kth(range, options.verify_every), record.timed_intervals});
+  record.counted_intervals = united(std::vector{every_kth(range, options.count_every), to_verify});
   std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
   record.command = command_line(options, contestants, range, input.import.has_value());
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
 
-  VerificationOutcome verified = verify_contestants(input, contestants, exact, timed, to_verify);
-  if (verified.record.ok()) {
-    const TimingPlan plan{record.counted_intervals, record.timed_intervals, options.repetitions,
-                          options.seed};
-    if (const auto void_times = time_contestants(input, contestants, plan, verified, record.strategies))
-      verified.record.strategies[void_times->contestant].failures.push_back(void_times->failure);
-    for (StrategyRecord& strategy : record.strategies)
-      strategy.footprint =
-          measure_footprint(input, strategy_named(strategy.name), timed, record.timed_intervals);
-  }
-  const bool ok = verified.record.ok();
+  record.verification = verified_and_timed(input, contestants, exact, timed, to_verify, options, record);
+  const bool ok = record.verification.ok();
   if (!ok)
     for (std::size_t c = 0; c < contestants.size(); ++c) record.strategies[c] = describe(contestants[c]);
-  print(verified.record, options.elementary);
-  record.verification = std::move(verified.record);
+  print(record.verification, options.elementary);
   output.commit(json_text(to_json(record)));
   std::printf("%s", run_times_text(record).c_str());
   return ok;
@@ -268,8 +302,15 @@ void add_run(CLI::App& app) {
   command->add_option("--time-every", options->time_every, "time each K-th interval")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  command
+      ->add_option("--time-contacts", options->time_contacts,
+                   "time at least so many intervals with contacts, where there are that many")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
   command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
-  command->add_option("--verify-every", options->verify_every, "verify each K-th interval, from the first")
+  command
+      ->add_option("--verify-every", options->verify_every,
+                   "verify each K-th interval, from the first, and all that are timed")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "of the order in which strategies run")->capture_default_str();

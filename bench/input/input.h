@@ -34,8 +34,8 @@ struct Input {
     return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
   }
 
-  Setup setup(const ElementaryTest& elementary) const {
-    return {mesh, reference, rig && use_bones ? &*rig : nullptr, elementary, threads};
+  Setup setup(const ElementaryTest& elementary, bool first_only = false) const {
+    return {mesh, reference, rig && use_bones ? &*rig : nullptr, elementary, threads, first_only};
   }
 };
 

@@ -63,7 +63,7 @@ std::optional<std::uint64_t> growth(std::optional<std::uint64_t> before, std::op
 
 }  // namespace
 
-Made make_measured(Input& input, const Strategy& strategy, const ElementaryTest& elementary, std::size_t at) {
+Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& elementary, std::size_t at) {
   const scenes::ClipInterval interval =
       input.clip->load(at);  // the source's own buffers are not the strategy's
   malloc_trim(0);            // nor is what earlier strategies freed
@@ -71,7 +71,7 @@ Made make_measured(Input& input, const Strategy& strategy, const ElementaryTest&
   const auto resident = status_bytes("VmRSS");
 
   const auto begin = std::chrono::steady_clock::now();
-  Made made{strategy.make(input.setup(elementary)), {}};
+  Made made{row.strategy->make(input.setup(elementary, row.first)), {}};
   made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   ContactSet found;
   for (int time = 0; time < 2; ++time)
@@ -84,7 +84,7 @@ Made make_measured(Input& input, const Strategy& strategy, const ElementaryTest&
 
 Footprint measure_footprint(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                             std::span<const std::size_t> intervals) {
-  const Made made = make_measured(input, strategy, elementary, intervals.front());
+  const Made made = make_measured(input, {&strategy}, elementary, intervals.front());
   Footprint footprint = made.footprint;
   if (made.prepared.preparation.threads > 1) return footprint;  // the counter sees one
   ContactSet found;

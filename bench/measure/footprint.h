@@ -5,6 +5,7 @@
 
 #include "bench/input/input.h"
 #include "bench/record/record.h"
+#include "bench/rows/strategy_row.h"
 #include "core/detect/strategy.h"
 
 namespace cscd::bench {
@@ -15,7 +16,7 @@ struct Made {
   Footprint footprint;  // without instructions
   double make_ms = 0;   // before it answered
 };
-Made make_measured(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
                    std::size_t interval);
 
 // Makes the strategy anew and runs it on the intervals, of which there is at least one.

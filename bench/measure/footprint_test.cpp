@@ -48,7 +48,7 @@ TEST(Footprint, SeesPeakAndHeldMemory) {
   clip->append({corners, {}});
   Input input{"tetrahedron", std::move(clip), TriangleMesh(triangles, 4), corners, std::nullopt};
 
-  const Strategy hoarder{"hoarder", "a test", Guarantee::heuristic, false, make_hoarder};
+  const Strategy hoarder{"hoarder", "a test", Guarantee::heuristic, {}, make_hoarder};
   const std::array<std::size_t, 1> intervals{0};
   const Footprint footprint = measure_footprint(input, hoarder, elementary_test_named("newton"), intervals);
   constexpr double mebibyte = 1 << 20;

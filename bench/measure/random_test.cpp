@@ -68,7 +68,10 @@ TEST(RandomVerification, EveryStrategyHoldsOnThreeHundredIntervals) {
 
 TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
   const Strategy saboteur[] = {
-      {"uncertain_is_positive", "for tests", Guarantee::first_contact, true,
+      {"uncertain_is_positive",
+       "for tests",
+       Guarantee::first_contact,
+       {.bones = true, .closed_mesh = true},
        test::make_radial<test::Flaw::uncertain_called_positive, radial::ObserverKind::bone_centre>}};
   const RandomSummary summary = verify_random({60, 7, 10}, rows_of(saboteur));
   ASSERT_FALSE(summary.failures.empty());

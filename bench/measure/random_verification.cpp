@@ -61,8 +61,8 @@ struct Subject {
     const ElementaryTest& test = row.first ? elementary_test_named(even ? "exact" : "filtered_exact")
                                            : (even ? kPutOff<false> : kPutOff<true>);
     const std::unique_ptr<Detector> detector =
-        row.strategy->make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test}).detector;
-    if (row.first) detector->look_for_first_only();
+        row.strategy->make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test, 1, row.first})
+            .detector;
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     result.report =

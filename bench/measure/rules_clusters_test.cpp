@@ -65,7 +65,7 @@ TEST(Rules, AnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
           edges ? around(contact.pair.b, true) : std::span<const TriangleId>(&face, 1);
       for (const TriangleId a : around(contact.pair.a, edges))
         for (const TriangleId b : other) {
-          const auto detector = compose(std::make_unique<OnePair>(TrianglePair{a, b}), scene.mesh, exact());
+          const auto detector = compose(std::make_unique<OnePair>(TrianglePair{a, b}), scene.setup());
           EXPECT_TRUE(holds(scene.ask(*detector), contact.pair));
         }
     }

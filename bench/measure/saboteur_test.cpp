@@ -14,10 +14,10 @@ namespace {
 using test::Flaw;
 
 Strategy plain(const char* name, Prepared (*make)(const Setup&)) {
-  return {name, "for tests", Guarantee::complete, false, make};
+  return {name, "for tests", Guarantee::complete, {}, make};
 }
 Strategy first_contact(const char* name, Prepared (*make)(const Setup&)) {
-  return {name, "for tests", Guarantee::first_contact, true, make};
+  return {name, "for tests", Guarantee::first_contact, {.bones = true, .closed_mesh = true}, make};
 }
 
 // Verifies on `intervals` random intervals and returns how many failed.
@@ -131,7 +131,8 @@ TEST(Saboteurs, RadialStrategiesThatLoseFirstContactsAreCaughtWithSegments) {
   expect_radial_saboteurs_are_caught<radial::ObserverKind::bone_segment>(400);
 }
 
-// Rule one-field: several observers may each certify pairs, but one must certify all triangles round both of a pair.
+// Rule one-field: several observers may each certify pairs, but one must certify all triangles round both of
+// a pair.
 TEST(Saboteurs, RuleOneFieldOverlappingCoversThatCertifyTooLittleAreCaught) {
   const Strategy strategies[] = {
       first_contact("sound", test::make_many_covers<Flaw::none>),

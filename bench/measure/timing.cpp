@@ -10,7 +10,9 @@
 #endif
 
 #include "bench/output/progress.h"
+#include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/detect/start/embedding.h"
 #include "core/geometry/lanes.h"
 
 namespace cscd::bench {
@@ -30,6 +32,7 @@ bool same_culling(const Report& a, const Report& b) {
 struct Answer {
   Report report;
   std::string digest;
+  std::optional<double> first;  // time of the earliest contact
 };
 
 // Sorting and digesting happen outside the detector's clock.
@@ -37,7 +40,34 @@ Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
   const Report report =
       contestant.timed->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
   found.sort();
-  return {report, digest(found)};
+  const auto first = found.contacts.empty() ? std::nullopt : std::optional(found.contacts.front().time);
+  return {report, digest(found), first};
+}
+
+// Whether rows that promise the same have answered the same.
+template <class StartsEmbedded>
+bool agree(std::span<const Contestant> contestants, std::span<const Answer> answers,
+           const StartsEmbedded& starts_embedded) {
+  const Answer *complete = nullptr, *first = nullptr;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    const Strategy& strategy = *contestants[c].strategy;
+    if (strategy.own_test || strategy.guarantee != Guarantee::complete) continue;
+    if (complete != nullptr && complete->digest != answers[c].digest) return false;
+    complete = &answers[c];
+  }
+  first = complete;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    if (contestants[c].strategy->guarantee != Guarantee::first_contact) continue;
+    if (first != nullptr && first->first != answers[c].first) return !starts_embedded();
+    first = &answers[c];
+  }
+  return true;
+}
+
+double milliseconds_of(EmbeddingTest& test, const Motion& motion) {
+  const auto begin = std::chrono::steady_clock::now();
+  test.embedded(motion.start());
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace
@@ -63,45 +93,65 @@ double stream_positions(const Motion& motion) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
-                                             const TimingPlan& plan, const VerificationOutcome& verified,
-                                             std::vector<StrategyRecord>& records) {
-  Progress progress("timing " + input.name, plan.counted.size() + plan.repetitions * plan.timed.size());
+WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const std::size_t> counted,
+               const Verifier& verifier, std::vector<StrategyRecord>& records) {
+  Progress progress("counting " + input.name, counted.size());
+  EmbeddingTest embedding(input.mesh, input.reference);
+  WarmUp out{{counted.begin(), counted.end()}, std::vector<std::vector<Report>>(contestants.size()), {}, {}};
   ContactSet found;
-  std::vector<std::vector<Report>> warm_ups(contestants.size());
-
-  auto next_verified = verified.record.intervals.begin();
-  for (const std::size_t i : plan.counted) {
+  std::vector<Answer> answers(contestants.size());
+  for (const std::size_t i : counted) {
     const scenes::ClipInterval interval = input.clip->load(i);
-    const bool was_verified = next_verified != verified.record.intervals.end() && *next_verified == i;
     for (std::size_t c = 0; c < contestants.size(); ++c) {
-      const Answer warm_up = answer(contestants[c], interval, found);
-      append_counts(warm_up.report, found, records[c].counts);
-      records[c].digests.push_back(warm_up.digest);
-      warm_ups[c].push_back(warm_up.report);
-      const auto row = static_cast<std::size_t>(next_verified - verified.record.intervals.begin());
-      if (was_verified && !same_culling(warm_up.report, verified.reports[c][row]))
-        return Unrepeatable{c,
+      answers[c] = answer(contestants[c], interval, found);
+      append_counts(answers[c].report, found, records[c].counts);
+      records[c].digests.push_back(answers[c].digest);
+      out.reports[c].push_back(answers[c].report);
+      if (verifier.has_judged(i) && !same_culling(answers[c].report, verifier.report(c, i))) {
+        out.unrepeatable = {c,
                             "interval " + std::to_string(i) + ": culls otherwise than when it was verified"};
+        return out;
+      }
     }
-    next_verified += was_verified;
+    if (!agree(contestants, answers, [&] { return embedding.embedded(interval.motion.start()); }))
+      out.disagreeing.push_back(i);
     progress.advance();
   }
+  return out;
+}
 
+std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
+                                             const TimingPlan& plan, const Verifier& verifier,
+                                             const WarmUp& warm_up, std::vector<StrategyRecord>& records) {
+  for (const std::size_t i : plan.timed)
+    if (!verifier.has_judged(i))
+      throw InputError("interval " + std::to_string(i) + " of " + input.name +
+                       " is to be timed but was not verified; verify every timed interval");
+  Progress progress("timing " + input.name, plan.repetitions * plan.timed.size());
+  EmbeddingTest embedding(input.mesh, input.reference);
+  ContactSet found;
   std::mt19937_64 random(plan.seed);
-  std::vector<std::size_t> order(contestants.size());
+  std::vector<std::size_t> order(contestants.size() + 1);  // the last is the test of the start
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition)
     for (const std::size_t i : plan.timed) {
       const auto row =
-          static_cast<std::size_t>(std::ranges::lower_bound(plan.counted, i) - plan.counted.begin());
+          static_cast<std::size_t>(std::ranges::lower_bound(warm_up.counted, i) - warm_up.counted.begin());
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {
-        append_time("streaming", stream_positions(interval.motion), records[c].ms, repetition);
+        const double streaming = stream_positions(interval.motion);
+        if (c == contestants.size()) {
+          const double embedding_ms = milliseconds_of(embedding, interval.motion);
+          for (std::size_t k = 0; k < contestants.size(); ++k)
+            if (contestants[k].strategy->guarantee == Guarantee::first_contact)
+              append_time("embedding", embedding_ms, records[k].ms, repetition);
+          continue;
+        }
+        append_time("streaming", streaming, records[c].ms, repetition);
         const Answer timed = answer(contestants[c], interval, found);
         append_times(timed.report.ms, records[c].ms, repetition);
-        if (timed.digest != records[c].digests[row] || !same_culling(timed.report, warm_ups[c][row]))
+        if (timed.digest != records[c].digests[row] || !same_culling(timed.report, warm_up.reports[c][row]))
           return Unrepeatable{c, "interval " + std::to_string(i) +
                                      ": other contacts or counters in repetition " +
                                      std::to_string(repetition) + " than before"};

@@ -6,15 +6,17 @@
 
 #include "bench/output/progress.h"
 #include "bench/rows/catalogue.h"
-#include "core/detect/start/embedding.h"
 
 namespace cscd::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+}  // namespace
+
 // The reference with both tests: a contestant where it takes part, else made for the occasion.
-struct Reference {
+class Verifier::Reference {
+ public:
   Contestant own;
   Contestant* used;
 
@@ -29,7 +31,7 @@ struct Reference {
 };
 
 // A strategy with an elementary test of its own is compared, not judged: nothing is promised.
-class OwnTest {
+class Verifier::OwnTest {
  public:
   explicit OwnTest(const Strategy& strategy) : strategy_(strategy) {}
 
@@ -78,6 +80,8 @@ class OwnTest {
   nlohmann::ordered_json listed_ = nlohmann::ordered_json::array();
 };
 
+namespace {
+
 // Leaves the referee's answers to the pairs that both call contacts.
 void keep_shared(const ContactSet& truth, ContactSet& answer) {
   ContactSet shared;
@@ -103,66 +107,78 @@ void add(const Verification& judgement, bool promised, std::size_t interval, Ver
 
 }  // namespace
 
-VerificationOutcome verify_contestants(Input& input, std::span<Contestant> contestants,
-                                       const ElementaryTest& exact, const ElementaryTest& timed,
-                                       std::vector<std::size_t> intervals) {
-  const Clock::time_point begin = Clock::now();
-  const Reference reference(input, contestants, exact, timed);
-  VerificationOutcome outcome;
-  VerificationRecord& record = outcome.record;
-  outcome.reports.resize(contestants.size());
-  record.reference = reference.used->strategy->name;
-  record.elementary = exact.name;
-  for (const Contestant& contestant : contestants) {
-    VerifiedStrategy& row = record.strategies.emplace_back();
-    row.name = contestant.strategy->name;
-    row.guarantee = to_string(contestant.strategy->guarantee);
+Verifier::Verifier(Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
+                   const ElementaryTest& timed)
+    : input_(input),
+      contestants_(contestants),
+      reference_(std::make_unique<Reference>(input, contestants, exact, timed)),
+      embedding_(std::make_unique<EmbeddingTest>(input.mesh, input.reference)) {
+  record_.reference = reference_->used->strategy->name;
+  record_.elementary = exact.name;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    const Strategy& strategy = *contestants[c].strategy;
+    VerifiedStrategy& row = record_.strategies.emplace_back();
+    row.name = strategy.name;
+    row.guarantee = to_string(strategy.guarantee);
+    if (strategy.own_test) own_tests_.emplace(c, std::make_unique<OwnTest>(strategy));
   }
-  std::map<std::size_t, OwnTest> own_tests;  // by contestant
-  for (std::size_t c = 0; c < contestants.size(); ++c)
-    if (contestants[c].strategy->own_test) own_tests.emplace(c, *contestants[c].strategy);
-
-  EmbeddingTest embedding(input.mesh, input.reference);
-  Progress progress("verifying " + input.name, intervals.size());
-  ContactSet truth, answer;
-  for (const std::size_t i : intervals) {
-    const scenes::ClipInterval interval = input.clip->load(i);
-    const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
-    const bool starts_embedded = embedding.embedded(interval.motion.start());
-    if (!starts_embedded) record.unembedded.push_back(i);
-
-    const Report expected = reference.used->judged->detect(interval.motion, bones, truth);
-    truth.sort();
-    if (!truth.contacts.empty()) record.colliding.push_back(i);
-    for (std::size_t c = 0; c < contestants.size(); ++c) {
-      const Strategy& strategy = *contestants[c].strategy;
-      const bool itself = &contestants[c] == reference.used;
-      const Report report = itself ? expected : contestants[c].judged->detect(interval.motion, bones, answer);
-      outcome.reports[c].push_back(report);
-      answer.sort();
-      if (const auto own = own_tests.find(c); own != own_tests.end()) {
-        own->second.compare(input.mesh, i, truth, answer);
-        keep_shared(truth, answer);
-      }
-      add(verify(truth, itself ? truth : answer, strategy.guarantee, starts_embedded),
-          promises(strategy.guarantee, starts_embedded, truth), i, record.strategies[c]);
-    }
-
-    record.accuracy_tests +=
-        reference.used->timed->detect(interval.motion, bones, answer).pairs.elementary_tests;
-    record.accuracy.add(compare_elementary(truth, answer));
-    progress.advance();
-  }
-  for (const auto& [c, own] : own_tests) record.own_tests.push_back(own.json());
-  record.intervals = std::move(intervals);
-  record.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  return outcome;
 }
 
-std::vector<std::size_t> every_kth(const IntervalRange& range, std::size_t k) {
-  std::vector<std::size_t> intervals;
-  for (std::size_t i = range.first; i < range.last; i += k) intervals.push_back(i);
-  return intervals;
+Verifier::~Verifier() = default;
+
+bool Verifier::has_judged(std::size_t interval) const {
+  return reports_.contains(interval);
+}
+
+const Report& Verifier::report(std::size_t contestant, std::size_t interval) const {
+  return reports_.at(interval)[contestant];
+}
+
+void Verifier::judge(std::span<const std::size_t> intervals) {
+  const Clock::time_point begin = Clock::now();
+  Progress progress("verifying " + input_.name, intervals.size());
+  for (const std::size_t interval : intervals) {
+    if (!has_judged(interval)) judge_one(interval);
+    progress.advance();
+  }
+  record_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void Verifier::judge_one(std::size_t i) {
+  const scenes::ClipInterval interval = input_.clip->load(i);
+  const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
+  const bool starts_embedded = embedding_->embedded(interval.motion.start());
+  if (!starts_embedded) record_.unembedded.push_back(i);
+
+  ContactSet truth, answer;
+  const Report expected = reference_->used->judged->detect(interval.motion, bones, truth);
+  truth.sort();
+  if (!truth.contacts.empty()) record_.colliding.push_back(i);
+  std::vector<Report>& reports = reports_[i];
+  for (std::size_t c = 0; c < contestants_.size(); ++c) {
+    const Strategy& strategy = *contestants_[c].strategy;
+    const bool itself = &contestants_[c] == reference_->used;
+    reports.push_back(itself ? expected : contestants_[c].judged->detect(interval.motion, bones, answer));
+    answer.sort();
+    if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
+      own->second->compare(input_.mesh, i, truth, answer);
+      keep_shared(truth, answer);
+    }
+    add(verify(truth, itself ? truth : answer, strategy.guarantee, starts_embedded),
+        promises(strategy.guarantee, starts_embedded, truth), i, record_.strategies[c]);
+  }
+  record_.accuracy_tests +=
+      reference_->used->timed->detect(interval.motion, bones, answer).pairs.elementary_tests;
+  record_.accuracy.add(compare_elementary(truth, answer));
+}
+
+VerificationRecord Verifier::record() const {
+  VerificationRecord out = record_;
+  for (const auto& [c, own] : own_tests_) out.own_tests.push_back(own->json());
+  for (const auto& [interval, reports] : reports_) out.intervals.push_back(interval);
+  std::ranges::sort(out.unembedded);
+  std::ranges::sort(out.colliding);
+  return out;
 }
 
 }  // namespace cscd::bench

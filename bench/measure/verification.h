@@ -1,30 +1,48 @@
 #pragma once
 
+#include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "bench/input/input.h"
 #include "bench/measure/contestant.h"
 #include "bench/record/record.h"
+#include "core/detect/start/embedding.h"
 
 namespace cscd::bench {
 
-// The counters of one strategy on the verified intervals, in their order: the timed run must repeat them.
-using VerifiedReports = std::vector<Report>;
+// Judges every contestant's contacts on intervals, each once, against those of the complete reference, both
+// with the exact elementary test; and the timed elementary test on the reference's pairs.
+class Verifier {
+ public:
+  // `exact` and `timed` are the tests that the contestants were made with. Everything given must outlive the
+  // verifier.
+  Verifier(Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
+           const ElementaryTest& timed);
+  ~Verifier();
 
-struct VerificationOutcome {
-  VerificationRecord record;
-  std::vector<VerifiedReports> reports;  // one a contestant
+  // Judges those of the intervals that have not been judged before.
+  void judge(std::span<const std::size_t> intervals);
+
+  bool has_judged(std::size_t interval) const;
+  // A contestant's counters on an interval that was judged: whatever is timed has to repeat them.
+  const Report& report(std::size_t contestant, std::size_t interval) const;
+  // What was judged so far. Intervals are ascending.
+  VerificationRecord record() const;
+
+ private:
+  class Reference;
+  class OwnTest;
+  void judge_one(std::size_t interval);
+
+  Input& input_;
+  std::span<Contestant> contestants_;
+  std::unique_ptr<Reference> reference_;
+  std::unique_ptr<EmbeddingTest> embedding_;
+  std::map<std::size_t, std::vector<Report>> reports_;         // by interval: [contestants]
+  std::map<std::size_t, std::unique_ptr<OwnTest>> own_tests_;  // by contestant
+  VerificationRecord record_;
 };
-
-// Judges every contestant's contacts on the given intervals against those of the complete reference, both
-// with the exact elementary test; and the timed elementary test on the reference's pairs. `exact` and `timed`
-// are the tests that the contestants were made with.
-VerificationOutcome verify_contestants(Input& input, std::span<Contestant> contestants,
-                                       const ElementaryTest& exact, const ElementaryTest& timed,
-                                       std::vector<std::size_t> intervals);
-
-// Every K-th interval of a range.
-std::vector<std::size_t> every_kth(const IntervalRange& range, std::size_t k);
 
 }  // namespace cscd::bench

@@ -6,6 +6,7 @@
 
 #include "bench/measure/timing.h"
 #include "bench/rows/catalogue.h"
+#include "core/base/error.h"
 #include "core/detect/start/embedding.h"
 #include "scenes/random/random_interval.h"
 
@@ -89,7 +90,7 @@ void count_otherwise_once(const Setup& setup, int call, Report& report, ContactS
 }
 
 struct Outcome {
-  VerificationOutcome verified;
+  VerificationRecord verified;
   std::optional<Unrepeatable> void_times;
   std::vector<StrategyRecord> records;
 };
@@ -99,18 +100,24 @@ Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
   const std::array rows = {&complete_reference(), &strategy};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
   Outcome outcome;
-  outcome.verified = verify_contestants(input, contestants, exact(), newton(), {0});
+  Verifier verifier(input, contestants, exact(), newton());
+  const std::vector<std::size_t> all = {0};
+  verifier.judge(all);
+  outcome.verified = verifier.record();
   outcome.records.resize(contestants.size());
-  outcome.void_times =
-      time_contestants(input, contestants, {{0}, {0}, repetitions, 1}, outcome.verified, outcome.records);
+  const WarmUp counted = warm_up(input, contestants, all, verifier, outcome.records);
+  outcome.void_times = counted.unrepeatable;
+  if (!outcome.void_times)
+    outcome.void_times =
+        time_contestants(input, contestants, {all, repetitions, 1}, verifier, counted, outcome.records);
   return outcome;
 }
 
 std::vector<std::string> failures(Prepared (*make)(const Setup&), Guarantee guarantee) {
-  const Outcome outcome = judge({"saboteur", "test", guarantee, false, make});
-  EXPECT_TRUE(outcome.verified.record.strategies[0].failures.empty());
-  EXPECT_EQ(outcome.verified.record.ok(), outcome.verified.record.strategies[1].failures.empty());
-  return outcome.verified.record.strategies[1].failures;
+  const Outcome outcome = judge({"saboteur", "test", guarantee, {}, make});
+  EXPECT_TRUE(outcome.verified.strategies[0].failures.empty());
+  EXPECT_EQ(outcome.verified.ok(), outcome.verified.strategies[1].failures.empty());
+  return outcome.verified.strategies[1].failures;
 }
 
 void lose_first_and_invent(const Setup& setup, int call, Report& report, ContactSet& found) {
@@ -120,12 +127,12 @@ void lose_first_and_invent(const Setup& setup, int call, Report& report, Contact
 
 // A strategy with an elementary test of its own does not fail; what it gets wrong is listed.
 TEST(Verification, OwnTestsAreComparedAndTimed) {
-  const Outcome outcome = judge(
-      {"checker", "test", Guarantee::heuristic, false, sabotage<lose_first_and_invent>, "checker", true});
-  EXPECT_TRUE(outcome.verified.record.ok());
+  const Outcome outcome =
+      judge({"checker", "test", Guarantee::heuristic, {}, sabotage<lose_first_and_invent>, "checker", true});
+  EXPECT_TRUE(outcome.verified.ok());
   EXPECT_FALSE(outcome.void_times);
-  ASSERT_EQ(outcome.verified.record.own_tests.size(), 1u);
-  const nlohmann::ordered_json& own = outcome.verified.record.own_tests[0];
+  ASSERT_EQ(outcome.verified.own_tests.size(), 1u);
+  const nlohmann::ordered_json& own = outcome.verified.own_tests[0];
   EXPECT_EQ(own["strategy"], "checker");
   EXPECT_GT(own["misses"], 0);
   EXPECT_EQ(own["false_alarms"], 1);
@@ -135,20 +142,20 @@ TEST(Verification, OwnTestsAreComparedAndTimed) {
   EXPECT_EQ(own["differences"].front()["vertices"].size(), 4u);
   EXPECT_EQ(own["differences"].back()["said"], 0);
   EXPECT_TRUE(own["differences"].back()["true"].is_null());
-  const VerifiedStrategy& row = outcome.verified.record.strategies[1];
+  const VerifiedStrategy& row = outcome.verified.strategies[1];
   EXPECT_EQ(row.contacts_found + own["misses"].get<std::uint64_t>(), row.contacts_expected);
 }
 
 TEST(Verification, HonestStrategiesPassAndAreTimed) {
   for (const Strategy& strategy : strategies()) {
     const Outcome outcome = judge(strategy);
-    EXPECT_TRUE(outcome.verified.record.ok()) << strategy.name;
+    EXPECT_TRUE(outcome.verified.ok()) << strategy.name;
     EXPECT_FALSE(outcome.void_times) << strategy.name;
-    EXPECT_EQ(outcome.verified.record.strategies[1].intervals_promised,
+    EXPECT_EQ(outcome.verified.strategies[1].intervals_promised,
               strategy.guarantee == Guarantee::heuristic ? 0u : 1u)
         << strategy.name;
-    EXPECT_EQ(outcome.verified.record.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
-    EXPECT_EQ(outcome.verified.record.colliding, std::vector<std::size_t>{0});
+    EXPECT_EQ(outcome.verified.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
+    EXPECT_EQ(outcome.verified.colliding, std::vector<std::size_t>{0});
     EXPECT_TRUE(outcome.records[1].ms.contains("streaming"));
     for (const auto& [stage, repetitions] : outcome.records[1].ms) {
       ASSERT_EQ(repetitions.size(), 3u) << stage;
@@ -176,23 +183,63 @@ TEST(Verification, ContactsThatTheReferenceLacksFail) {
 
 TEST(Timing, CullingOtherwiseThanVerifiedVoidsTheTimes) {
   const Outcome outcome =
-      judge({"saboteur", "test", Guarantee::complete, false, sabotage<cull_more_when_timed>});
-  EXPECT_TRUE(outcome.verified.record.ok());
+      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<cull_more_when_timed>});
+  EXPECT_TRUE(outcome.verified.ok());
   ASSERT_TRUE(outcome.void_times);
   EXPECT_EQ(outcome.void_times->contestant, 1u);
 }
 
 TEST(Timing, AnswersThatDifferBetweenRepetitionsVoidTheTimes) {
-  const Outcome contacts = judge({"saboteur", "test", Guarantee::complete, false, sabotage<forget_once>});
+  const Outcome contacts = judge({"saboteur", "test", Guarantee::complete, {}, sabotage<forget_once>});
   ASSERT_TRUE(contacts.void_times);
   EXPECT_EQ(contacts.void_times->contestant, 1u);
   EXPECT_TRUE(
-      judge({"saboteur", "test", Guarantee::complete, false, sabotage<count_otherwise_once>}).void_times);
+      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<count_otherwise_once>}).void_times);
 }
 
-TEST(Verification, EveryKthIntervalOfARange) {
-  EXPECT_EQ(every_kth({3, 10}, 3), (std::vector<std::size_t>{3, 6, 9}));
-  EXPECT_EQ(every_kth({3, 4}, 5), (std::vector<std::size_t>{3}));
+// Mutation: rows are not compared, so only intervals that were chosen for it are verified.
+TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
+  for (const bool loses_first : {true, false}) {
+    Input input = colliding_input();
+    const Strategy saboteur{"saboteur",
+                            "test",
+                            loses_first ? Guarantee::first_contact : Guarantee::complete,
+                            {},
+                            loses_first ? sabotage<lose_first> : sabotage<lose_last>};
+    const std::array rows = {&complete_reference(), &saboteur};
+    std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
+    Verifier verifier(input, contestants, exact(), exact());
+    std::vector<StrategyRecord> records(2);
+    const std::vector<std::size_t> all = {0};
+    const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+    EXPECT_EQ(counted.disagreeing, all);
+    EXPECT_TRUE(verifier.record().ok()) << "nothing was judged yet";
+    verifier.judge(counted.disagreeing);
+    EXPECT_EQ(verifier.record().strategies[1].failures.size(), 1u);
+  }
+}
+
+// Contacts that a row is free to leave out are no disagreement.
+TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
+  Input input = colliding_input();
+  const Strategy saboteur{"saboteur", "test", Guarantee::first_contact, {}, sabotage<lose_last>};
+  const std::array rows = {&complete_reference(), &saboteur};
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
+  Verifier verifier(input, contestants, exact(), exact());
+  std::vector<StrategyRecord> records(2);
+  EXPECT_TRUE(
+      warm_up(input, contestants, std::vector<std::size_t>{0}, verifier, records).disagreeing.empty());
+}
+
+TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
+  Input input = colliding_input();
+  const std::array rows = {&complete_reference()};
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
+  const Verifier verifier(input, contestants, exact(), newton());
+  std::vector<StrategyRecord> records(1);
+  const std::vector<std::size_t> all = {0};
+  const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+  EXPECT_THROW(time_contestants(input, contestants, {all, 3, 1}, verifier, counted, records), InputError);
 }
 
 }  // namespace

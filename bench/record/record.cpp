@@ -69,6 +69,7 @@ ordered_json to_json(const VerificationRecord& v) {
                       {"intervals", v.intervals},
                       {"unembedded", v.unembedded},
                       {"colliding", v.colliding},
+                      {"disagreeing", v.disagreeing},
                       {"strategies", strategies},
                       {"accuracy",
                        {{"misses", v.accuracy.misses},
@@ -111,6 +112,7 @@ VerificationRecord verification_from(const ordered_json& v) {
   out.intervals = v.at("intervals").get<std::vector<std::size_t>>();
   out.unembedded = v.at("unembedded").get<std::vector<std::size_t>>();
   out.colliding = v.at("colliding").get<std::vector<std::size_t>>();
+  out.disagreeing = v.value("disagreeing", std::vector<std::size_t>());
   for (const ordered_json& s : v.at("strategies"))
     out.strategies.push_back({s.at("name"), s.at("guarantee"), s.at("contacts_expected"),
                               s.at("contacts_found"), s.at("intervals_promised"),

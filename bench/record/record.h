@@ -25,6 +25,8 @@ inline constexpr std::string_view kRunSchema = "cscd.run/2";
 using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
 // [repetition][timed interval], milliseconds. A stage that a strategy does not have has no column.
 // `streaming` is no stage: it is what streaming all positions once from memory took before the query.
+// `embedding`, of rows that promise the first contact, is outside the query too: what deciding exactly took
+// whether the start is embedded, which those rows rely on. All of them share its samples.
 using TimeColumns = std::map<std::string, std::vector<std::vector<double>>>;
 
 struct PreparationRecord {  // one sample for every time that the strategy was made
@@ -65,6 +67,9 @@ struct VerificationRecord {
   std::vector<std::size_t> intervals;   // those verified
   std::vector<std::size_t> unembedded;  // those of them whose start is not embedded
   std::vector<std::size_t> colliding;   // those of them on which the reference found a contact
+  // Those of them that were verified because the answers of two rows differed, when all counted intervals
+  // were answered with the timed elementary test.
+  std::vector<std::size_t> disagreeing;
   std::vector<VerifiedStrategy> strategies;
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;

@@ -7,8 +7,7 @@
 
 namespace cscd::bench {
 
-// Why a strategy cannot be made for a mesh; nothing where it can. Strategies that need bones or promise the
-// first contact need a closed, consistently oriented surface.
+// Says why a strategy cannot be made for a mesh (Strategy::needs); nothing where it can.
 std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones);
 
 }  // namespace cscd::bench

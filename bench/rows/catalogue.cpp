@@ -1,5 +1,6 @@
 #include "bench/rows/catalogue.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
@@ -26,110 +27,125 @@ namespace {
 
 constexpr std::string_view kAblation = "ablation";
 
-// The first row is the reference, the second the oracle.
+constexpr Needs kAnySurface = {}, kClosedMesh = {.closed_mesh = true},
+                kBones = {.bones = true, .closed_mesh = true};
+
+// What a row does not name is as strategy.h says.
 constexpr std::array kStrategies = {
-    Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, false, make_base},
-    Strategy{"brute", "all pairs of triangles", Guarantee::complete, false, make_brute, "oracle"},
-    Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, false, make_aabb},
+    Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base,
+             "", false, Role::reference},
+    Strategy{"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle", false,
+             Role::oracle},
+    Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb},
     Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
-             false, make_mcd},
+             kAnySurface, make_mcd},
     Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
-             Guarantee::complete, false, make_selfccd},
+             Guarantee::complete, kAnySurface, make_selfccd},
 #ifdef CSCD_BASELINES_EMBREE
-    Strategy{"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, false, make_embree},
+    Strategy{"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, kAnySurface, make_embree, "",
+             false, Role::none, false},
 #endif
 #ifdef CSCD_BASELINES_CGAL_BOXES
-    Strategy{"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, false, make_cgal_boxes},
+    Strategy{"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, kAnySurface, make_cgal_boxes,
+             "", false, Role::none, false},
 #endif
-    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, true,
+    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, kBones,
              [](const Setup& setup) { return make_rvbc(setup); }},
-    Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact, true,
-             [](const Setup& setup) { return make_drvbc(setup); }},
+    Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact,
+             kBones, [](const Setup& setup) { return make_drvbc(setup); }},
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
-             false, [](const Setup& setup) { return make_drvbc_fast(setup); }},
+             kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }},
     Strategy{"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters", Guarantee::complete,
-             false,
+             kAnySurface,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-             }},
+             },
+             "", false, Role::stand_in},
 #ifdef CSCD_BASELINES_FCL
     Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
-             Guarantee::heuristic, false, make_fcl, "checker", true},
+             Guarantee::heuristic, kAnySurface, make_fcl, "checker", true, Role::none, false},
 #endif
     // One thing at a time left out, or added.
-    Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, true,
+    Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, kBones,
              [](const Setup& setup) {
                return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
              },
              kAblation},
     Strategy{"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
-             true,
+             kBones,
              [](const Setup& setup) {
                return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
              },
              kAblation},
-    Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, true,
+    Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, kBones,
              [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
              kAblation},
-    Strategy{"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, true,
+    Strategy{"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, kBones,
              [](const Setup& setup) {
                return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
              },
              kAblation},
     Strategy{"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
-             Guarantee::first_contact, true,
+             Guarantee::first_contact, kBones,
              [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
              kAblation},
     Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
-             Guarantee::first_contact, false,
+             Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
              },
              kAblation},
-    Strategy{"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact, false,
+    Strategy{"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact,
+             kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
              },
              kAblation},
     Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
-             false,
+             kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
              },
              kAblation},
-    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact, false,
+    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact,
+             kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
              },
              kAblation},
     Strategy{"drvbc_fast_no_planes", "drvbc_fast without planes of triangles", Guarantee::first_contact,
-             false,
+             kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
              },
              kAblation},
     Strategy{"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
-             false,
+             kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(
                    setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
              },
              kAblation},
     Strategy{"drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
-             Guarantee::first_contact, false,
+             Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones",
                                               .clusters = DrvbcFastOptions::Clusters::of_surface});
              },
              kAblation},
     Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
-             Guarantee::heuristic, true,
+             Guarantee::heuristic, kBones,
              [](const Setup& setup) {
                return make_drvbc(
                    setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
              },
              kAblation},
 };
+
+const Strategy& playing(Role role) {
+  return *std::find_if(kStrategies.begin(), kStrategies.end(),
+                       [&](const Strategy& s) { return s.role == role; });
+}
 
 template <class Rows>
 [[noreturn]] void refuse(const char* what, std::string_view name, const Rows& rows) {
@@ -230,16 +246,16 @@ std::vector<const ElementaryTest*> elementary_tests_named(std::string_view names
   }
 }
 
-const Strategy& complete_stand_in() {
-  return strategy_named("drvbc_fast_complete");
-}
-
 const Strategy& complete_reference() {
-  return kStrategies[0];
+  return playing(Role::reference);
 }
 
 const Strategy& all_pairs() {
-  return kStrategies[1];
+  return playing(Role::oracle);
+}
+
+const Strategy& complete_stand_in() {
+  return playing(Role::stand_in);
 }
 
 }  // namespace cscd::bench

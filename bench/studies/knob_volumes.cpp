@@ -139,7 +139,7 @@ class DopCuller : public Culler {
 
 template <class Scalar, std::size_t K>
 Prepared make(const Setup& setup) {
-  return {compose(std::make_unique<DopCuller<Scalar, K>>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<DopCuller<Scalar, K>>(setup), setup), {}};
 }
 
 constexpr VolumeRow kRows[] = {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "bench/input/input.h"
-#include "bench/measure/verification.h"
+#include "bench/measure/interval_choice.h"
 #include "bench/record/statistics.h"
 #include "bench/rows/catalogue.h"
 #include "bench/studies/knob_volumes.h"
@@ -88,18 +88,9 @@ std::set<FeaturePair> pairs_of(const ContactSet& found) {
 
 // Contacts are rare, and where there are none nothing can be lost.
 std::vector<std::size_t> chosen_intervals(Input& input, Detector& detector, const KnobStudy& study) {
-  std::vector<std::size_t> colliding;
-  ContactSet found;
-  for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
-    const scenes::ClipInterval interval = input.clip->load(i);
-    detector.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
-    if (!found.contacts.empty()) colliding.push_back(i);
-  }
-  const std::vector<std::size_t> regular = every_kth({0, input.clip->interval_count()}, study.every);
-  std::set<std::size_t> all(regular.begin(), regular.end());
-  const std::size_t count = std::min(study.colliding, colliding.size());
-  for (std::size_t k = 0; k < count; ++k) all.insert(colliding[k * colliding.size() / count]);
-  return {all.begin(), all.end()};
+  const IntervalRange range{0, input.clip->interval_count()};
+  return with_contacts(every_kth(range, study.every), intervals_with_contacts(input, detector, range),
+                       study.colliding);
 }
 
 }  // namespace

@@ -72,8 +72,7 @@ class Measurement {
     if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
     for (const StrategyRow& row : rows) {
       if (!allows(input(), *row.strategy)) continue;
-      entrants_.push_back({row, make(*row.strategy, test), row == reference, {}, {}, {}, {}});
-      if (row.first) entrants_.back().made.prepared.detector->look_for_first_only();
+      entrants_.push_back({row, make(row, test), row == reference, {}, {}, {}, {}});
     }
     for (Entrant& c : entrants_) {
       c.counts.resize(subject.steps.size());
@@ -210,11 +209,11 @@ class Measurement {
   }
 
   // Measuring memory takes two answers, too many of the reference on a large surface.
-  Made make(const Strategy& strategy, const ElementaryTest& test) {
-    if (&strategy != &complete_reference() || input().mesh.triangle_count() <= subject_.reference_limit)
-      return make_measured(input(), strategy, test, 0);
+  Made make(const StrategyRow& row, const ElementaryTest& test) {
+    if (row.strategy != &complete_reference() || input().mesh.triangle_count() <= subject_.reference_limit)
+      return make_measured(input(), row, test, 0);
     const auto begin = Clock::now();
-    Made made{strategy.make(input().setup(test)), {}};
+    Made made{row.strategy->make(input().setup(test, row.first)), {}};
     made.make_ms = milliseconds_since(begin);
     return made;
   }

@@ -266,7 +266,7 @@ class ManyCoversCuller : public Culler {
 template <Flaw flaw>
 Prepared make_many_covers(const Setup& setup) {
   radial::require_radial_setup(setup, "a saboteur");
-  return {compose(std::make_unique<ManyCoversCuller<flaw>>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<ManyCoversCuller<flaw>>(setup), setup), {}};
 }
 
 // Every vertex and edge belongs to the first triangle at it, and is tested with that triangle alone.
@@ -346,7 +346,7 @@ class ForgetfulDetector : public Detector {
 
 template <Flaw flaw>
 Prepared make_plain(const Setup& setup) {
-  auto detector = compose(std::make_unique<PlainCuller<flaw>>(setup), setup.mesh, setup.elementary);
+  auto detector = compose(std::make_unique<PlainCuller<flaw>>(setup), setup);
   if (flaw == Flaw::one_feature_pair_in_10000_lost)
     return {std::make_unique<ForgetfulDetector>(std::move(detector)), {}};
   return {std::move(detector), {}};
@@ -354,7 +354,7 @@ Prepared make_plain(const Setup& setup) {
 
 template <Flaw flaw>
 Prepared make_cones(const Setup& setup) {
-  return {compose(std::make_unique<ConeCuller<flaw>>(setup), setup.mesh, setup.elementary), {}};
+  return {compose(std::make_unique<ConeCuller<flaw>>(setup), setup), {}};
 }
 
 // One cluster a bone, whatever the components of the mesh.
@@ -380,7 +380,7 @@ std::unique_ptr<Detector> make_radial(const Setup& setup, radial::AtomicClusters
   auto culler = std::make_unique<RadialCuller<flaw>>(setup, std::move(clusters), std::move(kinds));
   if (flaw == Flaw::representative_triangles)
     return std::make_unique<RepresentativeDetector>(std::move(culler), setup);
-  return compose(std::move(culler), setup.mesh, setup.elementary);
+  return compose(std::move(culler), setup);
 }
 
 // Clusters in the way of rvbc, all of them viewed from their bones as segments or from the bones' centres.

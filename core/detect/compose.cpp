@@ -33,8 +33,12 @@ struct Tests {
 // Where pairs become contacts: triangle pairs in, contacts out.
 class PairTester : public TrianglePairSink {
  public:
-  PairTester(const TriangleMesh& mesh, const ElementaryTest& test, PairOptions options, StageClock& clock)
-      : mesh_(mesh), test_(test), options_(std::move(options)), clock_(clock) {}
+  PairTester(const Setup& setup, PairOptions options, StageClock& clock)
+      : mesh_(setup.mesh),
+        test_(setup.elementary),
+        first_only_(setup.first_only),
+        options_(std::move(options)),
+        clock_(clock) {}
 
   void start_interval(const Motion& motion, ContactSet& out) {
     restart();
@@ -44,7 +48,6 @@ class PairTester : public TrianglePairSink {
     met_.start_interval();
     earliest_ = 1;
   }
-  void look_for_first_only() { first_only_ = true; }
   // Tests what is left of the interval.
   void finish_interval() {
     flush();
@@ -158,6 +161,7 @@ class PairTester : public TrianglePairSink {
 
   const TriangleMesh& mesh_;
   const ElementaryTest& test_;
+  const bool first_only_;
   PairOptions options_;
   StageClock& clock_;
   const Motion* motion_ = nullptr;
@@ -169,7 +173,6 @@ class PairTester : public TrianglePairSink {
   FeaturePairSet met_;                    // met in this interval
   Tests<MovingVertexFace> vertex_faces_;  // of what is left, what is met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
-  bool first_only_ = false;
   double earliest_ = 1;  // contact so far
   struct Bounded {
     float before;  // which the two certainly do not touch
@@ -180,9 +183,8 @@ class PairTester : public TrianglePairSink {
 
 class ComposedDetector : public Detector {
  public:
-  ComposedDetector(std::unique_ptr<Culler> culler, const TriangleMesh& mesh, const ElementaryTest& test,
-                   PairOptions options)
-      : culler_(std::move(culler)), tester_(mesh, test, std::move(options), clock_) {}
+  ComposedDetector(std::unique_ptr<Culler> culler, const Setup& setup, PairOptions options)
+      : culler_(std::move(culler)), tester_(setup, std::move(options), clock_) {}
 
   Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
     out.clear();
@@ -208,10 +210,6 @@ class ComposedDetector : public Detector {
     return report;
   }
   RadialView radial_view() const override { return culler_->radial_view(); }
-  bool look_for_first_only() override {
-    tester_.look_for_first_only();
-    return true;
-  }
 
  private:
   StageClock clock_;
@@ -221,9 +219,8 @@ class ComposedDetector : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
-                                  const ElementaryTest& test, PairOptions options) {
-  return std::make_unique<ComposedDetector>(std::move(culler), mesh, test, std::move(options));
+std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup, PairOptions options) {
+  return std::make_unique<ComposedDetector>(std::move(culler), setup, std::move(options));
 }
 
 }  // namespace cscd

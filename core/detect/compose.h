@@ -4,8 +4,7 @@
 
 #include "core/detect/carried_pairs.h"
 #include "core/detect/culler.h"
-#include "core/detect/detector.h"
-#include "core/elementary/question/elementary_test.h"
+#include "core/detect/strategy.h"
 
 namespace cscd {
 
@@ -23,9 +22,9 @@ struct PairOptions {
 
 // A detector out of a culling strategy and an elementary test: the way of one interval. Every strategy shares
 // what happens behind the culler: relative boxes (optional), expansion into feature pairs, each tested once,
-// the certified non-penetration filter, the elementary test. Owns the clock of the interval. `mesh` must
-// outlive the detector.
-std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
-                                  const ElementaryTest& test, PairOptions options = {});
+// the certified non-penetration filter, the elementary test. Owns the clock of the interval. What `setup`
+// refers to must outlive the detector.
+std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup,
+                                  PairOptions options = {});
 
 }  // namespace cscd

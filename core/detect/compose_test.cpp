@@ -79,8 +79,8 @@ std::vector<Vec3> mirrored(std::vector<Vec3> positions) {
 Report run(const TriangleMesh& mesh, const std::vector<Vec3>& start, const std::vector<Vec3>& end,
            std::vector<TrianglePair> pairs, ContactSet& out, const ElementaryTest& test,
            PairOptions options = {}) {
-  const auto detector =
-      compose(std::make_unique<ListCuller>(std::move(pairs)), mesh, test, std::move(options));
+  const auto detector = compose(std::make_unique<ListCuller>(std::move(pairs)),
+                                cscd::Setup{mesh, start, nullptr, test}, std::move(options));
   const Report report = detector->detect(Motion(start, end), nullptr, out);
   out.sort();
   return report;
@@ -139,8 +139,8 @@ std::vector<FeaturePair> all_feature_pairs(const TriangleMesh& mesh) {
   return pairs;
 }
 
-// Rule any-carrier: all triangle pairs carry all feature pairs, each is tested once, however often it is carried and in
-// however many blocks.
+// Rule any-carrier: all triangle pairs carry all feature pairs, each is tested once, however often it is
+// carried and in however many blocks.
 TEST(Compose, TestsEachFeaturePairOnceOverManyBlocks) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
   const std::vector<Vec3> x = flat(mesh.vertex_count());
@@ -231,7 +231,8 @@ TEST(Compose, ALostTrianglePairIsNoticed) {
 TEST(Compose, KeepsNothingBetweenIntervals) {
   const Crumple a(1), b(2);
   const ElementaryTest& exact = *find_elementary_test("exact");
-  const auto detector = compose(std::make_unique<ListCuller>(all_pairs(a.mesh)), a.mesh, exact);
+  const auto detector =
+      compose(std::make_unique<ListCuller>(all_pairs(a.mesh)), cscd::Setup{a.mesh, {}, nullptr, exact});
   ContactSet out;
   std::mt19937 random(1);
   std::string expected[2];
@@ -291,8 +292,9 @@ TEST(Compose, StagesThatDoNotExistAreAbsent) {
   const TriangleMesh mesh({test::corners(0, 1, 2), test::corners(3, 4, 5)}, 6);
   const std::vector<Vec3> x = flat(6);
   for (const bool classifies : {false, true}) {
-    const auto detector = compose(
-        std::make_unique<ListCuller>(std::vector<TrianglePair>{pair_of(0, 1)}, classifies), mesh, kRecorder);
+    const auto detector =
+        compose(std::make_unique<ListCuller>(std::vector<TrianglePair>{pair_of(0, 1)}, classifies),
+                cscd::Setup{mesh, x, nullptr, kRecorder});
     ContactSet out;
     const Report report = detector->detect(Motion(x, x), nullptr, out);
     EXPECT_EQ(report.ms.rv_update.has_value(), classifies);

@@ -25,22 +25,14 @@ struct Report {
   StageTimes ms;
 };
 
-// Finds the contacts of one interval, whose positions are finite numbers. After its second call nothing in
-// here allocates unless an interval is larger than all before it; nothing logs or throws.
+// Finds the contacts of one interval after another. All positions of an interval must be finite numbers. No
+// detector logs or throws. A detector whose strategy promises it (Strategy::settles) allocates no memory once
+// it has seen its largest interval.
 class Detector {
  public:
   virtual ~Detector() = default;
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
   virtual RadialView radial_view() const { return {}; }
-
-  // For callers who want the earliest contact and no others, such as a response that cuts the step there.
-  // From the next interval on, triangle pairs that certainly do not touch until after the earliest contact
-  // found so far are neither filtered nor tested. Which contacts are reported beside those of the earliest
-  // time is then left to chance: `keep_first` drops them. What the strategy promises of the earliest time
-  // stays, provided that the elementary test is right in both its answers. (A strategy that assigns features
-  // to triangle pairs tests all that it assigns.) False for a detector that tests pairs by itself: it goes on
-  // finding all.
-  virtual bool look_for_first_only() { return false; }
 };
 
 }  // namespace cscd

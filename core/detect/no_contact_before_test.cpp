@@ -68,16 +68,16 @@ std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& 
   return found;
 }
 
-// Rule certain-sign, sizes at which single precision rounds, underflows and overflows. Mutations: no bound on rounding;
-// a gap counts though it is below 0 at the start; one end's corners seen from the other's.
+// Rule certain-sign, sizes at which single precision rounds, underflows and overflows. Mutations: no bound on
+// rounding; a gap counts though it is below 0 at the start; one end's corners seen from the other's.
 TEST(FirstOnly, NothingTouchesBeforeTheBoundAndTheBoundIsOfUse) {
   const ElementaryTest& exact = *find_elementary_test("exact");
   for (const double size : {1.0, 0.3, 1e-9, 1e-30, 1e11, 1e37}) {
     std::size_t useful = 0, never = 0, asked = 0;
     for (unsigned seed = 0; seed < 24; ++seed) {
       const Crash crash(seed, size);
-      const auto detector =
-          compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), crash.mesh, exact);
+      const auto detector = compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()),
+                                    cscd::Setup{crash.mesh, {}, nullptr, exact});
       for (const Contact& contact : sorted_answer(*detector, crash).contacts)
         for (const TrianglePair& pair : carriers(crash.mesh, contact.pair)) {
           const TrianglePair both[] = {{pair.b, pair.a}, pair};
@@ -103,11 +103,12 @@ TEST(FirstOnly, ReportsTheContactsOfTheEarliestTimeForFewerTests) {
   std::uint64_t tests_for_all = 0, tests_for_first = 0;
   for (unsigned seed = 0; seed < 24; ++seed) {
     const Crash crash(seed);
-    const auto make = [&] {
-      return compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), crash.mesh, exact);
+    const auto make = [&](bool first_only) {
+      const cscd::Setup setup{
+          .mesh = crash.mesh, .reference = {}, .rig = nullptr, .elementary = exact, .first_only = first_only};
+      return compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), setup);
     };
-    const auto all = make(), first = make();
-    ASSERT_TRUE(first->look_for_first_only());
+    const auto all = make(false), first = make(true);
     ContactSet expected = sorted_answer(*all, crash, &tests_for_all);
     ASSERT_FALSE(expected.contacts.empty());
     keep_first(expected);
@@ -137,15 +138,6 @@ TEST(FirstOnly, KeepsWhatIsUndecidedWhateverItsTime) {
   ContactSet none{{{pair(0), Verdict::undecided, 0.1}}};
   keep_first(none);
   EXPECT_EQ(none.contacts.size(), 1u);
-}
-
-class Other : public Detector {
-  Report detect(const Motion&, const Rig::Interval*, ContactSet&) override { return {}; }
-};
-
-TEST(FirstOnly, DetectorsOfOtherKindsFindAll) {
-  Other other;
-  EXPECT_FALSE(other.look_for_first_only());
 }
 
 }  // namespace

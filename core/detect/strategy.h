@@ -27,6 +27,12 @@ struct Setup {
   // Threads that answer one interval, the caller's included; at least 1. Strategies that cannot share their
   // work run on one. Answers and counters do not depend on it.
   int threads = 1;
+  // For a caller who wants the earliest contact and no others, such as a response that cuts the step there. A
+  // triangle pair that certainly does not touch until after the earliest contact found so far is then neither
+  // filtered nor tested. The strategy's promise about the earliest time still holds, provided that the
+  // elementary test is right in both its answers. Later contacts are reported by chance; keep_first()
+  // (contact.h) drops them. A strategy that brings its own elementary test throws InputError.
+  bool first_only = false;
 };
 
 // One-time work before the first interval, as in Table 1 of the paper.
@@ -43,17 +49,34 @@ struct Prepared {
   Preparation preparation;
 };
 
+// What an input must have for a strategy to be made. A closed mesh is consistently oriented too.
+struct Needs {
+  bool bones = false, closed_mesh = false;
+};
+
+// The part that a strategy plays in the harness beside being measured.
+enum class Role {
+  none,
+  reference,  // the simplest complete strategy that is not quadratic: the others are verified against it
+  oracle,     // all pairs of triangles: judges the reference on small meshes
+  stand_in,   // the fastest complete strategy for any surface: answers where the chosen one promises nothing
+};
+
 // One row of the catalogue of strategies.
 struct Strategy {
   std::string_view name;
   std::string_view source;  // paper or package, in a line
   Guarantee guarantee;
-  bool needs_rig;
+  Needs needs;
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
   // Rows with a group are timed only where they or their group is named, the others wherever the input allows
   // it.
   std::string_view group = "";
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
+  Role role = Role::none;
+  // Whether a detector allocates no memory once it has seen its largest interval. Strategies that hand the
+  // work to a library do not promise it.
+  bool settles = true;
 };
 
 }  // namespace cscd

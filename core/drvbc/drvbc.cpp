@@ -69,7 +69,7 @@ Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
   PairOptions pairs{options.relative_boxes, options.filter};
-  return {compose(std::move(culler), setup.mesh, setup.elementary, std::move(pairs)), preparation};
+  return {compose(std::move(culler), setup, std::move(pairs)), preparation};
 }
 
 }  // namespace cscd

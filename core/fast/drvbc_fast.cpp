@@ -26,7 +26,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   preparation.atomic_clusters = 1 + *std::max_element(best.cluster_of.begin(), best.cluster_of.end());
   preparation.atomic_cluster = std::move(best.cluster_of);
   preparation.threads = setup.threads;
-  return {compose(std::move(best.culler), setup.mesh, setup.elementary), preparation};
+  return {compose(std::move(best.culler), setup), preparation};
 }
 
 }  // namespace cscd

@@ -61,13 +61,9 @@ class SceneFiles : public testing::TestWithParam<Asked> {
 };
 
 TEST_P(SceneFiles, IsGeneratedBitForBitAsPromised) {
-  // The scene file's digest stands for every compiler and build type.
-  const Scene scene = load_scene(GetParam().name);
-  // Contact takes a minute to generate; on a cold cache, as in a fresh clone, opening it is the same test.
-  if (responds())
-    EXPECT_NO_THROW(open_scene(scene));
-  else
-    EXPECT_NO_THROW(generate(scene));
+  // The scene file's digest stands for every compiler and build type. A contact scene is what the engine's contacts
+  // made of it, so this test fails where the engine finds other contacts than when the digest was accepted.
+  EXPECT_NO_THROW(generate(load_scene(GetParam().name)));
 }
 
 TEST_P(SceneFiles, HasTheCountsAskedForAndFrameZeroAtRest) {

@@ -58,8 +58,7 @@ void detect(const std::string& name, const std::vector<Query>& queries) {
   const Setup setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
   PairOptions options;
   options.relative_boxes = true;
-  const auto detector =
-      compose(std::make_unique<PlainCuller<Kdop16>>(setup), mesh, setup.elementary, std::move(options));
+  const auto detector = compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, std::move(options));
   ContactSet contacts;
   const Report report = detector->detect(Motion(start, end), nullptr, contacts);
   contacts.sort();

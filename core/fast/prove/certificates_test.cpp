@@ -74,14 +74,13 @@ struct Scene : test::Body {
       }
       atomic = radial::make_atomic_clusters(mesh, bone_of);
     }
-    if (inside_out) {
-      std::vector<Triangle> flipped(mesh.triangles().begin(), mesh.triangles().end());
-      for (Triangle& t : flipped) std::swap(t[1], t[2]);
-      mesh = TriangleMesh(flipped, mesh.vertex_count());
-    }
-    // Observers of the surface as it was: that all of it is then seen from behind is the aim.
-    covers = cut_surface(shape.mesh(), shape.positions, atomic.of_triangle).covers;
-    tree = cut_surface(mesh, shape.positions, atomic.of_triangle).tree;
+    CutSurface cut = cut_surface(mesh, shape.positions, atomic.of_triangle);
+    covers = std::move(cut.covers);
+    tree = std::move(cut.tree);
+    // A mirrored surface is inside out: what an observer saw from behind, it sees from in front.
+    if (inside_out)
+      for (std::vector<Vec3>* positions : {&start, &end})
+        for (Vec3& p : *positions) p.x() = -p.x();
     return Certificates(tree, covers);
   }
   // A point of the body in the coordinates of the records, hardly rounded.
