@@ -7,6 +7,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "bench/output/gzip.h"
 #include "bench/output/output_format.h"
 #include "core/base/error.h"
 
@@ -57,7 +58,9 @@ OutputFile::OutputFile(std::filesystem::path path, bool force, std::string_view 
     if (access(path_.c_str(), W_OK) != 0) fail(path_);
     return;
   }
-  if (path_.has_extension()) require_format(path_, std::span(&extension, 1));
+  is_compressed_ = path_.extension() == ".gz";
+  const std::filesystem::path named = is_compressed_ ? path_.parent_path() / path_.stem() : path_;
+  if (named.has_extension()) require_format(named, std::span(&extension, 1));
   file_.emplace(target.path, force);
 }
 
@@ -75,7 +78,7 @@ void OutputFile::commit(std::string_view content) {
     write_to_stream(path_, content);
     return;
   }
-  file_->write(content);
+  file_->write(is_compressed_ ? gzipped(content) : content);
   file_->finish();
 }
 

@@ -20,6 +20,7 @@ class NobodyReads : public std::exception {
 //   standard output holds the answer and nothing else.
 // - A device or a pipe is written to as it is. It is opened when the answer is there.
 // - A file appears whole or not at all. A symbolic link stays, and its target is what appears.
+// - A file whose name ends in .gz after its extension is compressed with gzip.
 class OutputFile {
  public:
   // Throws InputError if a file stands there (unless `force`), if nothing can be written there, or if the
@@ -34,7 +35,7 @@ class OutputFile {
 
  private:
   std::filesystem::path path_;
-  bool is_stream_ = false;
+  bool is_stream_ = false, is_compressed_ = false;
   int standard_output_ = -1;
   std::optional<UnfinishedFile> file_;
 };

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "bench/output/gzip.h"
 #include "bench/output/report_json.h"
 #include "bench/output/schema.h"
 #include "core/base/error.h"
@@ -149,6 +150,8 @@ StrategyRecord strategy_from(const ordered_json& s) {
   return out;
 }
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of a record, unpacked
+
 // Every column has one number an interval, every stage the same repetitions.
 void require_whole(const Record& record) {
   for (const StrategyRecord& strategy : record.strategies) {
@@ -236,7 +239,8 @@ Record read_record(const std::filesystem::path& path) {
   std::ostringstream text;
   if (!file || !(text << file.rdbuf()))
     throw InputError("record " + path.string() + ": cannot be read; name a file that `cscd run` wrote");
-  return parse_record(text.str(), path.string());
+  const std::string where = "record " + path.string();
+  return parse_record(without_gzip(text.str(), where, kMostBytes), path.string());
 }
 
 }  // namespace cscd::bench

@@ -38,8 +38,10 @@ ClaimResult judge(const ordered_json& claim, std::span<const Record> records) {
   result.id = claim.at("id");
   result.quote = claim.at("quote");
   result.where = claim.at("where");
-  result.why = claim.value("why", "");
-  if (!claim.contains("measure")) return result;
+  if (!claim.contains("measure")) {
+    result.not_measured_because = claim.at("not_measured_because");
+    return result;
+  }
   result.expectation = text_of(claim.at("expect"));
   for (const ordered_json& scene : claim.at("scenes")) {
     const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
@@ -107,7 +109,7 @@ ordered_json claims_json(std::span<const ClaimResult> claims) {
                    {"expectation", claim.expectation},
                    {"verdict", to_string(claim.verdict)},
                    {"evidence", std::move(evidence)},
-                   {"why", claim.why}});
+                   {"why", claim.not_measured_because}});
   }
   return out;
 }
@@ -117,7 +119,9 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       "# The paper's claims, held against the records\n\n"
       "A claim is *reproduced* when every measured figure lies where it says, *partly* when some do. Figures "
       "in bold\n"
-      "do not. Explanations stand where something differs.\n";
+      "do not. What somebody has found out about the differences since stands in notes.md beside this page, "
+      "if "
+      "anywhere.\n";
   for (const ClaimResult& claim : claims) {
     out += "\n## " + claim.id + ": " + std::string(to_string(claim.verdict)) + "\n\n> " + claim.quote + " (" +
            claim.where + ")\n\n";
@@ -140,7 +144,7 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       }
       out += "\n";
     }
-    if (claim.verdict != ClaimVerdict::reproduced && !claim.why.empty()) out += claim.why + "\n";
+    if (!claim.not_measured_because.empty()) out += claim.not_measured_because + "\n";
   }
   return out;
 }

@@ -27,14 +27,15 @@ struct ClaimResult {
   std::string id, quote, where, expectation;
   ClaimVerdict verdict = ClaimVerdict::not_measured;
   std::vector<Evidence> evidence;
-  std::string why;  // where the measured figures differ, or why nothing was measured
+  std::string not_measured_because;  // empty for a claim that is measured
 };
 
 // A claim has `quote`, `where`, `scenes`, `measure` (definitions as in bench/tables/quantity.h, each with a
-// title; all must hold in a scene), `expect` ({"least": .., "most": ..}, either may be left out) and `why`. A
-// claim without `measure` cannot be measured here, for the reason in `why`. With `somewhere`, one scene is
-// enough. Reproduced: every figure that was measured holds; partly: some; scenes without a record do not
-// count.
+// title; all must hold in a scene), `expect` ({"least": .., "most": ..}, either may be left out) . A
+// claim without `measure` cannot be measured here, for the reason in `not_measured_because`. Explanations of
+// what differs belong to a scene and a record, and stand in notes beside the record. With `somewhere`, one
+// scene is enough. Reproduced: every figure that was measured holds; partly: some; scenes without a record do
+// not count.
 std::vector<ClaimResult> judge_claims(std::span<const Record> records);
 // The same with other claims.
 std::vector<ClaimResult> judge_claims(const nlohmann::ordered_json& claims, std::span<const Record> records);

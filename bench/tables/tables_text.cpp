@@ -75,6 +75,12 @@ std::string threads(const Record& record) {
                    : std::to_string(most) + " threads for " + sharing + ", one for every other strategy";
 }
 
+// How many of the timed intervals are among the given ones.
+std::size_t timed_and(const std::vector<std::size_t>& intervals, const Record& record) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      record.timed_intervals, [&](std::size_t i) { return std::ranges::binary_search(intervals, i); }));
+}
+
 ordered_json source_json(const Record& record) {
   const VerificationRecord& v = record.verification;
   return {{"scene", record.scene.name},
@@ -85,6 +91,8 @@ ordered_json source_json(const Record& record) {
           {"intervals", record.intervals},
           {"counted_intervals", record.counted_intervals.size()},
           {"timed_intervals", record.timed_intervals.size()},
+          {"timed_verified_intervals", timed_and(v.intervals, record)},
+          {"timed_colliding_intervals", timed_and(v.colliding, record)},
           {"verified_intervals", v.intervals.size()},
           {"unembedded_intervals", v.unembedded.size()},
           {"colliding_intervals", v.colliding.size()}};
@@ -121,9 +129,11 @@ std::string provenance(const Record& record) {
                     get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
                     get("date") + ".\n";
   out += "Made by `" + joined(record.command) + "`.\n";
-  out += std::to_string(record.timed_intervals.size()) + " of " + std::to_string(record.intervals) +
-         " intervals timed, " + std::to_string(repetitions(record)) +
-         " repetitions, interleaved; counters of " +
+  const std::size_t timed = record.timed_intervals.size(), verified = timed_and(v.intervals, record);
+  out += std::to_string(timed) + " of " + std::to_string(record.intervals) + " intervals timed, " +
+         (verified == timed ? "all of them" : std::to_string(verified) + " of them") + " verified and " +
+         std::to_string(timed_and(v.colliding, record)) + " with contacts, " +
+         std::to_string(repetitions(record)) + " repetitions, interleaved; counters of " +
          (record.counted_intervals.size() == record.intervals
               ? "all"
               : std::to_string(record.counted_intervals.size())) +
@@ -133,6 +143,9 @@ std::string provenance(const Record& record) {
   out += v.unembedded.empty() ? ", every start was embedded.\n"
                               : "; " + std::to_string(v.unembedded.size()) +
                                     " starts were not embedded, where `first_contact` promises nothing.\n";
+  if (!v.disagreeing.empty())
+    out += "On " + std::to_string(v.disagreeing.size()) +
+           " of the verified intervals rows had differed with the timed elementary test.\n";
   out += v.colliding.empty() ? "None of them has a contact: here a strategy can fail by inventing one only.\n"
                              : std::to_string(v.colliding.size()) + " of them have contacts to be lost.\n";
   out += "The timed test `" + record.elementary + "` on " + std::to_string(v.accuracy_tests) +
