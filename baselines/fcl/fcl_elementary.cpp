@@ -4,7 +4,7 @@
 
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 
-#include "core/elementary/question/unit_scale.h"
+#include "core/elementary/question/query_scale.h"
 
 // FCL 0.7 of Debian, called as its continuous traversal calls it. Idea: roots of the coplanarity cubic by
 // interval Newton, then a test of the features at the root with absolute tolerances. A "no" proves nothing:
@@ -19,7 +19,7 @@ Answer answer(bool touch, double time) {
 }
 template <class Query>
 bool too_far(const Query& q) {
-  return unit_scale::largest_coordinates(q).maxCoeff() > kFclFarthest;
+  return largest_coordinates(q).maxCoeff() > kFclFarthest;
 }
 Answer fcl_vertex_face(const MovingVertexFace& q) {
   if (too_far(q)) return {Verdict::undecided, 0};

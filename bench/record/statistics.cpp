@@ -59,13 +59,6 @@ double quantile(std::span<const double> samples, double share) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
-double geometric_mean(std::span<const double> positive) {
-  assert(!positive.empty());
-  double sum = 0;
-  for (const double x : positive) sum += std::log(x);
-  return std::exp(sum / static_cast<double>(positive.size()));
-}
-
 Estimate bootstrap_median(std::span<const double> samples) {
   return bootstrap(samples.size(),
                    [&](const std::vector<std::size_t>& indices) { return median_of(samples, indices); });

@@ -12,7 +12,6 @@ double mean(std::span<const double> samples);    // of at least one
 double median(std::span<const double> samples);  // of at least one
 // Linear between order statistics (type 7 of Hyndman and Fan 1996); `share` in [0, 1].
 double quantile(std::span<const double> samples, double share);
-double geometric_mean(std::span<const double> positive);
 
 struct Estimate {
   double value, low, high;  // the statistic of the samples, and its 95 % interval

@@ -20,11 +20,6 @@ TEST(Statistics, QuantilesOfKnownSamples) {
   EXPECT_DOUBLE_EQ(quantile(even, 0.9), 3.7);
 }
 
-TEST(Statistics, GeometricMean) {
-  const std::vector<double> samples = {1, 10, 100};
-  EXPECT_DOUBLE_EQ(geometric_mean(samples), 10);
-}
-
 TEST(Statistics, SamplesWithoutSpreadHaveAnIntervalWithoutWidth) {
   const std::vector<double> a(5, 6.0), b(5, 2.0);
   const Estimate estimate = bootstrap_median(a), ratio = bootstrap_ratio_of_medians(a, b);

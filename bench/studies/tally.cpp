@@ -6,8 +6,8 @@
 
 #include "bench/record/statistics.h"
 #include "core/base/random.h"
-#include "core/elementary/question/extent.h"
 #include "core/elementary/question/filter.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/relative_box.h"
 #include "core/geometry/feature_distance.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/elementary/question/extent.h"
 #include "core/elementary/question/filter.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/geometry/feature_distance.h"
 
 // Additive continuous collision detection (Li, Kaufman and Jiang, "Codimensional incremental potential

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/base/rounding.h"
-#include "core/elementary/question/extent.h"
 #include "core/elementary/question/filter.h"
+#include "core/elementary/question/query_scale.h"
 
 // Inclusion-based root finding (Snyder, "Interval analysis for computer graphics", SIGGRAPH 1992; Redon,
 // Kheddar and Coquillart 2002; Wang, Ferguson, Schneider, Jiang, Attene and Panozzo, "A large-scale benchmark

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/elementary/exact/exact.h"
-#include "core/elementary/question/extent.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/test_queries.h"
 #include "core/geometry/feature_distance.h"
 

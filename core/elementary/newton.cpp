@@ -1,7 +1,7 @@
 #include "core/elementary/newton.h"
 
 #include "core/elementary/newton_search.h"
-#include "core/elementary/question/unit_scale.h"
+#include "core/elementary/question/query_scale.h"
 
 namespace cscd {
 namespace {

@@ -17,8 +17,8 @@
 // filter's "apart" is a proof for the coordinates as they are in that precision. What comes after it is not:
 // an enclosure is found with rounded coefficients, and touching is judged at its middle within a tolerance.
 // Hence contacts may be missed or invented near the limits of the precision; the harness counts both against
-// the exact referee. Degenerate cases follow rule degenerate: a cubic that may be zero throughout is reduced to two
-// dimensions, and what is left open is `undecided`, never "apart".
+// the exact referee. Degenerate cases follow rule degenerate: a cubic that may be zero throughout is reduced
+// to two dimensions, and what is left open is `undecided`, never "apart".
 namespace cscd {
 
 // What a query is made of in single precision.
@@ -41,10 +41,7 @@ struct FloatVector {
     return ends.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   }
 };
-struct FloatCubic {
-  float c[4];
-  float error;
-};
+using FloatCubic = BernsteinCubicOf<float>;
 
 inline FloatVector difference(const FloatPoint& from, const FloatPoint& to) {
   return {to.start - from.start, to.end - from.end};
@@ -66,12 +63,6 @@ inline FloatCubic coplanarity(const FloatVertexFace& q) {
 inline FloatCubic coplanarity(const FloatEdgeEdge& q) {
   return float_triple_product(difference(q.first[0], q.first[1]), difference(q.second[0], q.second[1]),
                               difference(q.first[0], q.second[0]));
-}
-inline int certain_sign(const FloatCubic& f) {
-  const float e = f.error;
-  const bool above = (f.c[0] > e) & (f.c[1] > e) & (f.c[2] > e) & (f.c[3] > e);
-  const bool below = (f.c[0] < -e) & (f.c[1] < -e) & (f.c[2] < -e) & (f.c[3] < -e);
-  return above - below;
 }
 inline MovingPoint widened(const FloatPoint& p) {
   return {p.start.cast<double>(), p.end.cast<double>()};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 
 #include "core/base/rounding.h"
@@ -74,8 +75,9 @@ inline BernsteinCubic triple_product(const MovingVector& a, const MovingVector& 
 
 // +1: positive for every t in [0, 1]; -1: negative for every t; 0: not certain. Coefficient by coefficient,
 // because a minimum may forget a NaN.
-inline int certain_sign(const BernsteinCubic& f) {
-  const double e = f.error;
+template <std::floating_point Real>
+int certain_sign(const BernsteinCubicOf<Real>& f) {
+  const Real e = f.error;
   const bool above = (f.c[0] > e) & (f.c[1] > e) & (f.c[2] > e) & (f.c[3] > e);
   const bool below = (f.c[0] < -e) & (f.c[1] < -e) & (f.c[2] < -e) & (f.c[3] < -e);
   return above - below;

@@ -187,13 +187,4 @@ std::vector<EffectCost> effect_costs(const Scene& scene) {
   return costs;
 }
 
-void export_scene(const Scene& scene, const fs::path& path, bool force, const Progress& progress) {
-  // Opened first: what exists already is refused before the work, not after it.
-  std::optional<PointCacheWriter> writer;
-  const std::unique_ptr<ClipSource> source = open_scene(scene, progress);
-  writer.emplace(path, source->header(), force);
-  copy_frames(*source, *writer);
-  writer->finish();
-}
-
 }  // namespace cscd::scenes

@@ -31,8 +31,4 @@ Expected accept_scene(const std::filesystem::path& file, const Progress& progres
 // file beside the cache that tells cannot be read.
 std::vector<EffectCost> effect_costs(const Scene& scene);
 
-// Writes exactly the frames that open_scene gives. Refuses a path that exists unless `force`.
-void export_scene(const Scene& scene, const std::filesystem::path& path, bool force,
-                  const Progress& progress = {});
-
 }  // namespace cscd::scenes

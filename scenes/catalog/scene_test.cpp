@@ -367,16 +367,6 @@ TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
   EXPECT_FALSE(fs::exists(cache_file(load_scene("small")))) << "unverified frames are not kept";
 }
 
-TEST_F(Catalogue, ExportsWhatItReplays) {
-  const Scene scene = load_scene("small");
-  export_scene(scene, root / "out.h5", false);
-  PointCacheReader reader(root / "out.h5");
-  EXPECT_EQ(digest_of(reader), scene.expected.digest);
-  EXPECT_NE(message([&] { export_scene(scene, root / "out.h5", false); }).find("exists; choose another name"),
-            std::string::npos);
-  EXPECT_NO_THROW(export_scene(scene, root / "out.h5", true));
-}
-
 TEST_F(Catalogue, SaysWhereItCannotCache) {
   setenv("CSCD_CACHE", "/proc/no/such", 1);
   EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),

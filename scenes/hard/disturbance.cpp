@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/elementary/question/extent.h"
+#include "core/elementary/question/query_scale.h"
 
 namespace cscd::scenes::hard {
 namespace {

@@ -4,13 +4,10 @@
 
 #include "core/elementary/exact/static_contact.h"
 #include "core/hierarchy/descent.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd {
 namespace {
-
-bool contains(const Triangle& triangle, VertexId vertex) {
-  return std::find(triangle.begin(), triangle.end(), vertex) != triangle.end();
-}
 
 struct Frame {
   const TriangleMesh& mesh;
@@ -41,9 +38,7 @@ struct Frame {
       // end.
       for (const EdgeId side : mesh.edges_of(to)) {
         const Edge& other = mesh.ends(side);
-        const bool disjoint =
-            edge[0] != other[0] && edge[0] != other[1] && edge[1] != other[0] && edge[1] != other[1];
-        if (disjoint && touch(edge, other)) return true;
+        if (!share_vertex(edge, other) && touch(edge, other)) return true;
       }
     }
     return false;

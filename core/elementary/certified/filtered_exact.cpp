@@ -17,8 +17,8 @@
 #include "core/elementary/certified/exact_lanes.h"
 #include "core/elementary/certified/integer_contact.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/relative_box.h"
-#include "core/elementary/question/unit_scale.h"
 
 namespace cscd {
 namespace {
