@@ -1,0 +1,34 @@
+"""Parts of Markdown pages."""
+
+
+def table(head, rows):
+    """Lines of a table: the first column to the left, numbers to the right."""
+    rule = "|---|" + "---:|" * (len(head) - 1)
+    return ["| " + " | ".join(head) + " |", rule] + ["| " + " | ".join(row) + " |" for row in rows]
+
+
+def number(value):
+    """Four significant digits, or all digits of a whole number."""
+    return f"{value:.0f}" if value == int(value) else f"{value:.4g}"
+
+
+def with_interval(value, interval, text=number):
+    """"4.4 [3.8, 4.5]"; the value alone where there is no interval."""
+    return text(value) + (f" [{text(interval[0])}, {text(interval[1])}]" if interval else "")
+
+
+def short(value):
+    """Three significant digits; a dash for nothing."""
+    return "–" if value is None else f"{value:.3g}" if value < 1000 else f"{value:,.0f}"
+
+
+def picture(name, title):
+    return [f"![{title}]({name}.png)", ""]
+
+
+def built(environment):
+    """Where and from what a record was made, in a line."""
+    instructions = f", {environment['instruction_set']}" if "instruction_set" in environment else ""
+    changes = " with uncommitted changes" if environment["dirty"] else ""
+    return (f"{environment['cpu']}, {environment['cores']} cores; {environment['compiler']}, {environment['build_type']}"
+            f"{instructions}; commit {environment['commit'][:12]}{changes}; {environment['date'][:10]}")
