@@ -27,8 +27,8 @@ void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
   pass_on_waiting();
 }
 
-void PatchDescent::open(NodePair at, std::vector<NodePair>& below) {
-  opened_ = &below;
+void PatchDescent::split(NodePair at, std::vector<NodePair>& below) {
+  split_into_ = &below;
   visit<Depth::one>(at);
 }
 
@@ -72,7 +72,7 @@ void PatchDescent::found(NodePair below) {
   if constexpr (kDepth == Depth::all)
     visit<kDepth>(below);
   else
-    opened_->push_back(below);
+    split_into_->push_back(below);
 }
 
 // Pairs inside one patch.

@@ -83,9 +83,9 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   // Passes on what is not proven apart.
   void descend(NodePair at, TrianglePairSink& sink);
   // Whether there are nodes below one of the two.
-  bool can_open(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
+  bool can_split(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
   // Appends the pairs of nodes into which a descent from two that can be opened falls apart, in its order.
-  void open(NodePair at, std::vector<NodePair>& below);
+  void split(NodePair at, std::vector<NodePair>& below);
   // Overlap tests in this interval.
   std::uint64_t tests() const { return tests_; }
 
@@ -125,7 +125,7 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   std::array<TrianglePair, kLanes16> waiting_{};
   PairLanes waiting_vertices_;
   std::size_t waiting_count_ = 0;
-  std::vector<NodePair>* opened_ = nullptr;
+  std::vector<NodePair>* split_into_ = nullptr;
   std::uint64_t tests_ = 0;
 };
 

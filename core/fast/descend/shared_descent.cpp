@@ -26,17 +26,17 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
   team_.each(by_thread_.size(),
              [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid); });
   if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) bring_near();
-  opened_.assign(1, {0, 0});
+  subtrees_.assign(1, {0, 0});
   if (kept_.empty()) {
-    by_thread_[0].descend(opened_[0], sink);
+    by_thread_[0].descend(subtrees_[0], sink);
   } else {
-    open();
+    split_into_subtrees();
     team_.each(kept_.size(), [&](std::size_t range, std::size_t thread) {
-      const std::size_t first = opened_.size() * range / kept_.size();
-      const std::size_t last = opened_.size() * (range + 1) / kept_.size();
-      for (std::size_t i = first; i < last; ++i) by_thread_[thread].descend(opened_[i], kept_[range]);
+      const std::size_t first = subtrees_.size() * range / kept_.size();
+      const std::size_t last = subtrees_.size() * (range + 1) / kept_.size();
+      for (std::size_t i = first; i < last; ++i) by_thread_[thread].descend(subtrees_[i], kept_[range]);
     });
-    join(sink);
+    pass_on_in_order(sink);
   }
   tests_ = 0;
   for (const PatchDescent& descent : by_thread_) tests_ += descent.tests();
@@ -52,25 +52,25 @@ void SharedDescent::bring_near() const {
 }
 
 // Level by level.
-void SharedDescent::open() {
+void SharedDescent::split_into_subtrees() {
   bool any = true;
-  while (any && opened_.size() < kPairsARange * kept_.size()) {
+  while (any && subtrees_.size() < kPairsARange * kept_.size()) {
     any = false;
     next_.clear();
-    for (const NodePair pair : opened_) {
-      const bool can = by_thread_[0].can_open(pair);
+    for (const NodePair pair : subtrees_) {
+      const bool can = by_thread_[0].can_split(pair);
       any |= can;
       if (can)
-        by_thread_[0].open(pair, next_);
+        by_thread_[0].split(pair, next_);
       else
         next_.push_back(pair);
     }
-    opened_.swap(next_);
+    subtrees_.swap(next_);
   }
 }
 
-void SharedDescent::join(TrianglePairSink& sink) {
-  for (Kept& kept : kept_) {
+void SharedDescent::pass_on_in_order(TrianglePairSink& sink) {
+  for (KeptPairs& kept : kept_) {
     kept.flush();
     for (const TrianglePair& pair : kept.pairs) sink.add(pair.a, pair.b);
     kept.pairs.clear();

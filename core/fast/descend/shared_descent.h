@@ -20,9 +20,9 @@ class SharedDescent {
   std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink);
 
  private:
-  class Kept : public TrianglePairSink {
+  class KeptPairs : public TrianglePairSink {
    public:
-    Kept() : TrianglePairSink(1 << 9) {}
+    KeptPairs() : TrianglePairSink(1 << 9) {}
     std::vector<TrianglePair> pairs;
 
    private:
@@ -31,14 +31,14 @@ class SharedDescent {
     }
   };
   void bring_near() const;
-  void open();
-  void join(TrianglePairSink& sink);
+  void split_into_subtrees();
+  void pass_on_in_order(TrianglePairSink& sink);
 
   const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
-  std::deque<Kept> kept_;  // of each range
-  std::vector<NodePair> opened_, next_;
+  std::deque<KeptPairs> kept_;  // of each range
+  std::vector<NodePair> subtrees_, next_;
   std::uint64_t tests_ = 0;  // of the last interval
 };
 

@@ -22,7 +22,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
     : tree_(tree),
       covers_(covers),
       certified_(tree.patches.size()),
-      own_(tree.patches.size()),
+      single_triangle_signs_(tree.patches.size()),
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
       capped_(std::move(capped)),
@@ -100,17 +100,19 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   state_[p] = State::seen;
   for (std::size_t c = 0; c < covers_used_; ++c)
     if (from[c] != nullptr)
-      own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
-                    static_cast<Mask16>(patch.lanes & seen[c].negative)};
+      single_triangle_signs_[p][c] = {
+          static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
+          static_cast<Mask16>(patch.lanes & seen[c].negative)};
   // The first cover holds every triangle. The others are certified unless `finish` finds something around.
-  certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive), own_[p][0].negative};
+  certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive),
+                      single_triangle_signs_[p][0].negative};
   for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
 
 void Certificates::make_usual(std::size_t p) {
   if (state_[p] == State::usual) return;
   state_[p] = State::unlabelled;
-  own_[p] = {};
+  single_triangle_signs_[p] = {};
   certified_[p] = {};
   certified_[p][0].positive = cell_[p].lanes;
   for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c].positive = cell_[p].inside[c];
@@ -140,17 +142,17 @@ void Certificates::look_round(std::size_t p) {
   Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
   unsigned any = 0;
   for (std::size_t c = 1; c < covers_used_; ++c)
-    any |= corners[c] = patch.corners_of(own_[p][c].not_positive);
+    any |= corners[c] = patch.corners_of(single_triangle_signs_[p][c].not_positive);
   if (any == 0) return;
   tree_.for_each_adjacent(p, [&](std::size_t q, const Common& common) {
     if (state_[q] != State::seen) state_[q] = State::spoiled;
     for (std::size_t c = 1; c < covers_used_; ++c) {
       certified_[q][c].positive &= static_cast<Mask16>(~common.lanes(corners[c]));
-      not_negative[c] |= common.places(static_cast<Mask16>(~own_[q][c].negative));
+      not_negative[c] |= common.places(static_cast<Mask16>(~single_triangle_signs_[q][c].negative));
     }
   });
   for (std::size_t c = 1; c < covers_used_; ++c)
-    for_each_lane(own_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
+    for_each_lane(single_triangle_signs_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
       if ((patch.corners_of(1U << lane) & not_negative[c]) == 0)
         certified_[p][c].negative |= static_cast<Mask16>(1U << lane);
     });
@@ -161,7 +163,9 @@ void Certificates::certify_clear() {
     for (std::size_t p = 0; p < certified_.size(); ++p)
       for (std::size_t c = 0; c < covers_used_; ++c)
         if (cell_[p].cluster[c] != kNone)
-          take(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(own_[p][c].not_positive)));
+          take(p, c,
+               static_cast<Mask16>(cell_[p].lanes &
+                                   ~static_cast<unsigned>(single_triangle_signs_[p][c].not_positive)));
   };
   for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
     if (positive != cell_[p].lanes || crosses_ray_[p][c]) capped_[c].take(tree_.patches[p], positive);

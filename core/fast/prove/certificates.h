@@ -24,8 +24,8 @@ namespace cscd::fast {
 // that is at either feature. If none does, the first drops all of them: any triangle at one feature lies in
 // one cluster with any at the other, and has its sign. (One triangle at both has no area when they touch:
 // it has no sign, so its pairs with the others are not dropped.) Between two covers neither of which looks at
-// what surrounds a triangle that would not hold: each might drop some of the pairs (rule one-field). With capped
-// clusters none of this is needed (capped_clusters.h).
+// what surrounds a triangle that would not hold: each might drop some of the pairs (rule one-field). With
+// capped clusters none of this is needed (capped_clusters.h).
 class Certificates {
  public:
   // With `capped`, one of each cover, no contact is lost whatever the start; without, the first of an
@@ -112,7 +112,7 @@ class Certificates {
     Mask16 lanes;
   };
 
-  struct Own {  // of triangles by themselves; none where the patch was not seen otherwise
+  struct SingleTriangleSigns {  // of triangles by themselves; none where the patch was not seen otherwise
     Mask16 not_positive, negative;
   };
 
@@ -122,10 +122,10 @@ class Certificates {
   const LocalPositions* positions_ = nullptr;
   std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
-  std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
-  std::vector<std::array<Own, kCovers>> own_;          // of each patch
-  std::vector<State> state_;                           // of each patch; then usual ones up to a whole word
-  std::vector<Label> label_;                           // of each node
+  std::vector<std::array<Signs, kCovers>> certified_;                            // of each patch
+  std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch
+  std::vector<State> state_;  // of each patch; then usual ones up to a whole word
+  std::vector<Label> label_;  // of each node
   std::vector<CappedClusters> capped_;
   std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
   RadialCounts counts_;
