@@ -54,7 +54,7 @@ namespace {
 // Mutation: a vector that is made anew in every interval.
 TEST(Allocation, ADetectorThatSettlesAllocatesNothingOnceItIsWarm) {
   const ElementaryTest& test = elementary_test_named("filtered_exact");
-  std::size_t contacts = 0;
+  std::size_t contacts = 0, first_allocations = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     scenes::RandomInterval random = scenes::make_random_interval(seed);
     const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
@@ -70,12 +70,13 @@ TEST(Allocation, ADetectorThatSettlesAllocatesNothingOnceItIsWarm) {
         detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
         return g_allocations - before;
       };
-      EXPECT_GT(allocations(), 0u) << "the first interval is what sizes everything";
+      first_allocations += allocations();
       allocations();
       EXPECT_EQ(allocations(), 0u) << strategy.name << ", seed " << seed;
       contacts += found.contacts.size();
     }
   }
+  EXPECT_GT(first_allocations, 100u) << "allocations are counted";
   EXPECT_GT(contacts, 100u) << "keeping contacts is part of it";
 }
 
