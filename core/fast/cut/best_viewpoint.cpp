@@ -11,12 +11,12 @@ namespace {
 
 constexpr int kDescentSteps = 400;
 
-// What eight faces lack: at the middle, and more by their normals' way to the point. Unused lanes lack
+// By how much eight faces lack what is wanted, at the middle and along their normals. Unused lanes lack
 // nothing.
 struct Lacks {
   Lane8 normal[3] = {}, at_middle = {};
 
-  // Adds what they lack at the point, and the normals of those that lack.
+  // Adds what the faces lack at the point, and the normals of those that lack anything.
   void add(const Vec3& point, Lane8& lack, Lane8 (&away)[3]) const {
     const Lane8 here = at_middle + normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
     const Sign8 lacking = here > 0;
@@ -41,15 +41,14 @@ Face face_of(const TriangleMesh& mesh, std::span<const Vec3> positions, Triangle
           length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
 }
 
-// How far each face lacks from what is wanted, summed, is convex in the point: subgradient descent, from a
-// point inside.
+// What the faces lack, summed, is convex in the point. Subgradient descent minimises it, from a point inside.
 Vec3 best_viewpoint(std::span<const Face> faces) {
   Vec3 middle = Vec3::Zero();
   for (const Face& f : faces) middle += f.centre / static_cast<double>(faces.size());
   double size = 0;
   for (const Face& f : faces) size += (f.centre - middle).norm() / static_cast<double>(faces.size());
 
-  // A point is measured from the middle.
+  // Points are measured from the middle.
   std::vector<Lacks> rows((faces.size() + kLanes - 1) / kLanes);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     Lacks& row = rows[i / kLanes];

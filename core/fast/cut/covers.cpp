@@ -14,12 +14,13 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::int32_t kReach = 6;  // rings of triangles about a seam that belong to its cluster
-constexpr std::int32_t kThin = 4;   // clusters without a triangle so many rings from its seams are merged
+constexpr std::int32_t kReach = 6;  // so many rings of triangles about a seam belong to its cluster
+constexpr std::int32_t kThin = 4;   // a cluster without a triangle so many rings from its seams is merged
 
 // ---- Observers
 
-// Vertices of the triangles, few, with weights that make them the wanted point in the reference pose.
+// Chooses a few vertices of the triangles, with weights that make them the wanted point in the reference
+// pose.
 FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
                          std::span<const TriangleId> triangles, const Vec3& wanted) {
   std::vector<VertexId> vertices;
@@ -37,7 +38,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
     const double n = static_cast<double>(count);
     Vec3 mean = Vec3::Zero();
     for (std::size_t i = 0; i < count; ++i) mean += positions[+vertices[i]] / n;
-    // The smallest change of equal weights that moves their mean to the wanted point.
+    // This is the smallest change of equal weights that moves their mean to the wanted point.
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 x = positions[+vertices[i]] - mean;
@@ -56,13 +57,13 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
       got += weight * positions[+vertices[i]];
       largest = std::max(largest, n * std::abs(weight));
     }
-    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // it is far from these vertices
+    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // the point is too far from these vertices
     const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
     if (!(cost < least)) continue;
     least = cost;
     best = point;
   }
-  if (best.vertices().empty()) best.add(vertices.front(), 1);  // a cluster of no extent
+  if (best.vertices().empty()) best.add(vertices.front(), 1);  // the cluster has no extent
   return best;
 }
 
@@ -103,7 +104,8 @@ void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Tak
       if (other != triangle) take(other);
 }
 
-// Rings from the seeds, breadth first, and the seed that came first. kNone where none came.
+// The distance of each triangle from the nearest seed in rings of triangles, and which seed that is; kNone
+// where no seed is reached.
 struct Rings {
   std::vector<std::int32_t> seed, distance;
 };
@@ -130,7 +132,7 @@ Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<Triangl
   return rings;
 }
 
-// Triangles on either side of the seam between each two clusters.
+// The triangles on both sides of the seam between each two clusters.
 using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
 Seams seams_of(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
   Seams seams;

@@ -8,19 +8,19 @@
 
 namespace cscd::fast {
 
-// A point that follows the surface: an affine combination of a few vertices. Held by value, as hundreds are
-// placed one after the other in every interval.
+// A point that follows the surface: an affine combination of a few vertices. It is held by value, because
+// hundreds of points are placed one after the other in every interval.
 class FollowingPoint {
  public:
   static constexpr std::size_t kMost = 16;
-  // To which the sizes of weights may sum. Triple products with a point that is this much farther away than
-  // any local position (local_positions.h) are far from overflow.
+  // The largest sum of the sizes of the weights. A point that is this much farther away than any local
+  // position (local_positions.h) leaves triple products far from overflow.
   static constexpr float kMostWeight = 1000;
 
-  // At most `kMost` times.
+  // Adds a vertex with its weight; at most kMost vertices can be added.
   void add(VertexId vertex, float weight);
   std::span<const VertexId> vertices() const { return std::span(vertices_).first(count_); }
-  // They sum to about 1: what they sum to exactly is the point.
+  // The weights sum to about 1. The point is defined by what they sum to exactly.
   std::span<const float> weights() const { return std::span(weights_).first(count_); }
 
   Vec3 at(std::span<const Vec3> positions) const;

@@ -4,13 +4,14 @@
 #include <limits>
 #include <utility>
 
-// Patches grow one beside the other; what is left over between them is joined; then small ones are emptied
-// into those beside them.
+// Patches grow one beside the other. What is left over between them is joined. Then small patches are emptied
+// into the patches beside them.
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kMostSeeking = 300;  // triangles that are asked to move for one; more find little
-constexpr std::size_t kMostBeside = 8;     // patches that are asked for room; at edges of two there are three
+constexpr std::size_t kMostSeeking =
+    300;  // so many triangles are asked to move for one; asking more finds little
+constexpr std::size_t kMostBeside = 8;  // so many patches are asked for room
 
 std::size_t index(std::int32_t patch) {
   return static_cast<std::size_t>(patch);
@@ -58,7 +59,7 @@ int PatchCutter::free_beside(TriangleId triangle) const {
   return count;
 }
 
-// Each begins beside those before it, at the triangle with the fewest free neighbours.
+// Each patch begins beside the patches before it, at the triangle with the fewest free neighbours.
 PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   for (const TriangleId t : cell) set_free(t, true);
   Patches patches;
@@ -92,8 +93,9 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   }
 }
 
-// Next the triangle that needs the fewest new vertices and lies nearest to the others. One vertex in common
-// is enough: what hangs at a zigzag seam by its corners would else be patches of one triangle.
+// The next triangle is the one that needs the fewest new vertices and lies nearest to the others. One vertex
+// in common is enough: triangles that hang at a zigzag seam by their corners would otherwise become patches
+// of one triangle.
 std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   std::vector<TriangleId> patch;
   Vec3 sum = Vec3::Zero();
@@ -115,7 +117,7 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   while (patch.size() < most_) {
     const Vec3 middle = sum / static_cast<double>(patch.size());
     TriangleId best{-1};
-    std::pair<int, double> least{3, 0};  // all need fewer
+    std::pair<int, double> least{3, 0};  // every triangle needs fewer new vertices
     for (const TriangleId t : touched_) {
       const int needed = 3 - corners_taken_[+t];
       if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > most_)
@@ -134,7 +136,8 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   return patch;
 }
 
-// The smallest with the largest that it touches and fits.
+// Joins the smallest piece with the largest piece that it touches and that has room for it, as long as there
+// is one.
 void PatchCutter::join(Patches& patches) const {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
@@ -157,7 +160,7 @@ void PatchCutter::join(Patches& patches) const {
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
-// Triangles of small patches, of the smallest first, move into patches beside them, as long as they find
+// Moves the triangles of small patches, the smallest first, into patches beside them, as long as they find
 // room.
 void PatchCutter::empty_small(Patches& patches) {
   for (std::size_t p = 0; p < patches.size(); ++p)
@@ -174,8 +177,8 @@ void PatchCutter::empty_small(Patches& patches) {
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
-// Into a patch that has room, or in place of a triangle that moves on in the same way: the fewest that have
-// to move. False if none of those asked finds room.
+// Moves a triangle into a patch that has room, or in place of a triangle that moves on in the same way, so
+// that the fewest triangles have to move. Returns false if none of the triangles that were asked finds room.
 bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   const auto seek = [&](TriangleId t, std::size_t for_whom) {
     seeking_.push_back({t, for_whom});
@@ -200,7 +203,7 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   return found;
 }
 
-// Those of the cell on the other side of its edges, some of them where there are many.
+// Returns the patches of the cell on the other side of the triangle's edges, at most kMostBeside.
 std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
   std::vector<std::int32_t> found;
   for (const EdgeId e : mesh_.edges_of(triangle))
@@ -234,7 +237,7 @@ PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const Tri
   return room;
 }
 
-// Whether the triangle of a patch is among those that move if this one does.
+// Whether a triangle of the patch is among those that move if this one does.
 bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
   while (patch_of_[+seeking_[at].triangle] != patch) {
     if (at == 0) return false;
@@ -243,7 +246,8 @@ bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
   return true;
 }
 
-// That one into a patch, the one for whom it makes room into the patch that it leaves, and so on.
+// Moves that triangle into a patch, the triangle for which it makes room into the patch that it leaves, and
+// so on.
 void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
   while (true) {
     const auto [triangle, for_whom] = seeking_[at];

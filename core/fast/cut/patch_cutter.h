@@ -9,7 +9,7 @@
 namespace cscd::fast {
 
 // Cuts sets of triangles into few patches, each of at most `most` triangles with at most as many vertices.
-// Every patch costs the same, however full.
+// Few patches are the aim, because every patch costs the same, however full.
 class PatchCutter {
  public:
   using Patches = std::vector<std::vector<TriangleId>>;
@@ -21,7 +21,7 @@ class PatchCutter {
  private:
   std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const;
   void set_free(TriangleId triangle, bool free);
-  int free_beside(TriangleId triangle) const;  // of a free one
+  int free_beside(TriangleId triangle) const;  // how many free neighbours a free triangle has
   Patches pieces(std::span<const TriangleId> cell);
   std::vector<TriangleId> grow(TriangleId seed);
   void join(Patches& patches) const;
@@ -30,7 +30,7 @@ class PatchCutter {
   std::vector<std::int32_t> patches_beside(TriangleId triangle) const;
   struct Room {
     bool is_free;
-    std::vector<TriangleId> in_place_of;  // those of which one would have to go
+    std::vector<TriangleId> in_place_of;  // triangles of the patch, one of which would have to leave
   };
   Room room_for(TriangleId triangle, std::span<const TriangleId> patch);
   bool is_left(std::int32_t patch, std::size_t at) const;
@@ -39,24 +39,26 @@ class PatchCutter {
   const TriangleMesh& mesh_;
   std::span<const Vec3> centroid_;
   std::size_t most_;
-  std::vector<bool> free_;             // triangles that are in no patch yet
-  std::vector<std::int32_t> free_at_;  // of each edge: how many of them have it
-  std::vector<bool> is_beside_;        // triangles that are free beside some patch
-  // Of the patch that grows; else empty.
-  std::vector<std::uint8_t> corners_taken_;  // of each triangle: how many of its corners are in it
-  std::vector<bool> taken_;                  // whether a vertex is in it
-  std::vector<TriangleId> touched_;          // triangles that were free and have a corner in it, in order
-  // Of the patch that has grown last.
+  std::vector<bool> free_;             // [triangles]: whether it is in no patch yet
+  std::vector<std::int32_t> free_at_;  // [edges]: how many free triangles have it
+  std::vector<bool> is_beside_;        // [triangles]: whether it is free and beside some patch
+  // State of the patch that is growing; empty at other times.
+  std::vector<std::uint8_t> corners_taken_;  // [triangles]: how many of its corners the patch has
+  std::vector<bool> taken_;                  // [vertices]: whether the patch has it
+  std::vector<TriangleId>
+      touched_;  // free triangles with a corner in the patch, in the order in which they were met
+  // The vertices of the patch that has grown last.
   std::vector<VertexId> vertices_;
-  // While small patches are emptied.
+  // State while small patches are emptied into the patches beside them.
   struct Seeking {
     TriangleId triangle;
-    std::size_t for_whom;  // place of the one that gets its room; its own, 0, of the first
+    std::size_t for_whom;  // index in `seeking_` of the triangle that gets its room; 0 for the first, which
+                           // wants none
   };
-  std::vector<std::int32_t> patch_of_;  // of each triangle; else -1
-  std::vector<Seeking> seeking_;        // triangles that one after the other look for room; else empty
-  std::vector<bool> seeks_;             // whether a triangle is among them
-  std::vector<std::uint8_t> uses_;      // of each vertex, by the triangles of a patch; else 0
+  std::vector<std::int32_t> patch_of_;  // [triangles]: its patch, or -1
+  std::vector<Seeking> seeking_;        // triangles that look for room one after the other
+  std::vector<bool> seeks_;             // [triangles]: whether it is in `seeking_`
+  std::vector<std::uint8_t> uses_;      // [vertices]: by how many triangles of one patch it is used
 };
 
 }  // namespace cscd::fast

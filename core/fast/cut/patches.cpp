@@ -10,8 +10,9 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles that certificates treat alike are kept together: those of one cluster of the first cover and,
-// where that leaves enough of them, of one of the second, inside which all around them is or is not.
+// Divides the triangles into cells, so that certificates treat all triangles of a cell alike. A cell lies in
+// one cluster of the first clusters. Where that leaves enough triangles, it also lies in one of the second
+// clusters, and either all its triangles are inside that cluster or none is.
 std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const CuttingClusters& clusters,
                                               std::size_t least) {
   const std::vector<bool> all = inside(mesh, clusters.second);
@@ -59,7 +60,7 @@ Patch make_patch(const TriangleMesh& mesh, const Triangles& triangles, std::size
   return patch;
 }
 
-// The patches of one or several cells with their centre.
+// The patches of one or several cells, with their centre.
 struct Item {
   std::vector<std::size_t> patches;
   Vec3 centre = Vec3::Zero();
@@ -71,7 +72,7 @@ class TreeBuilder {
               const std::vector<Vec3>& centre, PatchTree& tree)
       : patches_(patches), triangles_(triangles), centre_(centre), tree_(tree) {}
 
-  // Over clusters of the first cover, below over the cells of each, below over patches.
+  // Builds the tree over the first clusters, below them over the cells of each, and below those over patches.
   void build(std::size_t count, const std::vector<std::int32_t>& cluster,
              const std::vector<std::int32_t>& cell) {
     std::vector<std::size_t> all(count);

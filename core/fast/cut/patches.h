@@ -12,15 +12,15 @@
 
 namespace cscd::fast {
 
-// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
-// All belong to one cluster in each cover, or to none.
+// A patch is up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them fit into
+// few registers. All its triangles belong to one cluster in each cover, or to none.
 struct alignas(64) Patch {
-  std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
-  std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
-  std::array<std::int32_t, kCovers> cluster;  // in each cover
-  Mask16 lanes;                               // those that are triangles
+  std::array<std::int32_t, kLanes16> vertex;  // a patch with fewer vertices repeats its last one
+  std::array<Places16, 3> corner;             // the corners of each triangle, as places in `vertex`
+  std::array<std::int32_t, kCovers> cluster;  // its cluster in each cover, or kNone
+  Mask16 lanes;                               // the lanes that hold a triangle
 
-  // Places of the corners of some of its triangles.
+  // Returns the places of the corners of some of its triangles.
   Mask16 corners_of(unsigned triangles) const {
     unsigned places = 0;
     for_each_lane(triangles, [&](std::size_t lane) {
@@ -31,20 +31,20 @@ struct alignas(64) Patch {
 };
 static_assert(sizeof(Patch) == 2 * 64);
 
-// Which triangles of another patch have each vertex of this one.
+// Says which triangles of another patch have each vertex of this patch.
 struct Common {
   std::array<Mask16, kLanes16> at;
 
-  // Triangles that have a corner of one triangle of this patch.
+  // Returns the triangles of the other patch that share a corner with one triangle of this patch.
   Mask16 beside(const Patch& patch, std::size_t lane) const {
     return static_cast<Mask16>(at[patch.corner[0][lane]] | at[patch.corner[1][lane]] |
                                at[patch.corner[2][lane]]);
   }
 
-  // Triangles that have one of the vertices at some places. All places at once: which of them are asked for
-  // no processor foresees.
+  // Returns the triangles of the other patch that have one of the vertices at some places. All places are
+  // treated at once, because no processor foresees which of them are asked for.
   Mask16 lanes(Mask16 places) const { return any_of(((Rows{} + places) & kPlace) != 0 ? rows() : Rows{}); }
-  // Places of the vertices that some of the triangles have.
+  // Returns the places of the vertices that some triangles of the other patch have.
   Mask16 places(Mask16 lanes) const { return any_of((rows() & lanes) != 0 ? kPlace : Rows{}); }
 
  private:
@@ -65,37 +65,40 @@ struct Common {
   }
 };
 
-// The surface cut into patches, and a binary tree over them, built once in the reference pose. The children
-// of a node stand side by side and after it.
+// The surface cut into patches, and a binary tree over the patches, built once in the reference pose. The two
+// children of a node stand side by side, after the node.
 struct PatchTree {
   struct Node {
-    std::int32_t child;  // inner node: its left child, before the right one; leaf: ~patch
+    std::int32_t child;  // an inner node's left child, with the right one behind it; ~patch for a leaf
     bool is_leaf() const { return child < 0; }
     std::size_t patch() const { return static_cast<std::size_t>(~child); }
     std::size_t left() const { return static_cast<std::size_t>(child); }
     std::size_t right() const { return left() + 1; }
   };
   std::vector<Node> nodes;
-  std::vector<std::int32_t> leaf;   // node of each patch
-  std::vector<std::int32_t> inner;  // the other nodes, ascending: children after their parents
+  std::vector<std::int32_t> leaf;   // [patches]: the leaf of each patch
+  std::vector<std::int32_t> inner;  // the inner nodes, ascending, so that children come after their parents
   std::vector<Patch> patches;
-  // Of each patch; a short one repeats its last. Apart, as few patches are asked for them in an interval.
+  // [patches]: the triangles of each patch; a patch with fewer than sixteen repeats its last one. They are
+  // kept apart from the patches, because an interval asks for the triangles of few patches.
   std::vector<std::array<TriangleId, kLanes16>> triangles;
   std::span<const TriangleId> triangles_of(std::size_t patch) const {
     return std::span(triangles[patch]).first(static_cast<std::size_t>(std::bit_width(patches[patch].lanes)));
   }
 
-  // Children before their parents. (Not by way of all nodes: which of them are leaves no processor foresees.)
+  // Visits the inner nodes, children before their parents. Walking through all nodes instead would cost a
+  // branch a node that no processor foresees.
   template <class Take>  // (node, its entry)
   void for_each_inner_upwards(const Take& take) const {
     for (std::size_t i = inner.size(); i-- > 0;)
       take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
   }
 
-  // Of each patch and cover: triangles whose corners' triangles all belong to the patch's cluster.
+  // [patches][covers]: the triangles that lie inside the patch's cluster, so that all triangles round their
+  // corners belong to it.
   std::vector<std::array<Mask16, kCovers>> inside;
 
-  // The patches that touch a patch, itself among them, in compressed rows.
+  // The patches that touch a patch, the patch itself among them, in compressed rows.
   std::vector<std::int32_t> adjacent_offset, adjacent;
   std::vector<Common> common;
   template <class Take>  // (patch, common)
@@ -104,7 +107,7 @@ struct PatchTree {
     for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
       take(static_cast<std::size_t>(adjacent[i]), common[i]);
   }
-  // Null where the two do not touch.
+  // Returns what two patches have in common, or null where they do not touch.
   const Common* common_of(std::size_t p, std::size_t q) const {
     const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
     for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)

@@ -14,13 +14,14 @@
 namespace cscd::fast {
 namespace {
 
-constexpr double kShare = 0.8;        // of a piece's triangles that have to be seen well from one point:
-constexpr double kHalvedUntil = 0.5;  // cosines between ray and normal that are well enough not to halve,
-constexpr double kMergedUntil = 0.3;  // and to merge
-constexpr std::size_t kSmall = 100;   // triangles of a piece, and
-constexpr std::size_t kMany = 500;    // pieces at most by which a surface is judged too large for that
-constexpr std::size_t kSample = 512;  // triangles of a piece at most that are looked at
-constexpr int kStraightened = 3;      // times
+constexpr double kShare = 0.8;  // this share of a piece's triangles has to be seen well from one point, at a
+constexpr double kHalvedUntil =
+    0.5;  // cosine between ray and normal of at least this, or the piece is halved,
+constexpr double kMergedUntil = 0.3;  // and of this for pieces to be merged
+constexpr std::size_t kSmall = 100;   // a piece of fewer triangles is not halved,
+constexpr std::size_t kMany = 500;    // nor is one of less than this fraction of the surface
+constexpr std::size_t kSample = 512;  // at most so many triangles of a piece are looked at
+constexpr int kStraightened = 3;      // the number of times that seams are straightened
 
 using Triangles = std::vector<TriangleId>;
 using Pair = std::pair<std::int32_t, std::int32_t>;
@@ -36,7 +37,7 @@ class Pieces {
     }
   }
 
-  // Halves along the length, until enough of each piece is seen well or it is small.
+  // Halves pieces along their length, until enough of each piece is seen well or it is small.
   void halve() {
     std::vector<Triangles> open = members();
     auto count = static_cast<std::int32_t>(open.size());
@@ -52,18 +53,19 @@ class Pieces {
       std::array<Triangles, 2> halves;
       for (std::size_t i = 0; i < piece.size(); ++i)
         halves[path_[+piece[i]] < to_one[i] ? 1 : 0].push_back(piece[i]);
-      if (halves[0].empty() || halves[1].empty()) continue;  // of no extent
+      if (halves[0].empty() || halves[1].empty()) continue;  // the piece has no extent
       for (const TriangleId t : halves[1]) piece_[+t] = count;
       ++count;
       for (Triangles& half : halves) open.push_back(std::move(half));
     }
   }
 
-  // Merges neighbours while enough of both is seen well from one point: first those with the longest seam
-  // for their size. Halves of a limb become rings again, and a hub with stumps of many limbs one piece.
+  // Merges neighbours while enough of both is seen well from one point, first those with the longest seam for
+  // their size. Halves of a limb become rings again, and a hub with the stumps of many limbs becomes one
+  // piece.
   void merge() {
     std::vector<Triangles> members = this->members();
-    std::map<Pair, std::size_t> seams;  // in edges
+    std::map<Pair, std::size_t> seams;  // lengths in edges
     std::vector<std::size_t> border(members.size());
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) {
       ++seams[std::minmax(piece_[+a], piece_[+b])];
@@ -156,8 +158,9 @@ class Pieces {
                              [&](TriangleId a, TriangleId b) { return path_[+a] < path_[+b]; });
   }
 
-  // Lengths of shortest paths from the seeds, over neighbours in the same piece; or over all, which then
-  // belong to the piece of their seed. Takes the triangles that can be reached.
+  // Computes the lengths of shortest paths from the seeds. `reached` are the triangles that can be reached.
+  // Without `take`, paths stay within one piece. With `take`, they go over all of these triangles, which then
+  // belong to the piece of their seed.
   void flood(const Triangles& reached, const Triangles& seeds, bool take) {
     for (const TriangleId t : reached) path_[+t] = std::numeric_limits<double>::infinity();
     using Step = std::pair<double, TriangleId>;
@@ -185,8 +188,8 @@ class Pieces {
   const TriangleMesh& mesh_;
   Triangles all_;
   std::vector<Face> faces_;
-  std::vector<std::int32_t> piece_;  // of each triangle
-  std::vector<double> path_;         // length of the shortest path to each triangle, of the last flood
+  std::vector<std::int32_t> piece_;  // [triangles]: the piece of each
+  std::vector<double> path_;         // [triangles]: length of the shortest path in the last flood
 };
 
 }  // namespace

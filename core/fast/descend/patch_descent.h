@@ -16,24 +16,26 @@
 
 namespace cscd::fast {
 
-// Two nodes of a tree over patches: all pairs of triangles, one below each; the same twice: pairs below it.
+// Two nodes of a tree over patches stand for all pairs of triangles with one triangle below each; one node
+// given twice stands for all pairs below it.
 struct NodePair {
   std::size_t a, b;
 };
 
-// What descents of one interval read, several at a time.
+// What the descents of one interval read, several of them at a time.
 struct DescentInput {
   const PatchTree& tree;
   const LocalPositions& positions;
   const Certificates& certificates;
-  const Stars* stars;  // null: none
+  const Stars* stars;  // null: without stars
   bool time_linear;
-  bool planes;  // whether pairs are parted by them
+  bool planes;  // whether planes of triangles are asked
 };
 
-// What an interval makes of few patches, when it is asked for: of the last of them, as a descent stays near
-// where it is. What it meets again later is made anew, which takes less time than to write and read memory
-// that others have driven from the caches.
+// A cache of results per patch that are computed on demand, because an interval needs them for few patches.
+// It holds the results of the last patches alone, as a descent stays near where it is. A patch that the
+// descent meets again later is computed again, which takes less time than writing and reading memory that
+// others have driven from the caches.
 template <class T>
 class OnDemand {
   static_assert(std::is_trivially_destructible_v<T>);
@@ -43,7 +45,8 @@ class OnDemand {
   void start_interval() {
     for (std::int32_t& patch : patch_) forget(patch);
   }
-  // The next that is made may take the place of the reference.
+  // Returns the result of a patch, and computes it with `make` if it is not held. The reference is valid
+  // until the next call, which may evict it.
   template <class Make>
   const T& of(std::size_t patch, const Make& make) {
     std::int32_t& at = at_[patch];
@@ -51,42 +54,45 @@ class OnDemand {
       forget(patch_[next_]);
       patch_[next_] = static_cast<std::int32_t>(patch);
       at = static_cast<std::int32_t>(next_);
-      ::new (&made_[next_]) T(make());  // in place: they are large
+      ::new (&made_[next_]) T(make());  // in place, because results are large
       next_ = (next_ + 1) % kMost;
     }
     return made_[static_cast<std::size_t>(at)];
   }
 
  private:
-  static constexpr std::size_t kMost = 64;  // fit the second cache, and so many are seldom made anew
+  static constexpr std::size_t kMost =
+      64;  // these fit the second-level cache, and few results are computed twice
 
   void forget(std::int32_t& patch) {
     if (patch != kNone) at_[static_cast<std::size_t>(patch)] = kNone;
     patch = kNone;
   }
 
-  std::vector<std::int32_t> at_;  // of each patch: where among those made
+  std::vector<std::int32_t> at_;  // [patches]: where its result is held, or kNone
   std::vector<T> made_;
-  std::vector<std::int32_t> patch_;  // of which each is
+  std::vector<std::int32_t> patch_;  // [kMost]: the patch of each result, or kNone
   std::size_t next_ = 0;
 };
 
-// The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
-// triangles, and which stars are flat. It meets what no cover certifies.
-class alignas(64) PatchDescent {  // no cache line with another thread's
+// The descent over the tree of patches. It passes on the pairs of triangles that no cover certifies and that
+// bounds, stars and planes do not prove apart. Bounds of triangles, and which stars are flat, are computed on
+// demand.
+class alignas(64) PatchDescent {  // aligned so that no cache line is shared with another thread's descent
  public:
   // What `input` names must outlive the descent.
   explicit PatchDescent(const DescentInput& input);
 
-  // `bounds`, of each node in steps of `grid`, must stay until the last descent of the interval.
+  // `bounds`, [nodes] in steps of `grid`, must stay until the last descent of the interval.
   void start_interval(std::span<const NodeBounds> bounds, const Grid& grid);
-  // Passes on what is not proven apart.
+  // Passes on the pairs of triangles below two nodes that are not proven apart.
   void descend(NodePair at, TrianglePairSink& sink);
-  // Whether there are nodes below one of the two.
+  // Whether one of the two nodes has children.
   bool can_split(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
-  // Appends the pairs of nodes into which a descent from two that can be opened falls apart, in its order.
+  // Appends the pairs of nodes into which a descent from two nodes that can be split falls apart, in the
+  // order of the descent.
   void split(NodePair at, std::vector<NodePair>& below);
-  // Overlap tests in this interval.
+  // The number of overlap tests in this interval so far.
   std::uint64_t tests() const { return tests_; }
 
  private:
@@ -118,10 +124,10 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   const std::span<const Patch> patches_;
   std::span<const NodeBounds> bounds_;
   Grid grid_{1};
-  std::vector<Star> star_;  // of each vertex
+  std::vector<Star> star_;  // [vertices]: what is known of its star
   OnDemand<TriangleBounds> triangle_bounds_;
   TrianglePairSink* sink_ = nullptr;
-  // Pairs that wait until planes are asked about sixteen. Behind them stand those of before.
+  // Pairs that wait until there are sixteen to ask planes about. Behind them stand pairs of earlier rounds.
   std::array<TrianglePair, kLanes16> waiting_{};
   PairLanes waiting_vertices_;
   std::size_t waiting_count_ = 0;

@@ -7,16 +7,17 @@
 
 namespace cscd::fast {
 
-// The descent of one interval by a team: opened to pairs of nodes, in the order of the descent, ranges of
-// which are shared out. Each thread has its own scratch, each range its own list of pairs; the lists are
-// joined in order, so the sink sees the same pairs in the same order, and the counters are the same, however
-// many threads there are.
+// The descent of one interval by a team of threads. The descent from the root is split into pairs of nodes,
+// in the order of the descent, and ranges of these are shared out. Each thread has its own scratch memory,
+// and each range its own list of pairs of triangles. The lists are joined in order, so the sink sees the same
+// pairs in the same order, and the counters are the same, for any number of threads.
 class SharedDescent {
  public:
-  // What `input` names, and the team, must outlive the descent.
+  // Whatever `input` refers to, and the team, must outlive the descent.
   SharedDescent(const DescentInput& input, const Team& team);
 
-  // Returns the number of overlap tests. `bounds`, of each node, are in steps of `grid`.
+  // Runs the descent of one interval and returns the number of overlap tests. `bounds`, [nodes], are in steps
+  // of `grid`.
   std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink);
 
  private:
@@ -37,9 +38,9 @@ class SharedDescent {
   const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
-  std::deque<KeptPairs> kept_;  // of each range
+  std::deque<KeptPairs> kept_;  // [ranges]: the pairs that a range passed on
   std::vector<NodePair> subtrees_, next_;
-  std::uint64_t tests_ = 0;  // of the last interval
+  std::uint64_t tests_ = 0;  // overlap tests of the last interval
 };
 
 }  // namespace cscd::fast

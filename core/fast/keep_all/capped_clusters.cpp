@@ -6,7 +6,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr int kFewUncertain = 4;  // triangles of a cap
+constexpr int kFewUncertain = 4;  // the largest number of triangles of a cap that get a cone each
 
 }  // namespace
 
@@ -16,7 +16,7 @@ CappedClusters::CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> r
       caps_(caps_of(mesh, reference, cover)),
       target_(cover.observers.size()),
       state_(target_.size()) {
-  // The triangle that is seen largest: its neighbours are far from the middle of it.
+  // The ray goes through the triangle that is seen largest, because its neighbours are far from its middle.
   std::vector<Vec3> from;
   for (const FollowingPoint& observer : cover.observers) from.push_back(observer.at(reference));
   std::vector<double> largest(target_.size(), -std::numeric_limits<double>::infinity());
@@ -51,7 +51,8 @@ void CappedClusters::start(const LocalPositions& positions, std::span<const View
   for (const Cap& cap : caps_) take(cap);
 }
 
-// Where many triangles of a cap are not positive, one cone about its loop says it better.
+// Where many triangles of a cap are not positive, one cone about the whole loop is narrower than their cones
+// together.
 void CappedClusters::take(const Cap& cap) {
   const Viewpoint &from = viewpoints_[cap.cluster], towards = placed(cap.towards, positions_->records());
   State& state = state_[cap.cluster];

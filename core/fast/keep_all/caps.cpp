@@ -8,12 +8,12 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kFollowed = 8;  // vertices at most that an apex follows
+constexpr std::size_t kFollowed = 8;  // the largest number of vertices that an apex follows
 
-using Loop = std::vector<VertexId>;  // each before the next, the last before the first
+using Loop = std::vector<VertexId>;  // each vertex comes before the next, and the last before the first
 
-// The edges of a cluster's contour as its triangles go along them, chained to loops. Where several pass
-// through one vertex, which of them are chained to which does not matter.
+// Chains the edges of a cluster's contour, in the direction of its triangles, to loops. Where several edges
+// pass through one vertex, it does not matter which of them are chained to which.
 std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
   std::vector<Loop> loops;
   while (!edges.empty()) {
@@ -38,9 +38,9 @@ FollowingPoint middle(const Loop& loop) {
   return point;
 }
 
-// A fan over a loop about an apex, and below it triangles that cut off vertices which would make the fan
-// turn back. Of two that are seen in the wrong order the one farther from the apex is cut off, as then the
-// triangle that does so mostly fills a notch of the cluster and is positive.
+// Builds a fan over a loop about an apex, and below it triangles that cut off vertices at which the fan would
+// turn back. Of two vertices that are seen in the wrong order the one farther from the apex is cut off: the
+// triangle that cuts it off mostly fills a notch of the cluster, and is then positive.
 class Fan {
  public:
   Fan(const Loop& loop, std::span<const Vec3> positions, const Vec3& from, const Vec3& apex) : loop_(loop) {
@@ -73,7 +73,8 @@ class Fan {
   // The loop goes round the axis clockwise.
   bool in_order(std::size_t i) const {
     const auto &a = seen_[next_[i]], &b = seen_[i];
-    const double wanted = std::numbers::pi / 2 / static_cast<double>(loop_.size());  // a quarter of the mean
+    const double wanted =
+        std::numbers::pi / 2 / static_cast<double>(loop_.size());  // a quarter of the mean angle
     return a.x() * b.y() - a.y() * b.x() > wanted * a.norm() * b.norm();
   }
   void cut_off() {
@@ -105,7 +106,7 @@ class Fan {
   std::vector<Triangle> cut_;
 };
 
-// Sixteen triangles or vertices, with the apex, in each.
+// Collects at most sixteen triangles with at most sixteen vertices, the apex among them, into each patch.
 std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
   constexpr std::uint8_t kApexPlace = kLanes16 - 1;
   std::vector<Patch> patches;
@@ -131,7 +132,7 @@ std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
         place = kApexPlace;
       else if (place == vertices.size())
         vertices.push_back(t[k]);
-      // What follows repeats the last.
+      // Lanes behind the last triangle repeat it.
       for (std::size_t l = lane; l < kLanes16; ++l) patch.corner[k][l] = static_cast<std::uint8_t>(place);
     }
     for (std::size_t i = 0; i < kLanes16; ++i)
@@ -142,7 +143,7 @@ std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
   return patches;
 }
 
-// How many triangles of a fan about that apex are seen from behind.
+// Counts the triangles of a fan about an apex that are seen from behind.
 std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const Vec3& from,
                         const Vec3& apex) {
   std::ptrdiff_t count = 0;
@@ -153,7 +154,7 @@ std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const
   return count;
 }
 
-// `all`: vertices of the cluster.
+// Chooses the apex of a loop. `all` are the vertices of the cluster.
 Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const Vec3> reference,
         const Vec3& from) {
   Cap best{};
@@ -175,8 +176,8 @@ Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const 
 }  // namespace
 
 std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover) {
-  // Of each cluster: how much more often its triangles go along an edge from its first end than from its
-  // second. That is 0 inside, and whatever is left is a sum of loops, on any surface.
+  // For each cluster: how much more often its triangles go along an edge from its first end than from its
+  // second. That is 0 inside a cluster, and whatever is left is a sum of loops, on any surface.
   std::map<std::int32_t, std::map<std::pair<VertexId, VertexId>, int>> passed;
   std::map<std::int32_t, Loop> vertices;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {

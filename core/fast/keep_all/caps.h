@@ -8,17 +8,18 @@
 
 namespace cscd::fast {
 
-// Closes one loop of a cluster's contour: a fan of triangles about a point.
+// A cap closes one loop of a cluster's contour by a fan of triangles about a point, its apex.
 struct Cap {
   std::size_t cluster;
-  FollowingPoint towards;  // the apex: this point, or one as far on the other side of the observer
+  FollowingPoint towards;  // the apex, or its mirror image in the observer if `opposite`
   bool opposite;
-  // Corners of at most sixteen triangles each; the last vertex stands for the apex. No triangles of the
-  // mesh, no cover.
+  // The triangles of the fan, at most sixteen in each patch. The last vertex of a patch stands for the apex.
+  // These are no triangles of the mesh and belong to no cover.
   std::vector<Patch> fans;
 };
 
-// Cluster and caps together have no boundary: every edge is passed as often in one direction as in the other.
+// Returns the caps of all clusters of a cover, built in the reference pose. A cluster and its caps together
+// have no boundary: every edge is passed as often in one direction as in the other.
 std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover);
 
 }  // namespace cscd::fast

@@ -11,15 +11,15 @@ namespace {
 
 constexpr float kRounding = 4e-6F;
 constexpr float kLeastCosine = 0.1F;
-constexpr float kLeastLength = 100;  // in errors
+constexpr float kLeastLength = 100;  // in units of the error
 
 Float16 dot(const Float16 (&a)[3], const Float16 (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 struct Directions {
-  PatchLanes to;     // each vertex, of unit length
-  Float16 nearness;  // the reciprocal of the shorter distance
+  PatchLanes to;     // the direction to each vertex, of unit length
+  Float16 nearness;  // the reciprocal of the shorter of the distances at both ends
 };
 Directions directions(const PatchLanes& lanes, const Viewpoint& viewpoint) {
   Directions out;
@@ -59,7 +59,7 @@ Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& vie
     }
   }
   cones.sine = square_root((1 - cones.cosine) * (1 + cones.cosine));
-  // Not a number where an axis vanishes: that compares as false.
+  // This is not a number where an axis vanishes, and then compares as false.
   cones.known &= above(cones.cosine, all_lanes(kLeastCosine));
   return cones;
 }
@@ -76,7 +76,7 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
     for (std::size_t l = 0; l < kLanes16; ++l) cone.axis[i] += sum[i][l];
     square += cone.axis[i] * cone.axis[i];
   }
-  if (!(square > 0)) return std::nullopt;  // nor where it is not a number
+  if (!(square > 0)) return std::nullopt;  // this is true for what is not a number, too
   for (float& component : cone.axis) component /= std::sqrt(square);
   cone.cosine = 1;
   for (const PatchLanes& some : lanes) {
@@ -97,7 +97,7 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
 Mask16 apart(const Cones& cones, const Cone& other) {
   const Float16 between =
       cones.axis[0] * other.axis[0] + cones.axis[1] * other.axis[1] + cones.axis[2] * other.axis[2];
-  // Angles below a right one each, so that the sum of both is one that a cosine tells.
+  // Both angles are below a right angle, so their sum is one that a cosine tells.
   const Float16 together = cones.cosine * other.cosine - cones.sine * other.sine;
   return above(together - kRounding, between) & cones.known;
 }

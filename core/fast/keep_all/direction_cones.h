@@ -8,14 +8,14 @@
 // Cones of directions in which a moving viewpoint sees something during an interval.
 namespace cscd::fast {
 
-// Half-angle less than a right angle, so that it is convex: what has its corners in it at both ends of the
-// interval lies in it at every t, and the viewpoint is no point of it.
+// A cone has a half-angle below a right angle, so it is convex: a triangle whose corners lie in the cone at
+// both ends of the interval lies in it at every t. The viewpoint is then no point of the triangle.
 struct Cone {
   float axis[3];  // of unit length, up to rounding
   float cosine, sine;
 };
 
-// Cones of sixteen triangles. Lanes that are not known have none.
+// The cones of sixteen triangles. A lane that is not known has no cone.
 struct Cones {
   Float16 axis[3], cosine, sine;
   Mask16 known;
@@ -25,13 +25,13 @@ struct Cones {
   }
 };
 
-// `error`: of every coordinate but the viewpoint's.
+// Returns the cones of a patch's triangles. `error` bounds the error of every coordinate but the viewpoint's.
 Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error);
 
-// One cone of the corners of all of them, at both ends; none where they are too far apart.
+// Returns one cone that holds all corners at both ends, or nothing where they are too far apart.
 std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& viewpoint, float error);
 
-// Lanes whose cone certainly has no direction in common with the other.
+// Returns the lanes whose cone certainly has no direction in common with the other cone.
 Mask16 apart(const Cones& cones, const Cone& other);
 
 }  // namespace cscd::fast

@@ -15,7 +15,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr float kLeastError = 1e-15F;  // whose square does not underflow
+constexpr float kLeastError = 1e-15F;  // its square does not underflow
 
 Float16 product(const float (&a)[3], const Float16 (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -25,7 +25,7 @@ void cross(const float (&a)[3], const float (&b)[3], float (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-// Zero where squares underflow: such a ray certainly crosses nothing and lies outside of no cone.
+// Returns zero where squares underflow. Such a ray certainly crosses nothing, and lies outside of no cone.
 void normalize(float (&a)[3]) {
   const float length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   for (float& x : a) x = length > kLeastError ? std::clamp(x / length, -1.0F, 1.0F) : 0;

@@ -4,17 +4,18 @@
 
 namespace cscd::fast {
 
-// A half-line from a viewpoint at the start of an interval, and which triangles it crosses.
+// A half-line from a viewpoint at the start of an interval. It tells which triangles it crosses.
 class Ray {
  public:
-  // Through the middle of a triangle, about. `error`: of every coordinate but the viewpoint's.
+  // Goes about through the point `through`, the middle of a triangle. `error` bounds the error of every
+  // coordinate but the viewpoint's.
   Ray(const Viewpoint& viewpoint, const float (&through)[3], float error);
 
-  // False is a proof that no triangle with such corners is crossed.
+  // False is a proof that the ray crosses no triangle with such corners.
   bool may_cross(const PatchLanes& lanes) const;
 
-  // Of triangles whose sign towards the viewpoint is positive: those that it certainly crosses inside, and
-  // those that it certainly does not even touch.
+  // For triangles that are positive towards the viewpoint: those that the ray certainly crosses in their
+  // inside, and those that it certainly does not even touch.
   struct Crossed {
     Mask16 certainly, certainly_not;
   };
@@ -24,8 +25,8 @@ class Ray {
 
  private:
   float from_[3];
-  float across_[3], up_[3];  // the ray is where both vanish, along their cross product
-  float along_[3];           // about that, of unit length
+  float across_[3], up_[3];  // the ray is where both products vanish, along their cross product
+  float along_[3];           // about the direction of the ray, of unit length
   float error_;              // of coordinates along `across_` and `up_`
 };
 

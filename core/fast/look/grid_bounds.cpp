@@ -3,7 +3,7 @@
 namespace cscd::fast {
 namespace {
 
-// How far points lie along the directions.
+// The projections of points on the eight directions.
 template <class Lanes>
 void along_directions(const Lanes (&p)[3], Lanes (&out)[kDirections]) {
   out[0] = p[0], out[1] = p[1], out[2] = p[2];
@@ -11,8 +11,9 @@ void along_directions(const Lanes (&p)[3], Lanes (&out)[kDirections]) {
   out[6] = p[0] - p[1], out[7] = p[0] - p[2];
 }
 
-// Without those that lie on one side of [low, high] at both ends. In two steps, axes first: to ask after
-// every direction whether any are left takes longer than the directions that it saves.
+// Removes from the mask the triangles that lie on one side of [low, high] at both ends. Axes are tested
+// first: asking after every direction whether any triangle is left takes longer than the directions that it
+// saves.
 template <class Low, class High>
 [[gnu::always_inline]] inline Mask16 near_range(const TriangleBounds& triangles, Mask16 mask, const Low& low,
                                                 const High& high) {

@@ -10,13 +10,13 @@
 #include "core/geometry/lanes16.h"
 
 // A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
-// is exact (or far below 1e-37), the conversion rounds by 2^-24 of itself: with M the largest result the
+// is exact (or far below 1e-37), and the conversion rounds by 2^-24 of itself. With M the largest result, the
 // error is below 2^-24 (1 + 2^-20) M + 1e-37.
 namespace cscd::fast {
 namespace {
 
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
-constexpr std::size_t kRange = 1024;  // vertices worth another thread
+constexpr std::size_t kRange = 1024;  // the number of vertices that is worth another thread
 
 }  // namespace
 
@@ -38,8 +38,8 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
   error_ = 0x1.00002p-24F * largest + 1e-37F;
 }
 
-// Those of a range of vertices; returns the bits of the largest coordinate's size. Bits order as sizes do,
-// what is no number above all, and have a maximum of one cycle.
+// Converts a range of vertices and returns the bits of the largest coordinate's size. Bits are ordered as the
+// sizes are, with anything that is not a number above all of them, and their maximum takes one cycle.
 std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
   const Vec3 o = motion.start()[0];
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};

@@ -11,12 +11,12 @@
 
 namespace cscd::fast {
 
-// The positions of one interval in float: shifted by the first vertex, scaled by a power of two that makes
-// the reference pose about one unit large. So coordinates far from the origin lose nothing, and neither very
-// small nor very large units underflow or overflow.
+// The positions of one interval as floats. They are shifted by the first vertex and scaled by a power of two
+// that makes the reference pose about one unit large. So coordinates far from the origin lose nothing, and
+// neither very small nor very large units underflow or overflow.
 class LocalPositions {
  public:
-  // One vertex: x, y, z at the start, nothing, x, y, z at the end, nothing.
+  // One vertex: x, y, z at the start and an unused number, then x, y, z at the end and an unused number.
   struct alignas(32) Record {
     float at[8];
   };
@@ -26,9 +26,10 @@ class LocalPositions {
   void update(const Motion& motion, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
-  // Every coordinate is off by at most this much.
+  // A bound on the error of every coordinate, in local units.
   float error() const { return error_; }
-  // False where the motion leaves the range in which errors are known: nothing may be concluded then.
+  // False where the motion leaves the range in which errors are known. Nothing may be concluded from the
+  // positions then.
   bool known() const { return known_; }
 
  private:
@@ -36,7 +37,7 @@ class LocalPositions {
 
   double scale_;
   std::vector<Record> records_;
-  std::vector<std::int32_t> largest_;  // of each range
+  std::vector<std::int32_t> largest_;  // [ranges of vertices]: the bits of the largest coordinate
   float error_ = 0;
   bool known_ = false;
 };

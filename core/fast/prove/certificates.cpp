@@ -5,8 +5,10 @@
 #include <cassert>
 #include <cstring>
 
-// Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
-// exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
+// Nearly all triangles are positive, so the certificates of positive triangles are kept by exception: a
+// triangle that is not positive takes the certificate from all triangles around it. Negative triangles are
+// rare, so a negative triangle looks whether all triangles around it are negative. In the first cover each
+// triangle is certified by itself.
 namespace cscd::fast {
 namespace {
 
@@ -14,7 +16,7 @@ std::uint64_t count(unsigned mask) {
   return static_cast<std::uint64_t>(std::popcount(mask));
 }
 
-constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states looked at
+constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states that are looked at together
 
 }  // namespace
 
@@ -27,7 +29,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       label_(tree.nodes.size(), Label{} + kNone),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
-  // The first cover holds every triangle: `look` takes that for granted.
+  // The first cover holds every triangle; `look` relies on that.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
@@ -45,7 +47,7 @@ void Certificates::use_covers(std::size_t count) {
   forget();
 }
 
-// Nothing is certain of any patch until it is looked at.
+// Forgets everything that was certified.
 void Certificates::forget() {
   std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   std::fill_n(state_.begin(), cell_.size(), State::spoiled);
@@ -103,7 +105,8 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
       single_triangle_signs_[p][c] = {
           static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
           static_cast<Mask16>(patch.lanes & seen[c].negative)};
-  // The first cover holds every triangle. The others are certified unless `finish` finds something around.
+  // The first cover holds every triangle. The other covers certify the patch unless `finish` finds a triangle
+  // around it that is not positive.
   certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive),
                       single_triangle_signs_[p][0].negative};
   for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
@@ -135,11 +138,11 @@ void Certificates::certify_all_round() {
   });
 }
 
-// Of a patch that by itself is not all positive, in all covers but the first, whose triangles go by
-// themselves.
+// A cover other than the first certifies a triangle only if every triangle round its corners is positive too,
+// or every one is negative. This recomputes the certificates of one patch that is not all positive by itself.
 void Certificates::look_round(std::size_t p) {
   const Patch& patch = tree_.patches[p];
-  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
+  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places of vertices in the patch
   unsigned any = 0;
   for (std::size_t c = 1; c < covers_used_; ++c)
     any |= corners[c] = patch.corners_of(single_triangle_signs_[p][c].not_positive);
@@ -196,7 +199,8 @@ void Certificates::label_nodes() {
     counts_.uncertain += count(patch.lanes & ~some);
     if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
-  // Of all inner nodes, though few differ from the last interval's: the descent soon asks for many.
+  // Recompute the labels of all inner nodes, although few have changed: the descent reads most of them soon,
+  // and this pass brings them into the cache.
   tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = left == right ? left : Label{} + kNone;

@@ -11,63 +11,60 @@
 
 namespace cscd::fast {
 
-// What radial views certify in one interval: of every triangle, whether it is positive, or negative, towards
-// the observer of its cluster in the first cover; and of every other cover, whether all triangles at its
-// corners belong to its cluster there and all are positive, or all negative.
+// What the covers certify in one interval. In the first cover, each triangle is certified by itself: whether
+// it is positive, or negative, towards the observer of its cluster. In every other cover a triangle is
+// certified only if all triangles round its corners belong to its cluster and all of them are positive, or
+// all are negative.
 //
-// Two triangles that one cover certifies with one sign need not be looked at. The theorem (soundness
-// contract) asks that one field certifies everything incident to a feature pair that is dropped. A feature
-// is here the least vertex, edge or triangle that holds the point where the two touch, so that a vertex may
-// meet a vertex. A pair of features that touches is dropped only if all pairs of triangles at one and at the
-// other are, and those by covers alone, as bounds, stars and planes drop none that carries a contact. If
-// another cover than the first drops one of them, it certifies all around the corners of both, and so all
-// that is at either feature. If none does, the first drops all of them: any triangle at one feature lies in
-// one cluster with any at the other, and has its sign. (One triangle at both has no area when they touch:
-// it has no sign, so its pairs with the others are not dropped.) Between two covers neither of which looks at
-// what surrounds a triangle that would not hold: each might drop some of the pairs (rule one-field). With
-// capped clusters none of this is needed (capped_clusters.h).
+// Two triangles that one cover certifies with one sign need not be held against each other. Why several
+// covers may do this together, and why the rule for the first cover may be weaker, is the second theorem of
+// core/soundness.md (rule one-field). With capped clusters none of this is needed: those keep all contacts
+// (capped_clusters.h).
 class Certificates {
  public:
-  // With `capped`, one of each cover, no contact is lost whatever the start; without, the first of an
-  // embedded start is kept.
+  // With `capped`, one for each cover, no contact is lost whatever the start. Without, the first contact of
+  // an embedded start is kept. `tree` and `covers` must outlive the certificates.
   Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped = {});
 
-  // From the next interval on looks at the first `count` covers alone, at least one.
+  // Looks from the first `count` covers alone, at least one, from the next interval on.
   void use_covers(std::size_t count);
-  // How often a patch is looked at in an interval, from one cover each.
+  // The number of looks in an interval. A look is the orientation of one patch's triangles towards the
+  // observer of one cover.
   std::size_t looks_per_interval() const;
 
-  // One interval: `start`, then `look` at every patch, in any order and from any thread, then `finish`.
+  // An interval is one call of `start`, then one call of `look` for every patch, in any order and from any
+  // thread, then one call of `finish`.
   void start(const LocalPositions& positions);
   void look(std::size_t patch, const PatchLanes& lanes);
   void finish();
 
-  // Whether no pair of triangles, one below each node, has to be looked at; a == b: no pair below the node.
+  // Whether no triangle below node `a` has to be held against a triangle below node `b`; for a == b, whether
+  // no pair below the node has to be.
   bool skip(std::size_t a, std::size_t b) const {
     const Label both = (label_[a] == label_[b]) & (label_[a] != kNone);
     const auto any = reinterpret_cast<Halves>(both);
     return (any[0] | any[1]) != 0;
   }
-  // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one
-  // of q in the same set.
+  // Sets of triangles of two patches p and q. No triangle of p in one of the sets has to be held against a
+  // triangle of q in the same set.
   struct Shared {
     std::array<Mask16, 2 * kCovers> p, q;
     Mask16 lanes_q;
 
-    // Triangles of patch q that have to be held against triangle `lane` of patch p.
+    // Returns the triangles of patch q that have to be held against triangle `lane` of patch p.
     Mask16 needed(std::size_t lane) const {
       unsigned dropped = 0;
       for (std::size_t s = 0; s < p.size(); ++s) dropped |= p[s] >> lane & 1 ? q[s] : 0U;
       return static_cast<Mask16>(lanes_q & ~dropped);
     }
-    // The same of the patches in turn; `lanes_p`: all triangles of p.
+    // Returns the sets with p and q exchanged; `lanes_p` are all triangles of p.
     Shared turned(Mask16 lanes_p) const { return {q, p, lanes_p}; }
   };
   Shared shared(std::size_t p, std::size_t q) const {
     Shared sets{{}, {}, cell_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
       if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && !capped_.empty()) {
-        // One of both is enough.
+        // One clear triangle of the two is enough.
         sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = cell_[q].lanes;
         sets.p[2 * c + 1] = cell_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
       } else if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
@@ -77,13 +74,13 @@ class Certificates {
       }
     return sets;
   }
-  // Triangles certified by the first cover, and those that no cover certifies.
+  // The numbers of triangles that the first cover certifies, and of those that no cover certifies.
   const RadialCounts& counts() const { return counts_; }
-  // The first cover.
+  // How the first cover saw the surface.
   RadialView view() const;
 
  private:
-  // Cluster and sign of all below a node in each cover, or kNone. All covers in one register.
+  // Cluster and sign of everything below a node in each cover, or kNone, with all covers in one register.
   using Label = std::int32_t __attribute__((vector_size(16)));
   using Halves = std::int64_t __attribute__((vector_size(16)));
   static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
@@ -96,23 +93,24 @@ class Certificates {
   void certify_clear();
   void label_nodes();
 
-  // Most patches are all positive in every cover, from one interval to the next. What is known of them stays.
+  // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
+  // next, and what is certified of them stays as it is.
   enum class State : std::uint8_t {
     usual,
-    unlabelled,  // is usual again
-    spoiled,     // by what is around it
-    seen         // by itself it is not all positive
+    unlabelled,  // became usual again; its label is still that of the last interval
+    spoiled,     // all positive by itself, but not certified because of triangles around it
+    seen         // not all positive by itself
   };
   template <class Take>  // (patch)
   void for_each_unusual(const Take& take) const;
 
-  struct Cell {  // of a patch: what is needed of all of them, together
+  struct Cell {  // [patches]: what is needed of every patch, side by side in memory
     std::array<std::int32_t, kCovers> cluster;
     std::array<Mask16, kCovers> inside;
     Mask16 lanes;
   };
 
-  struct SingleTriangleSigns {  // of triangles by themselves; none where the patch was not seen otherwise
+  struct SingleTriangleSigns {  // signs of triangles by themselves; empty for a patch that is all positive
     Mask16 not_positive, negative;
   };
 
@@ -124,10 +122,11 @@ class Certificates {
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;                            // of each patch
   std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch
-  std::vector<State> state_;  // of each patch; then usual ones up to a whole word
+  std::vector<State> state_;  // [patches], padded with usual ones to a whole word
   std::vector<Label> label_;  // of each node
   std::vector<CappedClusters> capped_;
-  std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
+  std::vector<std::array<bool, kCovers>>
+      crosses_ray_;  // [patches][covers]: whether a triangle of the patch may cross the ray
   RadialCounts counts_;
 };
 

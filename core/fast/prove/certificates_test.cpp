@@ -300,10 +300,10 @@ class FreshBesideUsed {
   Scene& scene_;
 };
 
-// Nothing stays of the intervals before (rule fresh-detector), whether all was positive in them, or negative, or next to
-// nothing. Mutations: what was seen otherwise by itself, what was spoiled, or what it was labelled stays
-// where a patch is usual again; what is above a label stays; nothing is forgotten where the motion leaves the
-// range or other covers are used.
+// Nothing stays of the intervals before (rule fresh-detector), whether all was positive in them, or negative,
+// or next to nothing. Mutations: what was seen otherwise by itself, what was spoiled, or what it was labelled
+// stays where a patch is usual again; what is above a label stays; nothing is forgotten where the motion
+// leaves the range or other covers are used.
 TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
   Scene scene(0.04, 3, 1);
   const Scene other(0.06, 2, 7);

@@ -5,10 +5,10 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles, one a lane.
+// Sixteen triangles, one a lane.
 struct TriangleLanes {
   VectorLanes16 corner[3];
-  Mask16 shared[3];  // where the other one has this corner, too
+  Mask16 shared[3];  // lanes in which the other triangle has this corner too
 };
 
 TriangleLanes load(std::span<const LocalPositions::Record> records, const PairLanes::Vertices& own,
@@ -21,7 +21,7 @@ TriangleLanes load(std::span<const LocalPositions::Record> records, const PairLa
   return triangles;
 }
 
-// Where the plane of one triangle has all of the other on one side.
+// Returns the lanes in which the plane of the first triangle has all of the second on one side.
 Mask16 parted_by_plane(const TriangleLanes& of, const TriangleLanes& other, float error) {
   const VectorLanes16 a = of.corner[1] - of.corner[0], b = of.corner[2] - of.corner[0];
   Float16 normal[3][3];
@@ -34,7 +34,7 @@ Mask16 parted_by_plane(const TriangleLanes& of, const TriangleLanes& other, floa
     const unsigned positive = products.positive(), negative = products.negative();
     above &= positive | other.shared[k];
     below &= negative | other.shared[k];
-    any |= positive | negative;  // of corners that are not shared: the others lie in the plane
+    any |= positive | negative;  // shared corners lie in the plane and do not count
   }
   return static_cast<Mask16>((above | below) & any);
 }

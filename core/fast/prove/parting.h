@@ -7,21 +7,22 @@
 #include "core/fast/look/local_positions.h"
 #include "core/geometry/lanes16.h"
 
-// Pairs that the plane of one of the two triangles parts.
+// Pairs of triangles that the moving plane of one triangle parts.
 //
-// If at every t the corners of a triangle A that B does not have lie strictly on one side of B's plane, and
-// there are any, no feature of A touches one of B that has no vertex in common with it, whatever the start.
-// For a point of a feature of A that lies in that plane lies in what its shared corners span; and B, which
-// has a plane, is no degenerate triangle, so a feature of B meets that only where it has one of these
-// corners, too.
+// Let A and B be triangles, and let A have corners that B does not have. If these corners lie strictly on one
+// side of B's plane at every t, no feature of A touches a feature of B that shares no vertex with it,
+// whatever the start. For a point of A's feature that lies in B's plane lies in the hull of the shared
+// corners. B has a plane, so B is not degenerate, and a feature of B meets that hull only where it has one of
+// these corners itself.
 namespace cscd::fast {
 
-// Sixteen pairs of triangles by their vertices: [corner][lane].
+// Sixteen pairs of triangles by their vertices, [corner][lane].
 struct PairLanes {
   using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;
   Vertices first{}, second{};
 };
-// Pairs of two different triangles that neither plane parts. `error`: of every coordinate.
+// Returns the pairs that neither of the two planes parts. `error` bounds the error of every coordinate. The
+// triangles of a pair have to be different.
 Mask16 not_parted(std::span<const LocalPositions::Record> records, const PairLanes& pairs, float error);
 
 }  // namespace cscd::fast

@@ -74,8 +74,8 @@ TEST(Parting, NoPairThatTouchesIsParted) {
   for (const std::size_t count : by_shared) EXPECT_GT(count, 1000u);
 }
 
-// Rule certain-sign: corners on whole numbers, so that many lie exactly in the plane of another triangle; in every other
-// round so far from the first vertex that the numbers round. Mutation: no bound on rounding.
+// Rule certain-sign: corners on whole numbers, so that many lie exactly in the plane of another triangle; in
+// every other round so far from the first vertex that the numbers round. Mutation: no bound on rounding.
 TEST(Parting, RuleCertainSignWhatTouchesExactlyIsNotParted) {
   std::mt19937 random(5);
   std::size_t met = 0, apart = 0;

@@ -26,7 +26,7 @@ float sum(Float16 v) {
   return folded(v, [](auto a, auto b) { return a + b; });
 }
 
-// Of rings that are repeated over all lanes: the lane of the vertex after each, by length of the ring.
+// For rings that are repeated over all lanes: the lane of the vertex after each, by the length of the ring.
 constexpr std::array<Places16, kLanes16 + 1> kNext = [] {
   std::array<Places16, kLanes16 + 1> next{};
   for (std::size_t count = 1; count <= kLanes16; ++count)
@@ -35,12 +35,13 @@ constexpr std::array<Places16, kLanes16 + 1> kNext = [] {
   return next;
 }();
 
-// The other corners of a triangle at a vertex, in the triangle's order.
+// Returns the other two corners of a triangle at a vertex, in the triangle's order.
 struct Ends {
   VertexId second, third;
 };
 
-// The second corners, each triangle's third being the next one's second; empty if not all are one closed fan.
+// Returns the second corners of the triangles, ordered so that each triangle's third corner is the second of
+// the next one; empty if the triangles are not one closed fan.
 std::vector<std::int32_t> ring_of(std::span<const Ends> ends) {
   std::vector<std::int32_t> ring;
   if (ends.empty()) return ring;
@@ -96,7 +97,7 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     }
   Float16 control[3][3];
   cross(a, b, control);
-  // The direction: the mean of the normals about the middle of the interval.
+  // The direction is the mean of the normals, about the middle of the interval.
   Float16 middle[3], squared = {};
   for (std::size_t i = 0; i < 3; ++i) {
     middle[i] = control[0][i] + control[1][i] + control[2][i];
@@ -119,16 +120,16 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
                             above(area, all_lanes(kTiny));
   if (!(largest > 1e-6F) || positive != 0xffffU) return false;
 
-  // The direction in the middle of the first triangle at t = 0. A triangle contains it only if it has a
-  // corner on either side of it.
-  float side[3], steepness = 0;  // the plane through it and `direction`
+  // Take the direction in the middle of the first triangle at t = 0. A triangle contains it only if the
+  // triangle has a corner on either side of it.
+  float side[3], steepness = 0;  // the plane through that direction and `direction`
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     side[i] = direction[j] * (a.at[0][k][0] + b.at[0][k][0]) - direction[k] * (a.at[0][j][0] + b.at[0][j][0]);
     steepness += std::abs(side[i]);
   }
   if (!(steepness > kLeastSide * largest * (longest_a[0] + longest_b[0])))
-    return false;  // it is mostly rounding
+    return false;  // then it is mostly rounding
   const auto from_side = [&](const PatchLanes& edge) {
     return edge.at[0][0] * side[0] + edge.at[0][1] * side[1] + edge.at[0][2] * side[2];
   };

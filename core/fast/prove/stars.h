@@ -8,26 +8,28 @@
 
 namespace cscd::fast {
 
-// Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two
-// triangles of such a star touch nowhere but in what they share, whatever the start: a proof for pairs of
-// adjacent triangles that needs no cluster.
+// The star of a vertex is the set of triangles at the vertex. A star is flat in an interval if it is the
+// graph of a function over some plane at every t. Two triangles of a flat star touch nowhere but in what they
+// share, whatever the start, so flat stars settle pairs of adjacent triangles without any cluster.
 //
-// Why: the star is one closed fan (of others nothing is said). Seen along the plane's normal all its
-// triangles have positive area, so the angles under which they are seen at the vertex sum to a multiple of a
-// full turn, which cannot change as long as they stay positive. At t = 0 some direction lies in one of them
-// alone, hence one turn: their sectors never overlap.
+// Why: the star is one closed fan (nothing is said of other stars). Seen along the normal of the plane, all
+// its triangles have positive area, so the angles under which they are seen at the vertex sum to a whole
+// number of turns, which cannot change as long as the areas stay positive. At t = 0 some direction lies in
+// one triangle alone, so the number is one: the sectors of the triangles never overlap.
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
 
-  // At the vertex, in the interval of these positions. False is no statement.
+  // Whether the star of the vertex is certainly flat in the interval of these positions. False proves
+  // nothing.
   bool flat(VertexId vertex, const LocalPositions& positions) const;
-  // For who is going to ask about most vertices.
+  // Reads everything once from end to end, for a caller who is going to ask about most vertices.
   void bring_near() const;
 
  private:
-  std::vector<std::int32_t> offset_;  // of each vertex, in `ring_`
-  std::vector<std::int32_t> ring_;  // the vertices round it, in the triangles' order; none where it is no fan
+  std::vector<std::int32_t> offset_;  // [vertices]: where the ring of a vertex begins in `ring_`
+  std::vector<std::int32_t>
+      ring_;  // the vertices round each vertex in the order of its triangles; none if they are no closed fan
 };
 
 }  // namespace cscd::fast
