@@ -9,15 +9,15 @@
 
 namespace cscd {
 
-// Parameters of the paper, with its values.
+// The parameters of the paper, with the paper's values.
 struct DrvbcOptions {
-  double gamma =
-      0.05;  // merge while fewer than this share of a candidate's triangles is not positive; 0: never
+  double gamma = 0.05;  // gamma: clusters merge while less than this share of a candidate's triangles is not
+                        // positive; 0: never
   radial::BoneClusterOptions bones{};
   bool relative_boxes = true;
-  // For the ablation.
+  // Rows of the ablation leave one thing out each.
   std::string_view name = "drvbc";  // begins error texts
-  bool cache = true;                // of triangles that were not positive (section 5)
+  bool cache = true;                // keep a cache of triangles that were not positive (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
   radial::SignTest orientation_sign = radial::SignTest::certain;
   PairFilter filter = PairFilter::certain_sign;

@@ -18,20 +18,22 @@ namespace cscd {
 // joint that the first two clusters share.
 //
 // Differences to the text. The order of seeds is a fixed shuffle instead of a random one, so that results
-// depend on the interval alone (rule fresh-detector). The cost D is computed for the seed as well when its observer moves
-// to the joint: the paper looks at the candidate only and may turn any number of the seed's triangles
-// non-positive unnoticed.
+// depend on the interval alone (rule fresh-detector). The cost D is computed for the seed as well when its
+// observer moves to the joint: the paper looks at the candidate only and may turn any number of the seed's
+// triangles non-positive unnoticed.
 class MegaClusters {
  public:
-  // Without `cache` no suspects are kept. With gamma = 0 nothing merges and nothing is tried.
+  // Without `cache` no triangles are remembered from the last interval. With gamma = 0 nothing merges and
+  // nothing is tried.
   MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig, std::vector<radial::ObserverKind> kinds,
                double gamma, bool cache = true);
 
-  // Merges, and writes the class of every triangle towards its mega cluster's observer into the hierarchy.
+  // Merges the clusters of one interval, and writes the class of every triangle towards its mega cluster's
+  // observer into the hierarchy.
   void regrow(const radial::OrientationTable& table, const Rig::Interval& bones,
               radial::ClusterHierarchy& hierarchy);
 
-  // The mega cluster of each atomic cluster.
+  // [atomic clusters]: the mega cluster of each.
   std::span<const std::int32_t> labels() const { return label_; }
   std::size_t count() const { return count_; }
 
@@ -51,11 +53,13 @@ class MegaClusters {
   std::vector<std::size_t> seeds_;
   std::vector<std::int32_t> label_;
   std::size_t count_ = 0;
-  // The paper's cache: members that were not positive in the last interval are looked at first, as they will
-  // probably decide against a merge. Saves work, never changes a decision.
+  // The paper's cache. Members that were not positive in the last interval are looked at first, because they
+  // will probably decide against a merge. The cache saves work and never changes a decision (rule
+  // fresh-detector).
   std::vector<std::vector<std::uint32_t>> suspects_;
-  std::vector<std::size_t> members_;      // of the mega cluster that grows
-  std::vector<std::int32_t> refused_by_;  // the last mega cluster that did not take this one in
+  std::vector<std::size_t> members_;  // members of the mega cluster that is growing
+  std::vector<std::int32_t>
+      refused_by_;  // [atomic clusters]: the last mega cluster that did not take this one in
 };
 
 }  // namespace cscd

@@ -21,7 +21,8 @@ struct AtomicClusters {
   std::vector<std::vector<std::int32_t>> neighbours;  // clusters that share a mesh edge, ascending; symmetric
 };
 
-// One cluster for every bone and component that have triangles in common. Takes one valid bone a triangle.
+// Makes one cluster for every bone and component that have triangles in common. `bone_of` gives one valid
+// bone for each triangle.
 AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle);
 
 }  // namespace cscd::radial

@@ -8,17 +8,18 @@
 
 namespace cscd::radial {
 
-// How the 2014 paper gives triangles to bones (section 4.1), with its values where it gives any.
+// How the 2014 paper gives triangles to bones (section 4.1), with the paper's values where it gives any.
 struct BoneClusterOptions {
-  double theta_degrees = 10;  // rotation trial of the choice of observers
-  int coarsening = 4;         // cells of the distance field, in mean edges (the paper gives none)
-  int smoothing_passes = 5;   // over the mesh, before the field (the paper gives none)
-  bool refinement = true;     // by orientation
+  double theta_degrees = 10;  // the rotation by which observers are tried
+  int coarsening = 4;  // the side of a cell of the distance field, in mean edges (the paper gives no value)
+  int smoothing_passes = 5;  // passes over the mesh before the field (the paper gives no value)
+  bool refinement = true;    // refine clusters by orientation (refinement.h)
 
   double theta() const;  // in radians
 };
 
-// The bone of each triangle: by heat, then refined. Leaves the clock in the stage `decomposition`.
+// Returns the bone of each triangle, [triangles], by heat and then refined. Leaves the clock in the stage
+// `decomposition`.
 std::vector<BoneId> bones_of_triangles(const Setup& setup, const BoneClusterOptions& options,
                                        StageClock& clock);
 

@@ -33,27 +33,28 @@ class ClusterHierarchy {
 
   // The triangles of each atomic cluster in the order in which its classes are kept.
   std::span<const std::vector<TriangleId>> groups() const { return groups_; }
-  // Where the caller writes the orientation classes of one atomic cluster.
+  // Where the caller writes the orientation classes of one atomic cluster, in the order of its triangles.
   std::span<Orientation> classes(std::size_t cluster) {
     return std::span(class_of_leaf_).subspan(first_leaf_[cluster], groups_[cluster].size());
   }
-  // To be called when all classes of the interval stand.
+  // To be called when all classes of the interval have been written.
   RadialCounts finish_classes();
 
-  // Pairs to look at when atomic clusters with the same label act as one. Returns the overlap tests.
+  // Passes on the pairs of triangles that have to be tested when atomic clusters with the same label act as
+  // one cluster. Returns the number of overlap tests.
   CullCounts cull(std::span<const std::int32_t> merged, TrianglePairSink& sink) const;
-  // The same clusters and the classes, by triangle.
+  // How these clusters see the surface, triangle by triangle.
   RadialView view(std::span<const std::int32_t> merged) const;
 
  private:
   const TriangleMesh& mesh_;
   Tree tree_;
   SweptBounds bounds_;
-  std::vector<std::int32_t> cluster_at_;  // of a node: the cluster whose root it is, or -1
+  std::vector<std::int32_t> cluster_at_;  // [nodes]: the cluster whose root the node is, or -1
   std::vector<std::vector<TriangleId>> groups_;
-  std::vector<std::size_t> first_leaf_;  // of each cluster, in tree order
+  std::vector<std::size_t> first_leaf_;  // [clusters]: in tree order
   std::vector<Orientation> class_of_leaf_;
-  std::vector<std::uint8_t> mask_;  // of each node: which classes occur below
+  std::vector<std::uint8_t> mask_;  // [nodes]: which classes occur below
 };
 
 }  // namespace cscd::radial

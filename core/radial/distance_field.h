@@ -23,10 +23,10 @@ struct DistanceField {
     return i + static_cast<std::size_t>(size[0]) * (j + static_cast<std::size_t>(size[1]) * k);
   }
   Vec3 centre(int x, int y, int z) const { return corner + cell * Vec3(x + 0.5, y + 0.5, z + 0.5); }
-  // Bounds how far a point of a cell is from its centre: half the diagonal, rounded up.
+  // A bound on how far a point of a cell is from the cell's centre: half the diagonal, rounded up.
   double half_diagonal() const { return 0.8661 * cell; }
-  // The distance at the centre of the cell that holds the point; off the grid at least one cell, and
-  // positive.
+  // Returns the distance at the centre of the cell that holds the point. Off the grid it is positive and at
+  // least one cell.
   double at(const Vec3& point) const;
 };
 
@@ -42,7 +42,7 @@ DistanceField make_distance_field(const TriangleMesh& mesh, std::span<const Vec3
 // The resolution at which a cell is as long as the mean edge, at least 1: "full resolution".
 int resolution_of_mean_edge(const TriangleMesh& mesh, std::span<const Vec3> positions);
 
-// Does the segment stay inside as far as the grid can tell: is no point of it certainly outside?
+// Whether the segment stays inside as far as the grid can tell: no point of it is certainly outside.
 bool runs_inside(const DistanceField& field, const Vec3& from, const Vec3& to);
 
 }  // namespace cscd::radial

@@ -10,7 +10,7 @@
 
 namespace cscd::radial {
 
-// Takes one bone's weights, one a vertex.
+// Receives the weights of one bone, [vertices].
 using TakeWeights = std::function<void(BoneId bone, const Eigen::Ref<const Eigen::VectorXd>& weights)>;
 
 // Solves for the heat weights of each bone and hands them on in ascending order of the bones; a bone that

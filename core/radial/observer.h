@@ -9,20 +9,21 @@
 
 namespace cscd::radial {
 
-// What a cluster's triangles are viewed from: the centre of its bone, or the bone as a segment.
+// What the triangles of a cluster are viewed from: the centre of its bone, or the bone as a segment.
 enum class ObserverKind { bone_centre, bone_segment };
 
 Observer observer(ObserverKind kind, const Bone& start, const Bone& end);
 
-// The kind with more positive triangles in the reference pose; the centre on a tie, as it costs less. This is
-// how we read the 2013 method, whose text on it could not be had.
+// Chooses the kind of observer with more positive triangles in the reference pose, and the centre on a tie,
+// because it costs less. This is how we read the 2013 method, whose text on it could not be had.
 std::vector<ObserverKind> choose_in_reference_pose(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                                    const Rig& rig, const AtomicClusters& clusters);
 
-// Section 4.2 of the 2014 paper: the kind with more positive triangles on average over four trials, at rest
-// and with the cluster rotated by `theta` radians about x, y and z at the bone's head; the segment on a tie.
-// In a trial the triangles move from the reference pose to the rotated one, the centre with them, and the
-// segment's two ends are given the centre's velocity (the paper's "zero relative velocity").
+// Chooses the kind of observer as section 4.2 of the 2014 paper does: the kind with more positive triangles
+// on average over four trials, at rest and with the cluster rotated by `theta` radians about x, y and z at
+// the bone's head, and the segment on a tie. In a trial the triangles move from the reference pose to the
+// rotated one, the centre moves with them, and the segment's two ends are given the centre's velocity (the
+// paper's "zero relative velocity").
 std::vector<ObserverKind> choose_by_rotation_trial(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                                    const Rig& rig, const AtomicClusters& clusters,
                                                    double theta);

@@ -20,7 +20,8 @@ namespace cscd::radial {
 
 enum class Orientation : std::uint8_t { positive = 1, negative = 2, uncertain = 4 };
 
-// A point, or a segment along which the viewing position slides; the ends move in straight lines.
+// An observer is a point, or a segment along which the viewing position slides. Its ends move in straight
+// lines.
 struct Observer {
   MovingPoint head, tail;
   bool is_segment;
@@ -29,34 +30,35 @@ struct Observer {
   static Observer segment(const MovingPoint& head, const MovingPoint& tail) { return {head, tail, true}; }
 };
 
-// From which corners a triangle is seen from a segment. The paper looks at one arbitrary corner, which proves
-// nothing (rule three-vertices); here to count what that costs and loses.
+// Which corners decide how a triangle is seen from a segment. The paper looks at one arbitrary corner, which
+// proves nothing (rule three-vertices, core/soundness.md); it is here to count what that costs and loses.
 enum class SegmentTest { all_corners, first_corner };
 
-// How the sign of the cubic behind a class is told. The others are there to measure what certainty costs and
-// what it leaves: a plain sign, without its error bound, proves nothing (rule error-bound); `halved` cuts [0, 1] once
-// where the whole is not certain.
+// How the sign of the cubic behind a class is told. `certain` is the proof; the others are there to measure
+// what certainty costs and what it leaves undecided. A plain sign, without its error bound, proves nothing
+// (rule error-bound, core/soundness.md). `halved` cuts [0, 1] once where the whole is not certain.
 enum class SignTest { certain, plain, halved };
 
-// One triangle in double precision, straight from the vertices: the scalar twin of OrientationTable.
+// Classifies one triangle in double precision, straight from its vertices. This is the scalar twin of
+// OrientationTable.
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer,
                         SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
 
-// What the orientation of every triangle needs, gathered once an interval: control vectors of the normal, one
-// corner, and a bound of the normal's rounding. Triangles stand grouped by cluster in blocks of eight lanes,
-// so that an observer is tried on a whole cluster in vector code.
+// Everything that the orientation of a triangle needs, gathered once an interval: the control vectors of its
+// normal, one corner, and a bound on the rounding of the normal. Triangles are grouped by cluster in blocks
+// of eight lanes, so that an observer is tried on a whole cluster in vector code.
 class OrientationTable {
  public:
-  // `groups`: the triangles of each cluster.
+  // `groups` are the triangles of each cluster.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
                    SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
 
   // The vertices of `motion` must stay in place until the last classification of the interval.
   void update(const Motion& motion);
 
-  // Classes of all triangles of one group, in the group's order.
+  // Classifies all triangles of one group, in the group's order.
   void classify(std::size_t group, const Observer& observer, std::span<Orientation> out) const;
-  // The class of one triangle: `member` is its place in the group.
+  // Classifies one triangle; `member` is its place in the group.
   Orientation classify(std::size_t group, std::size_t member, const Observer& observer) const;
 
  private:
@@ -66,15 +68,15 @@ class OrientationTable {
   };
   struct Block {
     NormalLanes normal;
-    VectorLanes corner;  // the first one
+    VectorLanes corner;  // the first corner
   };
   template <class Use>
   void with_signs(const Observer& observer, Use use) const;
 
   SegmentTest test_;
   SignTest sign_;
-  std::vector<std::size_t> first_block_;  // of each group, one more at the end
-  std::vector<TriangleLanes> lanes_;      // of each block; a short one repeats its last triangle
+  std::vector<std::size_t> first_block_;  // [groups + 1]: where the blocks of a group begin
+  std::vector<TriangleLanes> lanes_;      // [blocks]; a block with fewer triangles repeats its last one
   std::vector<Block> blocks_;
   std::optional<Motion> motion_;
 };

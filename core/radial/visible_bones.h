@@ -13,8 +13,8 @@
 
 namespace cscd::radial {
 
-// For each vertex the bones that heat it and their common distance. Compressed rows: those of vertex v are
-// bones[offset[v] .. offset[v + 1]), in ascending order; none for a vertex that sees no bone.
+// The bones that heat each vertex, and their common distance, in compressed rows: the bones of vertex v are
+// bones[offset[v] .. offset[v + 1]), ascending. A vertex that sees no bone has none.
 struct VisibleBones {
   std::vector<std::int32_t> offset;
   std::vector<BoneId> bones;
@@ -26,11 +26,12 @@ struct VisibleBones {
   }
 };
 
-// The distance from a point to a bone; the largest double where it cannot be computed.
+// Returns the distance from a point to a bone, or the largest double where it cannot be computed.
 double distance_to(const Bone& bone, const Vec3& point);
 
-// The nearest bone that a straight line inside the body reaches from the vertex, and those equally near. In a
-// component of the mesh without any such line, every vertex takes its nearest bones unseen.
+// Finds for each vertex the nearest bone that a straight line inside the body reaches, and the bones that are
+// equally near. In a component of the mesh without any such line, every vertex takes its nearest bones
+// unseen.
 VisibleBones find_visible_bones(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                 std::span<const Bone> bones, const DistanceField& field);
 
