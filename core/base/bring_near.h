@@ -5,8 +5,9 @@
 
 namespace cscd {
 
-// Reads each cache line of some memory, so that who soon needs all of it at random need not wait for every
-// line by itself. By loads, not by prefetches: a processor may drop those where it does not know the page.
+// Reads each cache line of some memory, so that a caller who soon needs all of it in random order does not
+// wait for every line by itself. It loads instead of prefetching, because a processor may drop a prefetch
+// where it does not know the page.
 template <class T>
 void bring_near(std::span<const T> items) {
   constexpr std::size_t kLine = 64;

@@ -10,7 +10,7 @@ namespace cscd {
 
 // Where an output goes once symbolic links have been followed.
 struct OutputTarget {
-  std::filesystem::path path;  // of no link; nothing may stand there yet
+  std::filesystem::path path;  // the path behind all links; nothing may stand there yet
   // A character device or a pipe: it is written to as it is, and nothing ever takes its place.
   bool is_stream = false;
 };

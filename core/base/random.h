@@ -7,7 +7,7 @@
 
 namespace cscd {
 
-// Of whatever a preparation draws, so that the same input is always prepared alike.
+// The seed of whatever a preparation draws, so that the same input is always prepared alike.
 inline constexpr unsigned kPreparationSeed = 20140314;
 
 // Fisher-Yates by hand: std::shuffle may differ between standard libraries.

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-// What has to be gone when the process ends in the middle: files and folders that hold unfinished output.
+// Files and folders with unfinished output, which have to be gone when the process ends in the middle.
 namespace cscd {
 
 // Registers a file, or a folder of plain files, as unfinished for as long as this lives. If a signal or the

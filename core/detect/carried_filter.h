@@ -5,9 +5,9 @@
 
 namespace cscd {
 
-// The feature pairs of two triangles that the filter (core/elementary/question/filter.h) cannot prove apart,
-// among those at some places. Six vertices are loaded once; what fifteen pairs need are permutations of
-// registers.
+// Returns the feature pairs of two triangles, among those at some places, that the filter
+// (core/elementary/question/filter.h) cannot prove apart. The six vertices are loaded once; what fifteen
+// pairs need are permutations of registers.
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
 
 }  // namespace cscd

@@ -10,10 +10,10 @@
 
 namespace cscd {
 
-// The feature pairs that two different triangles carry: any vertex against the other triangle, any edge
-// against any edge, unless they share a vertex. They stand at fifteen places, one bit each: 0 to 2 the
-// corners of the first against the second, 3 to 5 those of the second against the first, 6 + 3 i + k edge i
-// of the first against edge k of the second.
+// The feature pairs that two different triangles carry: any vertex against the other triangle and any edge
+// against any edge, unless they share a vertex. They stand at fifteen places, one bit each. Places 0 to 2 are
+// the corners of the first triangle against the second, places 3 to 5 the corners of the second against the
+// first, and place 6 + 3 i + k is edge i of the first against edge k of the second.
 using CarriedPlaces = std::uint16_t;
 inline constexpr CarriedPlaces kAllCarried = 0x7fff;
 CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
@@ -23,7 +23,7 @@ inline FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, s
   return FeaturePair::of(mesh.edges_of(pair.a)[(place - 6) / 3], mesh.edges_of(pair.b)[(place - 6) % 3]);
 }
 
-// Some of them.
+// Visits some of the feature pairs.
 struct CarriedPairs {
   TrianglePair pair;
   CarriedPlaces places;
@@ -33,20 +33,21 @@ void for_each_carried(const TriangleMesh& mesh, const CarriedPairs& some, const 
   for (unsigned rest = some.places; rest != 0; rest &= rest - 1)
     take(carried(mesh, some.pair, static_cast<std::size_t>(std::countr_zero(rest))));
 }
-// All of them.
+// Visits all of them.
 template <class Take>
 void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, const Take& take) {
   for_each_carried(mesh, CarriedPairs{pair, carried_by(mesh.corners(pair.a), mesh.corners(pair.b))}, take);
 }
 
-// For strategies in which not every triangle pair is tested for all that it carries. Whatever it leaves out
-// must be tested for another pair that the same culler passes on, or always (rule any-carrier).
+// For strategies that test a triangle pair for some of the feature pairs that it carries. A feature pair that
+// is left out must be tested for another triangle pair that the same culler passes on, or in every interval
+// (rule any-carrier, core/soundness.md).
 class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;
-  // Appends what the pairs of a block have to be tested for.
+  // Appends the feature pairs that the triangle pairs of a block have to be tested for.
   virtual void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const = 0;
-  // Tested in every interval.
+  // The feature pairs that are tested in every interval.
   virtual std::span<const FeaturePair> always() const = 0;
 };
 

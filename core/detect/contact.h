@@ -11,7 +11,7 @@
 
 namespace cscd {
 
-// A vertex of some triangle and a triangle that does not contain it, or two edges that share no vertex.
+// A feature pair is a vertex and a triangle that does not contain it, or two edges that share no vertex.
 struct FeaturePair {
   enum class Kind : std::uint8_t { vertex_face, edge_edge };
   Kind kind;
@@ -32,14 +32,15 @@ struct FeaturePair {
 Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
            const FeaturePair& pair);
 
-// A feature pair that touches at `time` (earliest), or whose test could not tell (`undecided`).
+// A feature pair that touches, with the earliest time at which it does, or one whose test could not tell
+// (`undecided`).
 struct Contact {
   FeaturePair pair;
   Verdict verdict;  // contact or undecided
   double time;
 };
 
-// What one interval found. Detectors append in any order; `sort` makes it canonical.
+// The contacts of one interval. Detectors append them in any order; `sort` makes the order canonical.
 struct ContactSet {
   std::vector<Contact> contacts;
 
@@ -47,10 +48,11 @@ struct ContactSet {
   void sort();  // by time, then feature pair
 };
 
-// Leaves the contacts of the earliest time, and what is undecided.
+// Keeps the contacts of the earliest time, and everything that is undecided.
 void keep_first(ContactSet& sorted);
 
-// 64-bit FNV-1a over the sorted set (pairs, verdicts and the bits of the times), as 16 hex digits.
+// Returns the 64-bit FNV-1a hash of a sorted set (pairs, verdicts and the bits of the times), as 16 hex
+// digits.
 std::string digest(const ContactSet& sorted);
 
 }  // namespace cscd

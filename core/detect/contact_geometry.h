@@ -9,24 +9,24 @@
 
 namespace cscd {
 
-// How a feature pair touches, in doubles: for people and for contact response. Whether and when it touches is
-// decided elsewhere, exactly.
+// How a feature pair touches, computed in doubles for people and for contact response. Whether and when it
+// touches is decided elsewhere, exactly.
 //
-// A contact has two sides. First: the vertex, or the edge of the pair's `a`. Second: the face, or the edge of
-// `b`.
+// A contact has two sides. The first is the vertex, or the edge `a` of the pair; the second is the face, or
+// the edge `b`.
 struct ContactGeometry {
   Vec3 point;  // on the first feature at the time of contact
-  // Where the contact lies on the features. A vertex and a face: the barycentric weights of the face's three
-  // corners, which sum to 1. Two edges: the share of the way along the first edge and along the second, each
-  // from its end with the smaller index, in [0, 1].
+  // Where the contact lies on the features. For a vertex and a face: the barycentric weights of the face's
+  // three corners, which sum to 1. For two edges: the share of the way along the first edge and along the
+  // second, each from the end with the smaller index, in [0, 1].
   std::array<double, 3> weights{};
   int weight_count = 0;  // 3 or 2
-  // Unit vector from the second feature to the first, that is, towards the side from which the first came.
-  // Absent where the features leave no direction: a face without area, or edges that are parallel or points,
-  // that moreover did not come from different places.
+  // The unit vector from the second feature to the first, towards the side from which the first came. Absent
+  // where the features leave no direction, because the face has no area or the edges are parallel or points,
+  // and where they moreover did not come from different places.
   std::optional<Vec3> normal;
-  // How fast the first feature moves away from the second along the normal, in units of length per interval;
-  // negative where they approach. Absent without a normal.
+  // How fast the first feature moves away from the second along the normal, in lengths per interval; negative
+  // where they approach. Absent without a normal.
   std::optional<double> relative_speed;
 };
 

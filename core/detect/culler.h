@@ -49,10 +49,10 @@ class Culler {
  public:
   virtual ~Culler() = default;
 
-  // Bounds of this interval. Stage `refit`.
+  // Computes the bounds of this interval. Stage `refit`.
   virtual void refit(const Motion& motion) = 0;
-  // Orientation classes and clusters. Stage `rv_update`; returns false where the strategy has no such stage.
-  // `bones` is null for a mesh without a rig.
+  // Computes orientation classes and clusters. Stage `rv_update`; returns false where the strategy has no
+  // such stage. `bones` is null for a mesh without a rig.
   virtual bool classify(const Motion& /*motion*/, const Rig::Interval* /*bones*/) { return false; }
   // Passes every pair that is not proven apart to the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;

@@ -10,10 +10,11 @@
 namespace cscd {
 
 // The feature pairs tested in this interval, so that each is tested once however many triangle pairs carry
-// it. This is rule any-carrier: no triangle owns a feature, the first surviving triangle pair brings it.
+// it. This keeps rule any-carrier (core/soundness.md): no triangle owns a feature, and the first surviving
+// triangle pair brings it.
 //
-// Open addressing with linear probing. An entry carries the interval's number in its top bits, so a new
-// interval forgets the old entries without touching them.
+// The set uses open addressing with linear probing. An entry carries the interval's number in its top bits,
+// so a new interval forgets the old entries without touching them.
 class FeaturePairSet {
  public:
   FeaturePairSet() : slots_(std::size_t{1} << (64 - shift_)) {}
@@ -26,7 +27,7 @@ class FeaturePairSet {
     }
   }
 
-  // True if the pair was not in the set yet.
+  // Adds the pair, and returns whether it was new.
   bool insert(const FeaturePair& pair) {
     if (2 * size_ >= slots_.size()) grow();
     const std::uint64_t entry = key(pair) | epoch_ << kKeyBits;

@@ -7,13 +7,13 @@
 
 namespace cscd {
 
-// Appends to `left` the pairs that the non-penetration filter and directions in a plane cannot prove apart,
-// in order. Eight at a time in vector code; pair by pair it is what never_coplanar and never_meet_in_plane
-// (its scalar twins) say.
+// Appends to `left`, in order, the pairs that the non-penetration filter and directions in a plane cannot
+// prove apart. Eight pairs are treated at a time in vector code; never_coplanar() and never_meet_in_plane()
+// are the scalar twins.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
-// The same of what pairs of triangles carry, all that two of them do at once; in single precision first, if
-// so wished, which is faster and gives the same answer.
+// Does the same for everything that pairs of triangles carry, with all that two triangles carry at once. If
+// so wished, single precision goes first, which is faster and gives the same answer.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left);
 

@@ -10,10 +10,11 @@
 
 namespace cscd {
 
-// Of up to sixteen pairs of triangles, a time before which the two certainly do not touch: 0 where nothing is
-// known, more than 1 where they never do. Along a direction, the gap between them is at least what lies on
-// the straight line between the gaps at both ends. So it is the latest time at which one of these lines meets
-// 0, of three axes, the normals of both triangles at both ends, and the way from one to the other.
+// Returns, for each of up to sixteen pairs of triangles, a time before which the two certainly do not touch:
+// 0 where nothing is known, more than 1 where they never do. Along a direction, the gap between two triangles
+// is at least what lies on the straight line between the gaps at both ends, so they do not touch before that
+// line meets 0. The result is the latest such time over several directions: three axes, the normals of both
+// triangles at both ends, and the way from one triangle to the other.
 std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Motion& motion,
                                               std::span<const TrianglePair> pairs);
 

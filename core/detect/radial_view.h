@@ -5,11 +5,11 @@
 
 namespace cscd {
 
-// For pictures: how a radial strategy saw the surface in the last interval, triangle by triangle. Empty for
-// strategies without observers.
+// How a radial strategy saw the surface in the last interval, [triangles], for pictures. Empty for strategies
+// without observers.
 struct RadialView {
-  std::vector<std::int32_t> cluster;  // those with one label share an observer
-  std::vector<bool> positive;         // certified to be seen from inside throughout
+  std::vector<std::int32_t> cluster;  // triangles with one label share an observer
+  std::vector<bool> positive;         // certified to be seen from behind during the whole interval
 };
 
 }  // namespace cscd

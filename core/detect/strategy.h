@@ -12,9 +12,10 @@
 
 namespace cscd {
 
-// complete: on every input, every feature pair in contact is passed on to the elementary test.
-// first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair
-// that attains the earliest contact time is; later contacts may be missing. heuristic: neither.
+// What a strategy promises (core/soundness.md). `complete`: on every input, every feature pair in contact is
+// passed on to the elementary test. `first_contact`: on a closed, consistently oriented mesh with an embedded
+// start, at least one feature pair that attains the earliest contact time is passed on; later contacts may be
+// missing. `heuristic`: nothing.
 enum class Guarantee { complete, first_contact, heuristic };
 std::string_view to_string(Guarantee guarantee);
 
@@ -24,8 +25,8 @@ struct Setup {
   std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
   const ElementaryTest& elementary;
-  // Threads that answer one interval, the caller's included; at least 1. Strategies that cannot share their
-  // work run on one. Answers and counters do not depend on it.
+  // The number of threads that answer one interval, the caller's included; at least 1. Strategies that cannot
+  // share their work run on one thread. Answers and counters do not depend on the number.
   int threads = 1;
   // For a caller who wants the earliest contact and no others, such as a response that cuts the step there. A
   // triangle pair that certainly does not touch until after the earliest contact found so far is then neither
@@ -39,9 +40,9 @@ struct Setup {
 struct Preparation {
   std::optional<double> distance_and_heat_ms;  // distance field and heat diffusion
   std::optional<double> decomposition_ms;      // clusters from heat weights, observers
-  std::vector<std::int32_t> atomic_cluster;    // of each triangle; empty where there are none
+  std::vector<std::int32_t> atomic_cluster;    // [triangles]; empty for a strategy without clusters
   int atomic_clusters = 0;
-  int threads = 1;  // on which intervals are answered, of those of the setup
+  int threads = 1;  // the number of threads that the strategy makes use of
 };
 
 struct Prepared {
@@ -69,8 +70,8 @@ struct Strategy {
   Guarantee guarantee;
   Needs needs;
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
-  // Rows with a group are timed only where they or their group is named, the others wherever the input allows
-  // it.
+  // A row with a group is run only where the row or its group is named; rows without one are run wherever the
+  // input allows it.
   std::string_view group = "";
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
   Role role = Role::none;

@@ -11,18 +11,18 @@
 
 namespace cscd {
 
-// One interval's judgement of a strategy, against a complete reference, both with an elementary test that is
-// always right. Comparing numbers of contacts would be wrong (rule fair-comparison): a strategy may report fewer
-// where its guarantee allows it.
+// How a strategy did on one interval against a complete reference, both with an elementary test that is
+// always right. Comparing numbers of contacts would be wrong, because a strategy may report fewer where its
+// guarantee allows it (rule fair-comparison, core/soundness.md).
 struct Verification {
   bool ok = true;
   std::string failure;  // empty when ok: which pair is missing or wrong, and at what time
   std::uint64_t reference_contacts = 0;
-  std::uint64_t found_contacts = 0;  // of the reference's
+  std::uint64_t found_contacts = 0;  // contacts of the reference that the strategy found too
 };
 
-// Both sets sorted. `starts_embedded` matters for the guarantee first_contact alone: without it nothing is
-// promised.
+// Judges an answer; both sets have to be sorted. `starts_embedded` matters for the guarantee `first_contact`
+// alone, which promises nothing without it.
 Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
                     bool starts_embedded);
 

@@ -8,11 +8,11 @@
 
 namespace cscd {
 
-// Bounding volume between pairs of parallel planes, one pair a direction. Stored in float, every bound
-// rounded outward from the exact projection.
+// A bounding volume between pairs of parallel planes, one pair for each direction. It is stored in float, and
+// every bound is rounded outward from the exact projection (rule outward-rounding, core/soundness.md).
 //
-// at_least[k] is a lower bound along direction k, at_least[N + k] one along its negative, so that a union is
-// one componentwise minimum.
+// at_least[k] is a lower bound along direction k, and at_least[N + k] is one along its negative, so that a
+// union is one componentwise minimum.
 template <std::size_t N>
 struct alignas(2 * N * sizeof(float)) Slabs {
   static constexpr std::size_t kDirections = N;

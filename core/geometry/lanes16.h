@@ -14,8 +14,8 @@
 
 namespace cscd {
 
-// Sixteen floats side by side. What the vector types of gcc and clang lack stands here for AVX-512, then by
-// halves: one instruction each where there is one, else a loop.
+// Sixteen floats side by side. Operations that the vector types of gcc and clang lack stand here twice, for
+// AVX-512 and by halves: one instruction each where there is one, else a loop.
 inline constexpr std::size_t kLanes16 = 16;
 using Float16 = LanesOf<float>;
 using Float8 = HalfOf<float>;
@@ -31,7 +31,7 @@ inline Float16 all_lanes(float x) {
 }
 
 #ifndef __AVX512F__
-// Where a comparison of a half is true.
+// The lanes in which a comparison of a half is true.
 inline unsigned bits_of(Int8 lanes) {
 #ifdef __AVX2__
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
@@ -49,7 +49,7 @@ inline Float16 absolute(Float16 a) {
   return bits_as<Float16>(bits_as<Int16>(a) & 0x7fffffff);
 }
 
-// a b + c and a b - c, rounded once where that is one instruction, else twice: who bounds rounding has to
+// a b + c and a b - c, rounded once where that is one instruction, else twice. Whoever bounds rounding has to
 // allow for both.
 inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
@@ -70,7 +70,7 @@ inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 #endif
 }
 
-// The larger of both absolute values.
+// Returns the larger of the two absolute values in each lane.
 inline Float16 larger_size(Float16 a, Float16 b) {
 #ifdef __AVX512DQ__
   return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: its sign cleared
@@ -90,7 +90,7 @@ inline Float16 square_root(Float16 v) {
 #endif
 }
 
-// Where a > b.
+// Returns the lanes in which a > b.
 inline Mask16 above(Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
@@ -99,7 +99,7 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
-// Of the lanes in `where`, those where a > b.
+// Returns the lanes among those in `where` in which a > b.
 inline Mask16 above(Mask16 where, Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_mask_cmp_ps_mask(where, a, b, _CMP_GT_OQ);
@@ -108,13 +108,13 @@ inline Mask16 above(Mask16 where, Float16 a, Float16 b) {
 #endif
 }
 
-// Of a mask, the first lane first.
+// Visits the lanes of a mask, the first lane first.
 template <class Take>
 void for_each_lane(unsigned mask, const Take& take) {
   for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
-// Where the numbers are the same.
+// Returns the lanes in which the numbers are the same.
 inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
                     const std::array<std::int32_t, kLanes16>& b) {
 #ifdef __AVX512F__
@@ -127,7 +127,8 @@ inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
 #endif
 }
 
-// All lanes by an operation that takes two vectors of any length, or two numbers: halves first.
+// Combines all lanes by an operation on two vectors of any length, or on two numbers; halves are combined
+// first.
 template <class Operation>
 float folded(Float16 v, const Operation& operation) {
   Float8 eight[2];

@@ -16,7 +16,7 @@ namespace cscd {
 using Short32 = LanesOf<std::int16_t>;
 using Mask32 = std::uint32_t;
 
-// Where a > b.
+// Returns the lanes in which a > b.
 inline Mask32 above(Short32 a, Short32 b) {
 #ifdef __AVX512BW__
   return _mm512_cmpgt_epi16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
@@ -45,7 +45,7 @@ inline Short32 rounded_pairs(Float16 a, Float16 b, float scale) {
   return bits_as<Short32>((low & 0xffff) | (high << 16));
 }
 
-// One pair of v in all.
+// Returns one pair of v in all places.
 inline Short32 all_pairs(const Short32& v, std::size_t pair) {
   std::int32_t number;
   std::memcpy(&number, reinterpret_cast<const char*>(&v) + pair * sizeof number, sizeof number);
@@ -57,13 +57,13 @@ inline Short32 permuted_pairs(Short32 v, const Places16& place) {
   return bits_as<Short32>(permuted(bits_as<Float16>(v), place));  // which moves bits, whatever they are
 }
 
-// Both of each pair exchanged.
+// Exchanges the two numbers of each pair.
 inline Short32 turned_pairs(Short32 v) {
   const auto pairs = bits_as<Int16>(v);
   return bits_as<Short32>((pairs << 16) | ((pairs >> 16) & 0xffff));
 }
 
-// The bits of the first of each pair.
+// Keeps the bits of the first number of each pair.
 inline Mask16 first_of_pairs(Mask32 bits) {
 #ifdef __BMI2__
   return static_cast<Mask16>(_pext_u32(bits, 0x55555555U));
@@ -99,8 +99,8 @@ inline Neighbours neighbours(Short32 a, Short32 b) {
   return all(std::make_integer_sequence<int, 16>{});
 }
 
-// Of eight rows at most 32767 in size: pair r of the result is the smallest pair of row r, pair 8 + r the
-// smallest of its negative, each half by itself.
+// Takes eight rows of numbers at most 32767 in size. Pair r of the result is the smallest pair of row r, and
+// pair 8 + r the smallest of its negative, each half by itself.
 inline Short32 smallest_pairs_of_rows(const Short32 (&row)[8]) {
   Short32 of[8];  // one bit of rows after the other becomes a bit of pairs; the last is set for negatives
 #pragma GCC unroll 4

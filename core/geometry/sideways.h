@@ -4,12 +4,12 @@
 #include "core/geometry/bernstein.h"
 #include "core/geometry/lanes.h"
 
-// Directions along which features that come into one plane stay apart: in that plane at the middle of the
-// interval, across an edge or, of two edges, also across their difference. Along a direction that stays the
-// same, points that move in straight lines keep between their ends, so features that are apart on the same
-// side at both ends are apart throughout.
+// Directions along which features that come into one plane stay apart. They lie in that plane at the middle
+// of the interval, across an edge or, for two edges, also across their difference. Along a direction that
+// stays the same, points that move in straight lines stay between their ends, so features that are apart on
+// the same side at both ends are apart at every t.
 //
-// One text for a query and for eight side by side: with doubles and bools, and with lanes.
+// One text serves a query and eight queries side by side: with doubles and bools, and with lanes.
 namespace cscd {
 
 // Three points seen from a fourth at both ends: [point][end][axis]. Of a vertex and a face: the second and

@@ -36,7 +36,7 @@ inline VectorLanes16 operator-(const VectorLanes16& to, const VectorLanes16& fro
   return out;
 }
 
-// Of each, over both ends and all axes.
+// Returns the largest absolute component of each vector, over both ends and all axes.
 inline Float16 largest_component(const VectorLanes16& v) {
   const auto largest = [&](int end) {
     return larger_size(larger_size(v.at[end][0], v.at[end][1]), v.at[end][2]);
@@ -55,20 +55,20 @@ inline void cross(const VectorLanes16& a, const VectorLanes16& b, Float16 (&cont
   }
 }
 
-// What bounds the rounding, by the reach of the third vector: `apart` + reach `sloped`. `area`: the product
-// of the largest components of the first two.
+// What bounds the rounding, by the reach of the third vector: `apart` + reach * `sloped`. `area` is the
+// product of the largest components of the first two vectors.
 struct Rounding16 {
   static constexpr float kTiny = 1e-30F;
   Float16 area, apart, sloped;
 };
-// `a`, `b`: those largest components.
+// `a` and `b` are those largest components.
 [[gnu::always_inline]] inline Rounding16 rounding_of(Float16 a, Float16 b, float error) {
   a += all_lanes(2 * error), b += all_lanes(2 * error);
   const Float16 area = a * b, errors = all_lanes(12.1F * error);
   return {area, errors * area, product_plus(errors, a + b, all_lanes(68 * 0x1p-24F) * area)};
 }
 
-// The coefficients, the middle two three times, and what they may be off by: the outer and the middle ones.
+// The coefficients, the middle two times three, and bounds on the errors of the outer and of the middle ones.
 struct TripleProducts16 {
   Float16 c[4], bound, bound3;
   Mask16 known;  // where nothing underflows
@@ -90,7 +90,7 @@ struct TripleProducts16 {
     return static_cast<Mask16>(known & some_positive & some_negative);
   }
 };
-// The coefficients of (a x b) . c, of the control vectors of a x b.
+// Computes the coefficients of (a x b) . c from the control vectors of a x b.
 [[gnu::always_inline]] inline void coefficients(const Float16 (&normal)[3][3], const VectorLanes16& third,
                                                 Float16 (&c)[4]) {
   const auto dot = [&](int n, int end) {
@@ -104,7 +104,7 @@ struct TripleProducts16 {
   c[0] = dot(0, 0), c[1] = plus_dot(dot(1, 0), 0, 1), c[2] = plus_dot(dot(1, 1), 2, 0), c[3] = dot(2, 1);
 }
 
-// Coefficients with what they may be off by.
+// Computes the coefficients together with their error bounds.
 [[gnu::always_inline]] inline TripleProducts16 bounded(const Float16 (&c)[4], const VectorLanes16& third,
                                                        const Rounding16& rounding, float error) {
   const Float16 reach = largest_component(third) + all_lanes(2 * error);

@@ -9,8 +9,8 @@
 #include "core/geometry/lanes.h"
 #include "core/mesh/motion.h"
 
-// Eight triple products side by side. Operation for operation what triple_product and certain_sign do, which
-// is their scalar twin: equal bits, equal signs.
+// Eight triple products side by side. They do, operation for operation, what triple_product and certain_sign
+// do, which are the scalar twins: equal bits, equal signs.
 namespace cscd {
 
 // Eight moving vectors: [end][component].

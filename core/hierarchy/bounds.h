@@ -16,7 +16,8 @@ class SweptVolumes {
  public:
   SweptVolumes(const TriangleMesh& mesh, const Tree& tree);
 
-  // Bounds of all vertices' paths, then bottom-up over the tree; O(vertices + triangles), no allocation.
+  // Computes the bounds of all vertices' paths, then of the nodes from the leaves upwards. O(vertices +
+  // triangles); allocates nothing.
   void refit(const Motion& motion);
 
   const Volume& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
@@ -29,7 +30,8 @@ class SweptVolumes {
   struct Inner {
     NodeIndex node, right;
   };
-  // Backwards, so that children come first; by kind, as a branch on it would often be mispredicted.
+  // Backwards, so that children come first. Leaves and inner nodes are treated apart, because a branch on the
+  // kind would often be mispredicted.
   std::vector<Leaf> leaves_;
   std::vector<Inner> inner_;
   std::vector<Volume> vertex_, node_;
@@ -37,12 +39,12 @@ class SweptVolumes {
 using SweptBounds = SweptVolumes<Kdop16>;
 using SweptBoxes = SweptVolumes<Aabb>;
 
-// The bounds of every vertex's path: vectorised over vertices, equal to what kdop_of and aabb_of give (their
-// scalar twins). Only a zero may have the other sign, which no comparison sees.
+// Computes the bounds of every vertex's path, vectorised over vertices. The results equal those of kdop_of
+// and aabb_of, the scalar twins, except that a zero may have the other sign, which no comparison sees.
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out);
 void swept_vertex_bounds(const Motion& motion, std::span<Aabb> out);
 
-// The bounds of every triangle's path, of the bounds of its corners' paths.
+// Computes the bounds of every triangle's path from the bounds of its corners' paths.
 template <class Volume>
 Volume swept_triangle(const Triangle& corner, std::span<const Volume> of_vertex) {
   return united(united(of_vertex[+corner[0]], of_vertex[+corner[1]]), of_vertex[+corner[2]]);

@@ -6,8 +6,8 @@
 
 namespace cscd {
 
-// A box as packages take it: cut off at `farthest`, beyond which they lose it. What overlaps still does when
-// cut off there.
+// Returns the box cut off at `farthest`, beyond which packages lose it. Boxes that overlap still overlap when
+// they are cut off there.
 struct PackageBox {
   float low[3], high[3];
 

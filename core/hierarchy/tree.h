@@ -12,7 +12,7 @@ namespace cscd {
 
 using NodeIndex = std::int32_t;
 
-// Topology of a binary tree over triangles, built once in the reference pose. Nodes stand in depth-first
+// The topology of a binary tree over triangles, built once in the reference pose. Nodes stand in depth-first
 // order: the left child of node n is n + 1, so every subtree is a contiguous range and children follow their
 // parents.
 class Tree {
@@ -34,12 +34,12 @@ class Tree {
   std::vector<NodeIndex> cluster_roots_;
 };
 
-// Median split of triangle centroids along the longest axis of their box (Bridson et al. 2002), one triangle
-// a leaf.
+// Builds a tree by median splits of triangle centroids along the longest axis of their box (Bridson et al.
+// 2002), with one triangle a leaf.
 Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions);
 
-// A local tree for each cluster, and a global one over their roots (Wong et al. 2013, section 6 of the 2014
-// paper). `cluster` holds one label in [0, cluster_count) a triangle; every label occurs.
+// Builds a local tree for each cluster, and a global tree over their roots (Wong et al. 2013; section 6 of
+// the 2014 paper). `cluster`, [triangles], holds labels in [0, cluster_count), each of which occurs.
 Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions,
                 std::span<const std::int32_t> cluster, int cluster_count);
 

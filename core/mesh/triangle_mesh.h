@@ -15,7 +15,7 @@ namespace cscd {
 using Triangle = std::array<VertexId, 3>;  // corners, counter-clockwise seen from outside
 using Edge = std::array<VertexId, 2>;      // ends, smaller index first
 
-// What can be wrong with a surface that is still a list of triangles.
+// The defects that a list of triangles can have as a surface.
 enum class Defect {
   duplicate_triangle,
   non_manifold_edge,

@@ -10,7 +10,8 @@
 
 namespace cscd {
 
-// Do two different triangles meet in these positions, except in the vertices and edges they share? Exact.
+// Whether two different triangles meet in these positions, except in the vertices and edges they share.
+// Exact.
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
 
 // Decides exactly whether a frame is embedded: no two triangles meet except in the vertices and edges they
@@ -21,11 +22,11 @@ class EmbeddingTest {
   // `reference` shapes the tree; any frame will do.
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
-  // Two triangles that meet, or nothing if the frame is embedded.
+  // Returns two triangles that meet, or nothing if the frame is embedded.
   std::optional<CrossingPair> find_intersection(std::span<const Vec3> positions);
   bool embedded(std::span<const Vec3> positions) { return !find_intersection(positions); }
 
-  // All of them are counted; up to `most` are kept.
+  // Counts all pairs that meet, and keeps up to `most` of them.
   Crossings find_all(std::span<const Vec3> positions, std::size_t most);
 
  private:

@@ -11,17 +11,15 @@ namespace cscd {
 
 // The crossing pairs of triangles of a surface in one pose after another.
 //
-// To find them from nothing, every neighbourhood of the surface is tested with exact predicates, which takes
-// many times as long as a query. But two triangles begin or cease to cross only at a moment at which a
-// feature pair that they carry touches: where triangles meet, either a vertex lies on a face, or two edges
-// meet, or an edge pierces a face, and a piercing edge has to leave the face by its own end or across the
-// face's border. (Where triangles share a vertex, that vertex ends the edge it leaves by, and the pair of
-// edges counts.) So whoever knows all feature pairs that touched on the way from a known pose has to look at
-// their carriers alone, and where nothing touched, the same pairs cross as before: in particular, an embedded
-// pose stays embedded.
+// Finding them from nothing tests every neighbourhood of the surface with exact predicates, which takes many
+// times as long as a query. But two triangles begin or cease to cross only at a moment at which a feature
+// pair that they carry touches (theorem "what crosses at a start follows from what touched before it" in
+// core/soundness.md). So a caller who knows all feature pairs that touched on the way from a known pose has
+// to look at their carriers alone. Where nothing touched, the same pairs cross as before: in particular, an
+// embedded pose stays embedded.
 class PoseCrossings {
  public:
-  // `reference` shapes the tree; any frame will do. Of one pose up to `most` pairs are kept.
+  // `reference` shapes the tree; any frame will do. At most `most` pairs are kept for a pose.
   PoseCrossings(const TriangleMesh& mesh, std::span<const Vec3> reference, std::size_t most);
 
   // Whether the crossings of these very positions, bit for bit, are known without work.

@@ -7,15 +7,15 @@
 
 namespace cscd {
 
-// What crosses at rest is how a surface is made, and no collision: eyes in sockets, teeth in gums, clothes in
-// skin. This says which crossings and contacts that explains.
+// Crossings at rest are how a surface is made, and no collision: eyes in sockets, teeth in gums, clothes in
+// skin. This class says which crossings and contacts they explain.
 //
 // A pair of triangles that crosses at rest explains itself. Where the two belong to different components, the
-// line along which they cross shifts by a triangle or two as both bend, so the pair also explains every pair
-// of triangles of which one lies within kRings rings round the first and the other within kRings rings round
-// the second. (The pairs alone, or one ring, leave the teeth of a shark crossing its gums in some frames.)
-// Inside one component only the pairs themselves count, so that a limb that crosses its own crease elsewhere
-// is still told.
+// line along which they cross shifts by a triangle or two as both bend. The pair then also explains every
+// pair of triangles of which one lies within kRings rings round the first and the other within kRings rings
+// round the second. (The pairs alone, or one ring, leave the teeth of a shark crossing its gums in some
+// frames.) Inside one component only the pairs themselves count, so that a limb that crosses its own crease
+// elsewhere is still reported.
 class RestCrossings {
  public:
   static constexpr int kRings = 2;  // a ring: all triangles that share a vertex with those inside
@@ -26,7 +26,7 @@ class RestCrossings {
 
   bool empty() const { return pairs_.pairs.empty(); }
   bool explains(const CrossingPair& pair) const;
-  // Does a pair of triangles that is explained carry the feature pair?
+  // Whether a pair of triangles that is explained carries the feature pair.
   bool explains(const FeaturePair& pair) const;
 
  private:
