@@ -4,7 +4,7 @@
 
 namespace cscd {
 
-// All pairs of triangles: the oracle. Quadratic.
+// All pairs of triangles, the oracle for small meshes. Quadratic.
 Prepared make_brute(const Setup& setup);
 
 }  // namespace cscd

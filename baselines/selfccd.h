@@ -12,7 +12,7 @@ namespace cscd {
 // (Tang, Curtis, Yoon and Manocha, TVCG 15(4), 2009).
 Prepared make_selfccd(const Setup& setup);
 
-// Every feature pair assigned to one triangle pair without a common vertex, or else to the orphans.
+// Assigns every feature pair to one triangle pair without a common vertex, or else to the orphans.
 std::unique_ptr<const FeatureAssignment> representative_triangles(const TriangleMesh& mesh);
 
 }  // namespace cscd

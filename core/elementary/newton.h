@@ -8,8 +8,8 @@ namespace cscd {
 Answer newton_vertex_face(const MovingVertexFace& query);
 Answer newton_edge_edge(const MovingEdgeEdge& query);
 
-// The same in single precision, as games have it: coordinates are rounded to floats first, which alone may
-// move features by 2^-24 of their distance from the origin.
+// The same test in single precision, as games have it. Coordinates are rounded to floats first, which alone
+// may move features by 2^-24 of their distance from the origin.
 Answer newton_float_vertex_face(const MovingVertexFace& query);
 Answer newton_float_edge_edge(const MovingEdgeEdge& query);
 

@@ -21,7 +21,7 @@
 // to two dimensions, and what is left open is `undecided`, never "apart".
 namespace cscd {
 
-// What a query is made of in single precision.
+// The parts of a query in single precision.
 struct FloatPoint {
   Eigen::Vector3f start, end;
   Eigen::Vector3f at(float t) const { return (1 - t) * start + t * end; }
@@ -34,7 +34,7 @@ struct FloatEdgeEdge {
 };
 struct FloatVector {
   Eigen::Vector3f start, end;
-  // No number where coordinates were beyond the range of floats.
+  // The largest component, or NaN where coordinates were beyond the range of floats.
   float largest() const {
     Eigen::Matrix<float, 3, 2> ends;
     ends << start, end;
@@ -46,7 +46,7 @@ using FloatCubic = BernsteinCubicOf<float>;
 inline FloatVector difference(const FloatPoint& from, const FloatPoint& to) {
   return {to.start - from.start, to.end - from.end};
 }
-// As triple_product of bernstein.h, whose bound holds for any unit roundoff.
+// The triple product of bernstein.h, whose error bound holds for any unit roundoff.
 inline FloatCubic float_triple_product(const FloatVector& a, const FloatVector& b, const FloatVector& c) {
   const Eigen::Vector3f n0 = a.start.cross(b.start), n1 = a.start.cross(b.end) + a.end.cross(b.start),
                         n2 = a.end.cross(b.end);
@@ -77,14 +77,14 @@ inline bool relative_boxes_apart(const FloatEdgeEdge& q) {
 }
 
 struct NewtonLimits {
-  // Width at which an enclosure of a root counts as found.
+  // The width at which an enclosure of a root counts as found.
   double root_width;
-  // Barycentric slack when touching is judged at a root: root width times motion, for features that move up
-  // to 2^10 (in single precision 2^6) times their own size in the interval. The paper states no tolerance.
+  // The barycentric slack when touching is judged at a root: root width times motion, for features that move
+  // up to 2^10 (in single precision 2^6) times their own size in the interval. The paper states no tolerance.
   double inside;
-  // Sine of the angle below which a normal has no direction that the precision can trust.
+  // The sine of the angle below which a normal has no direction that the precision can trust.
   double parallel;
-  // Errors of the cubic between which products of four lengths, as in squared areas, stay within range.
+  // The errors of the cubic between which products of four lengths, as in squared areas, stay within range.
   double least_error, most_error;
 };
 struct DoubleNumbers {
@@ -125,8 +125,8 @@ struct NewtonSearch {
 
   enum class Touch { no, yes, unclear };
 
-  // Is the point within kInside of the segment a + [0, 1] ab, in lengths of the segment or of its own
-  // distance from a?
+  // Whether the point is within kInside of the segment a + [0, 1] ab, in lengths of the segment or of the
+  // point's own distance from a.
   static bool near_segment(const Vec& p, const Vec& a, const Vec& ab) {
     const Vec ap = p - a;
     const Real length = ab.squaredNorm();
@@ -134,16 +134,16 @@ struct NewtonSearch {
     return (ap - u * ab).squaredNorm() <= kInside * kInside * std::max(length, ap.squaredNorm());
   }
 
-  // Do two vectors whose cross product has this squared length span a plane? Not if they are parallel, nor if
-  // one is so much shorter that rounding may have made its direction. False for NaN.
+  // Whether two vectors whose cross product has this squared length span a plane. They do not if they are
+  // parallel, nor if one is so much shorter that rounding may have made its direction. False for NaN.
   static bool spans(Real squared_cross, const Vec& a, const Vec& b) {
     const Real longest = std::max(a.squaredNorm(), b.squaredNorm());
     return squared_cross > kParallel * kParallel * longest * longest;
   }
 
-  // Of two features known to be in one plane at time t: how far, in barycentric terms, the touching point is
-  // inside each border, all at least 0 where they touch. Nothing where a feature collapses or the two are
-  // parallel.
+  // For two features known to be in one plane at time t: how far, in barycentric terms, the touching point is
+  // inside each border. All margins are at least 0 where the features touch. Returns nothing where a feature
+  // collapses or the two are parallel.
   static std::optional<std::array<Real, 3>> margins(const VertexFace& q, Real t) {
     const Vec a = q.corner[0].at(t), ab = q.corner[1].at(t) - a, ac = q.corner[2].at(t) - a,
               av = q.vertex.at(t) - a;
@@ -163,7 +163,7 @@ struct NewtonSearch {
     return std::array{u, 1 - u, v, 1 - v};
   }
 
-  // Where there are no margins. The triangle is hardly more than its edges.
+  // Whether the features touch where there are no margins: the triangle is then hardly more than its edges.
   static bool near_collapsed(const VertexFace& q, Real t) {
     const Vec v = q.vertex.at(t), a = q.corner[0].at(t), b = q.corner[1].at(t), c = q.corner[2].at(t);
     return near_segment(v, a, b - a) || near_segment(v, b, c - b) || near_segment(v, c, a - c);
@@ -175,7 +175,7 @@ struct NewtonSearch {
            near_segment(d, a, b - a);
   }
 
-  // Do the features touch at time t, when they are known to be in one plane?
+  // Whether the features touch at time t, when they are known to be in one plane.
   template <class Query>
   static Touch touch(const Query& q, Real t) {
     const auto inside = margins(q, t);
@@ -205,7 +205,8 @@ struct NewtonSearch {
     }
   };
 
-  // Both ends, and at most two roots for each of four lines and one for each of three axes of four pairs.
+  // Candidate times: both ends, at most two roots for each of four lines, and one for each of three axes of
+  // four pairs.
   struct Times {
     std::array<Real, 22> at{};
     std::size_t count = 0;
@@ -214,8 +215,8 @@ struct NewtonSearch {
     }
   };
 
-  // When p is on the line ab: the roots of twice the signed area of (a, b, p), a quadratic in Bernstein form,
-  // projected along the axis that shows most of it.
+  // Adds the times at which p is on the line ab: the roots of twice the signed area of (a, b, p), a quadratic
+  // in Bernstein form, projected along the axis that shows most of it.
   static void add_crossings(const Point& a, const Point& b, const Point& p, Times& times) {
     const Vector ab = difference(a, b), ap = difference(a, p);
     const Vec area[3] = {ab.start.cross(ap.start), (ab.start.cross(ap.end) + ab.end.cross(ap.start)) / 2,
@@ -230,7 +231,8 @@ struct NewtonSearch {
     times.add(c0 / q);
   }
 
-  // When p and q have a coordinate in common: for what moves along one line, where nothing crosses a line.
+  // Adds the times at which p and q have a coordinate in common, for features that move along one line, where
+  // nothing crosses a line.
   static void add_meetings(const Point& p, const Point& q, Times& times) {
     for (int axis = 0; axis < 3; ++axis) {
       const Real start = q.start[axis] - p.start[axis], end = q.end[axis] - p.end[axis];
@@ -238,8 +240,8 @@ struct NewtonSearch {
     }
   }
 
-  // Coplanar throughout: features can begin to touch only at t = 0 or when a point crosses the line of an
-  // edge, or, on one line, meets another point.
+  // Adds the times at which features that are coplanar throughout can begin to touch: when a point crosses
+  // the line of an edge, or, on one line, meets another point. (Beside these there is t = 0.)
   static void add_events(const VertexFace& q, Times& times) {
     for (int k = 0; k < 3; ++k) {
       add_crossings(q.corner[k], q.corner[(k + 1) % 3], q.vertex, times);
@@ -268,9 +270,9 @@ struct NewtonSearch {
     return search.answer;
   }
 
-  // The same when all that is known is that they may be in one plane between two times, near a double root
-  // mostly. "No" only where one border keeps them apart by more than its margin changes, or where parallel
-  // features stay apart as if they were in one plane throughout.
+  // Whether the features touch between two times, when all that is known is that they may be in one plane
+  // there, mostly near a double root. The answer is "no" only where one border keeps them apart by more than
+  // its margin changes, or where parallel features stay apart as if they were in one plane throughout.
   template <class Query>
   static Touch touch_between(const Query& q, Real low, Real high) {
     if (relative_boxes_apart(during(q, low, high))) return Touch::no;
@@ -286,7 +288,7 @@ struct NewtonSearch {
     return inside ? Touch::yes : Touch::unclear;
   }
 
-  // Polar form of the cubic: its control points on [a, b] are blossom(a,a,a), (a,a,b), (a,b,b), (b,b,b).
+  // The polar form of the cubic: its control points on [a, b] are blossom(a,a,a), (a,a,b), (a,b,b), (b,b,b).
   static Real blossom(const Real (&c)[4], Real r, Real s, Real t) {
     const auto mix = [](Real x, Real y, Real w) { return (1 - w) * x + w * y; };
     const Real d0 = mix(c[0], c[1], r), d1 = mix(c[1], c[2], r), d2 = mix(c[2], c[3], r);
@@ -329,7 +331,7 @@ struct NewtonSearch {
     }
   }
 
-  // In this precision. Where products may leave the range, nothing is said.
+  // Answers a query in this precision. Says nothing where products may leave the range.
   template <class Query>
   static std::optional<Answer> answer(const Query& query) {
     const Cubic f = coplanarity(query);

@@ -15,7 +15,7 @@
 // One text for a query and for eight side by side, as in sides.h.
 namespace cscd {
 
-// The unevaluated sum of two doubles, the second at most half an ulp of the first.
+// A number as the unevaluated sum of two doubles, the second at most half an ulp of the first.
 template <class Real>
 struct PairOf {
   Real high, low;
@@ -76,8 +76,8 @@ template <class Real>
 struct VectorOfPairs {
   PairOf<Real> x[3];
 };
-// The difference of two moving points at time t; off by less than 2^-100 times its largest component at 0
-// and 1.
+// Returns the difference of two moving points at time t, off by less than 2^-100 times its largest component
+// at 0 and 1.
 template <class Real, class Point>
 VectorOfPairs<Real> difference_at(const Point& from, const Point& to, Real t) {
   VectorOfPairs<Real> d;
@@ -106,7 +106,7 @@ PairOf<Real> coplanarity_at(const TriplePoints<Point>& v, Real t) {
                         difference_at(v.from, v.r_to, t));
 }
 
-// The next double below one that is positive.
+// Returns the next double below a positive one.
 inline double next_below_positive(double x) {
   return std::bit_cast<double>(std::bit_cast<std::int64_t>(x) - 1);
 }
@@ -120,7 +120,8 @@ struct CertainTime {
   MaskOf<Real> known;
 };
 
-// The largest double not above the only root of the coplanarity cubic between low and high, if it is certain.
+// Returns the largest double not above the only root of the coplanarity cubic between low and high, if that
+// double is certain.
 template <class Real, class Point>
 CertainTime<Real> time_in_pairs(const TriplePoints<Point>& points, const Sizes<Real>& size,
                                 const CubicOf<Real>& f, Real low, Real high) {

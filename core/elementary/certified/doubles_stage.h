@@ -13,8 +13,8 @@
 // enclosure, it is told where the features are (sides.h). What is not certain is left to exact arithmetic.
 namespace cscd {
 
-// What both kinds of query are made of: vectors p, q and r between points, the first and the last from the
-// same one. The points of a query are coplanar where (p x q) . r = 0.
+// Both kinds of query are made of vectors p, q and r between points; the first and the last begin at the same
+// point. The points of a query are coplanar where (p x q) . r = 0.
 template <class Point>
 struct TriplePoints {
   Point from, p_to, q_from, q_to, r_to;
@@ -38,7 +38,7 @@ inline SeenAlong<double> along(const MovingVector& v, int k) {
   const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
   return {{{v.start[i], v.start[j]}, {v.end[i], v.end[j]}}};
 }
-// Over the interval at whose ends the vectors are given.
+// Decides over the interval at whose ends the vectors are given.
 template <class Query, class Bounds>
 Place<double> place_along(const Triple& v, const Sizes<double>& size, int k) {
   return place_along<Query, Bounds>(along(v.p, k), along(v.q, k), along(v.r, k), size);
@@ -51,7 +51,7 @@ inline MovingVector between(const MovingVector& x, double low, double high) {
 template <class Query, class Bounds>
 Place<double> place_between(const Triple& v, const Sizes<double>& size, double low, double high) {
   const Triple part{between(v.p, low, high), between(v.q, low, high), between(v.r, low, high)};
-  // Along the axis that shows most of the plane first; the others may only tell in wide intervals.
+  // The axis that shows most of the plane is asked first; the others may only tell in wide intervals.
   int axis = 0;
   part.p.start.cross(part.q.start).cwiseAbs().maxCoeff(&axis);
   const Place<double> place = place_along<Query, Bounds>(part, size, axis);
@@ -86,7 +86,8 @@ using Cubic = CubicOf<double>;
 
 enum class Roots { none, one, unclear };
 
-// By Descartes' rule for the signs of control points that are certain, whatever the others are.
+// Counts roots by Descartes' rule for the signs of those control points that are certain, whatever the others
+// are.
 inline Roots count_roots(const Cubic& f, const double (&control)[4]) {
   const int s0 = f.sign(control[0]), s1 = f.sign(control[1]), s2 = f.sign(control[2]),
             s3 = f.sign(control[3]);
@@ -108,7 +109,8 @@ inline Roots count_roots(const Cubic& f, double low, double high) {
       f, {polar(low, low, low), polar(low, low, high), polar(low, high, high), polar(high, high, high)});
 }
 
-// A part of [0, 1] that holds roots: exactly one, with certain opposite signs at both ends, or who knows.
+// A part of [0, 1] that holds roots: exactly one, with certain opposite signs at both ends, or an unknown
+// number.
 struct Part {
   double low, high;
   bool one_root;
@@ -187,10 +189,11 @@ inline void narrow(const Cubic& f, Part& part) {
   }
 }
 
-// What double precision can prove.
+// What double precision can prove about a query.
 struct DoublesResult {
   enum Kind { apart, contact, unclear } kind;
-  // Of a contact: the earliest is at the only root of the cubic between these, with opposite signs there.
+  // For a contact: the earliest one is at the only root of the cubic between these two times, at which the
+  // cubic has opposite signs.
   double low = 0, high = 0;
 };
 

@@ -8,14 +8,15 @@
 
 namespace cscd {
 
-// Answers of filtered_exact to some of eight queries: one bit each for those that have one.
+// The answers of filtered_exact to some of eight queries: one bit for each query that has an answer.
 struct LaneAnswers {
   unsigned decided = 0;
   std::array<Answer, kLanes> answer;
 };
 
-// Eight queries or fewer side by side, in double precision: those that are never in one plane, or certainly
-// once. What is decided is what the scalar stages say, time included, as there is but one right answer.
+// Answers up to eight queries side by side in double precision: those that are never in one plane, or that
+// certainly are once. Whatever is decided is what the scalar stages say, time included, as there is but one
+// right answer.
 LaneAnswers decide_in_lanes(std::span<const MovingVertexFace> queries);
 LaneAnswers decide_in_lanes(std::span<const MovingEdgeEdge> queries);
 

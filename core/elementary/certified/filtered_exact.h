@@ -6,16 +6,16 @@
 
 namespace cscd {
 
-// Contact decided exactly, for any finite coordinates. The time of a contact is the largest double that is
-// not above the earliest time: never late, early by less than 2^-53, and the same as the referee's.
+// Decides contact exactly, for any finite coordinates. The time of a contact is the largest double that is
+// not above the earliest time: it is never late, early by less than 2^-53, and the same as the referee's.
 Answer filtered_exact_vertex_face(const MovingVertexFace& query);
 Answer filtered_exact_edge_edge(const MovingEdgeEdge& query);
 
-// The same of many, eight side by side.
+// Answers many queries, eight side by side.
 void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer> answers);
 void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers);
 
-// Which means the answer, with its time, took.
+// Which stage the answer, with its time, needed.
 enum class ExactStage { filter, doubles, integers, referee };
 ExactStage filtered_exact_stage(const MovingVertexFace& query);
 ExactStage filtered_exact_stage(const MovingEdgeEdge& query);

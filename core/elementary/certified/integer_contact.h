@@ -2,23 +2,23 @@
 
 #include "core/geometry/feature_motion.h"
 
-// Contact decided with integers of fixed capacity: exact, without allocation, for coordinates whose bits span
-// not too many places (some 1140 on each axis, so that a coordinate may be the smallest of doubles beside
-// others up to 2^60; those of a simulation span 60 to 120).
+// Decides contact with integers of fixed capacity, exactly and without allocation, for coordinates whose bits
+// span not too many places. Some 1140 places on each axis are allowed, so a coordinate may be the smallest of
+// doubles beside others up to 2^60; the coordinates of a simulation span 60 to 120.
 namespace cscd::integer {
 
 enum class Outcome { apart, contact, gave_up };
 
 struct Result {
   Outcome outcome;
-  double time = 0;  // of a contact: the largest double not above the earliest time
+  double time = 0;  // for a contact: the largest double not above the earliest time
 };
 
 Result first_contact(const MovingVertexFace& query);
 Result first_contact(const MovingEdgeEdge& query);
 
-// The time alone, where the features are known to touch at the only root of the coplanarity cubic between two
-// doubles, at which the cubic is known to have opposite signs.
+// Returns the time alone, where the features are known to touch at the only root of the coplanarity cubic
+// between two doubles, at which the cubic is known to have opposite signs.
 Result contact_time(const MovingVertexFace& query, double low, double high);
 Result contact_time(const MovingEdgeEdge& query, double low, double high);
 

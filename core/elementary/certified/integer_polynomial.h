@@ -16,7 +16,7 @@ struct Polynomial {
     while (degree >= 0 && c[degree].sign() == 0) --degree;
   }
   bool is_zero() const { return degree < 0; }
-  int bits() const;  // of the longest coefficient
+  int bits() const;  // the number of bits of the longest coefficient
 };
 
 // A double as an integer over a power of two.
@@ -31,14 +31,14 @@ int compare(const Wide& numerator, const Wide& denominator, const Dyadic& t);
 // 2^(places degree) p((numerator + width s) / 2^places).
 Polynomial stretched_by(const Polynomial& p, const Wide& numerator, const Wide& width, int places);
 
-// Of the Bernstein coefficients on [0, 1].
+// What the Bernstein coefficients on [0, 1] say.
 struct Signs {
   int variations = 0, first = 0;  // the sign just above 0; 0 for the zero polynomial
   bool zero_end = false;          // at 0 or at 1
 };
 Signs bernstein_signs(const Polynomial& p);
 
-// The coefficients as doubles times a common power of two.
+// Returns the coefficients as doubles times a common power of two.
 struct Rounded {
   double c[4] = {0, 0, 0, 0};
 };

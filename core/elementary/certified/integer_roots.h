@@ -31,8 +31,8 @@ struct Bound {
   Wide numerator = {}, denominator = {};
 };
 
-// What is asked of the roots. Numbers too long for Wide, and three roots as near to each other as
-// neighbouring doubles, are given up: answers after that mean nothing.
+// Answers questions about the roots. Numbers too long for Wide, and three roots as near to each other as
+// neighbouring doubles, are given up; answers after that mean nothing.
 class RootSolver {
  public:
   bool gave_up() const { return gave_up_; }
@@ -48,7 +48,7 @@ class RootSolver {
   }
   // At most three. Ascending.
   int find_roots(const Polynomial& p, Root* roots);
-  // The only root of p between two doubles at which p has opposite signs.
+  // Returns the only root of p between two doubles at which p has opposite signs.
   Root isolated_root(const Polynomial& p, double low, double high);
 
   // Makes `low` the largest double that is not above the root.

@@ -24,8 +24,8 @@ struct SeenAlong {
   Real at[2][2];
 };
 
-// A component of a product of two moving vectors over an interval: Bernstein coefficients, and how far each
-// may be off.
+// A component of a product of two moving vectors over an interval: Bernstein coefficients, and a bound on the
+// error of each.
 template <class Real>
 struct Component {
   Real b[3];

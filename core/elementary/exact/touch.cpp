@@ -73,7 +73,7 @@ Polynomial orientation(const Point& a, const Point& b, const Point& c, std::size
   return cross(b - a, c - a, k);
 }
 
-// Also for a segment that is a point.
+// Whether a point lies on a segment, which may itself be a point.
 bool point_on_segment(const Point& p, const Point& a, const Point& b, AlgebraicNumber& time) {
   for (std::size_t k = 0; k < 3; ++k)
     if (time.sign_of(orientation(a, b, p, k)) != 0) return false;
