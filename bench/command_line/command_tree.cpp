@@ -56,10 +56,4 @@ std::vector<CommandRow> command_tree(const CLI::App& program) {
   return rows;
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : between) + word;
-  return out;
-}
-
 }  // namespace cscd::bench

@@ -27,6 +27,4 @@ struct CommandRow {
 // The program, then every command, each before the commands below it.
 std::vector<CommandRow> command_tree(const CLI::App& program);
 
-std::string joined(const std::vector<std::string>& words, const std::string& between);
-
 }  // namespace cscd::bench

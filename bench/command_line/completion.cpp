@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/joined.h"
+
 namespace cscd::bench {
 namespace {
 

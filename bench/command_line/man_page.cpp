@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include "core/base/joined.h"
+
 namespace cscd::bench {
 namespace {
 

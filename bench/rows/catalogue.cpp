@@ -18,6 +18,7 @@
 #include "baselines/selfccd.h"
 #include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "core/base/joined.h"
 #include "core/drvbc/drvbc.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
@@ -149,14 +150,10 @@ const Strategy& playing(Role role) {
 
 template <class Rows>
 [[noreturn]] void refuse(const char* what, std::string_view name, const Rows& rows) {
-  std::string known;
   std::vector<std::string_view> names;
-  for (const auto& row : rows) {
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-    names.push_back(row.name);
-  }
+  for (const auto& row : rows) names.push_back(row.name);
   throw InputError(std::string(what) + " '" + std::string(name) + "' is not known" +
-                   did_you_mean(name.substr(0, name.find('@')), names) + "; choose one of " + known);
+                   did_you_mean(name.substr(0, name.find('@')), names) + "; choose one of " + joined(names));
 }
 
 // Of NAME@TOLERANCE[:STEPS].

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/output/data.h"
+#include "bench/output/markdown.h"
 
 namespace cscd::bench {
 namespace {
@@ -131,17 +132,15 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       if (std::find(scenes.begin(), scenes.end(), e.scene) == scenes.end()) scenes.push_back(e.scene);
     }
     if (!scenes.empty()) {
-      out += "| expected " + claim.expectation + " |";
-      for (const std::string& scene : scenes) out += " " + scene + " |";
-      out += "\n|---|";
-      for (std::size_t i = 0; i < scenes.size(); ++i) out += "---:|";
-      out += "\n";
+      std::vector<std::string> head = {"expected " + claim.expectation};
+      head.insert(head.end(), scenes.begin(), scenes.end());
+      std::vector<std::vector<std::string>> rows;
       for (std::size_t t = 0; t < titles.size(); ++t) {
-        out += "| " + titles[t] + " |";
+        std::vector<std::string>& row = rows.emplace_back(1, titles[t]);
         for (std::size_t s = 0; s < scenes.size(); ++s)
-          out += " " + figure(claim.evidence[s * titles.size() + t]) + " |";
-        out += "\n";
+          row.push_back(figure(claim.evidence[s * titles.size() + t]));
       }
+      out += markdown_table(head, rows);
       out += "\n";
     }
     if (!claim.not_measured_because.empty()) out += claim.not_measured_because + "\n";

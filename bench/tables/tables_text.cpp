@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "bench/output/data.h"
+#include "bench/output/markdown.h"
+#include "core/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -65,14 +67,15 @@ std::string text(const ordered_json& value) {
 
 std::string threads(const Record& record) {
   int most = 1;
-  std::string sharing;
+  std::vector<std::string> sharing;
   for (const StrategyRecord& strategy : record.strategies)
     if (strategy.threads > 1) {
       most = strategy.threads;
-      sharing += (sharing.empty() ? "" : ", ") + strategy.name;
+      sharing.push_back(strategy.name);
     }
-  return most == 1 ? "one thread"
-                   : std::to_string(most) + " threads for " + sharing + ", one for every other strategy";
+  return most == 1
+             ? "one thread"
+             : std::to_string(most) + " threads for " + joined(sharing) + ", one for every other strategy";
 }
 
 // How many of the timed intervals are among the given ones.
@@ -98,8 +101,9 @@ ordered_json source_json(const Record& record) {
           {"colliding_intervals", v.colliding.size()}};
 }
 
-// As a shell takes it: a word that holds more than letters, digits and a few signs stands in quotes.
-std::string joined(const std::vector<std::string>& words) {
+// A command as a shell takes it: a word that holds more than letters, digits and a few signs stands in
+// quotes.
+std::string shell_line(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) {
     const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
@@ -128,7 +132,7 @@ std::string provenance(const Record& record) {
                     (e.contains("instruction_set") ? ", " + get("instruction_set") : "") + "; commit " +
                     get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
                     get("date") + ".\n";
-  out += "Made by `" + joined(record.command) + "`.\n";
+  out += "Made by `" + shell_line(record.command) + "`.\n";
   const std::size_t timed = record.timed_intervals.size(), verified = timed_and(v.intervals, record);
   out += std::to_string(timed) + " of " + std::to_string(record.intervals) + " intervals timed, " +
          (verified == timed ? "all of them" : std::to_string(verified) + " of them") + " verified and " +
@@ -202,16 +206,14 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
     for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
       const auto rows =
           std::span(table.rows).subspan(first, std::min(kScenesAcross, table.rows.size() - first));
-      out += "\n|  |";
-      for (const Row& row : rows) out += " " + row.scene + " |";
-      out += "\n|---|";
-      for (std::size_t i = 0; i < rows.size(); ++i) out += "---:|";
-      out += "\n";
+      std::vector<std::string> head(1);
+      for (const Row& row : rows) head.push_back(row.scene);
+      std::vector<std::vector<std::string>> lines;
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        out += "| " + title(table.columns[i]) + " |";
-        for (const Row& row : rows) out += " " + plain(row.cells[i]) + " |";
-        out += "\n";
+        std::vector<std::string>& line = lines.emplace_back(1, title(table.columns[i]));
+        for (const Row& row : rows) line.push_back(plain(row.cells[i]));
       }
+      out += "\n" + markdown_table(head, lines);
     }
   }
   return out;
