@@ -2,7 +2,7 @@
 
 #include "scenes/import/gltf/test_files.h"
 
-// What becomes of a file's meshes and skins.
+// Checks what the reader makes of a file's meshes and skins.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -16,7 +16,7 @@ std::multiset<std::array<std::int32_t, 3>> turned_to_smallest(
   return out;
 }
 
-// A square of four corners; orientation must be the same from a strip and from a fan.
+// A square of four corners, which must have the same orientation whether it is a strip or a fan.
 TestFile square(int mode, const std::vector<std::uint8_t>& corners) {
   TestFile file;
   const int positions = file.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
@@ -59,7 +59,7 @@ TEST(GltfSurfaces, FurtherSetsOfJointsAndWeightsCount) {
   TubeFile file;
   std::vector<float> first = file.numbers.weights, second(first.size(), 0);
   std::vector<std::uint8_t> joints(first.size(), 0);
-  // What the second joint holds of a vertex moves to the second set.
+  // Move the weights of the second joint to the second set.
   for (std::size_t i = 0; i < first.size(); ++i)
     if (file.numbers.joints[i] == 1) {
       second[i / 4 * 4] = std::exchange(first[i], 0.f);
