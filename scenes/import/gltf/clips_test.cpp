@@ -39,7 +39,7 @@ TEST(GltfClips, CubicRotationsAreNormalised) {
   const Character character = read(file);
   const Transform upper = pose_at(character, character.animations[0], 0.5)[4];
   EXPECT_NEAR(upper.column[0].norm(), 1, 1e-6);
-  // By hand: z = h / 2 + 2 / 8, w = (1 + h) / 2.
+  // By hand: z = h / 2 + 2 / 8 and w = (1 + h) / 2.
   const double z = static_cast<double>(h) / 2 + 0.25, w = (1 + static_cast<double>(h)) / 2;
   EXPECT_NEAR(upper.column[0].x(), (w * w - z * z) / (w * w + z * z), 1e-6);
 }

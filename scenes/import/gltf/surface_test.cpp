@@ -87,7 +87,7 @@ TEST(GltfSurfaces, WeightsAreMadeToSumToOne) {
   EXPECT_NE(refusal(file).find("a weight is not finite"), std::string::npos);
 }
 
-// Without inverse bind matrices the vertices are in the coordinates of the joints.
+// Without inverse bind matrices, the vertices are in the coordinates of the joints.
 TEST(GltfSurfaces, SkinsWithoutBindMatricesHaveIdentities) {
   TubeFile file;
   file.root["skins"][0].erase("inverseBindMatrices");
@@ -125,7 +125,7 @@ TEST(GltfSurfaces, VerticesWithoutWeightsFollowTheirNode) {
   EXPECT_LT((positions_at(character, 1)[count] - upper(bending_tube().parts[0].positions[0])).norm(), 1e-6);
 }
 
-// Every vertex is moved by (0, 0, 1) with the whole weight of the first target, and not by the second.
+// The first target moves every vertex by (0, 0, 1) at full weight; the second target moves no vertex.
 TubeFile with_targets() {
   TubeFile file;
   std::vector<float> up;
@@ -181,12 +181,12 @@ TEST(GltfSurfaces, WeightsOfMorphTargetsMayBeAnimated) {
   TubeFile file = with_targets();
   file.animate(1, "weights", {0, 1}, file.accessor(std::vector<float>{0, 0, 1, 0}, "SCALAR"));
   EXPECT_NEAR(raised_by(read(file), 0.5), 0.5, 1e-6);
-  // Arriving tangents, values and leaving tangents of both targets, key by key.
+  // The order is arriving tangents, values and leaving tangents of both targets, key by key.
   TubeFile cubic = with_targets();
   cubic.animate(1, "weights", {0, 2},
                 cubic.accessor(std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "SCALAR"),
                 "CUBICSPLINE");
-  // Half-way of two seconds the leaving slope of 1 adds 2 (1/8 - 2/4 + 1/2).
+  // Half-way through two seconds, the leaving slope of 1 adds 2 (1/8 - 2/4 + 1/2).
   EXPECT_NEAR(raised_by(read(cubic), 1), 0.25, 1e-6);
   // Two values for two keys are too few for two targets.
   TubeFile few = with_targets();
