@@ -149,8 +149,8 @@ TEST_F(Model, TicksPerSecondOfAnyKindBecomeSeconds) {
   }
 }
 
-// Two triangles that hang on a bone, in units of 2.54 centimetres. The bone has a pivot, which assimp
-// turned into a chain of helper nodes, and a curve moves it by 3 in a second.
+// Two triangles that hang on a bone, in units of 2.54 centimetres. The bone has a pivot, which turns
+// it into a chain of helper nodes, and a curve moves it by 3 in a second.
 constexpr char kFbxFile[] = R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {
 	FBXHeaderVersion: 1003

@@ -11,9 +11,8 @@ namespace cscd::scenes::fbx {
 // The keys of a curve in seconds, and what was noticed about them.
 struct ReadCurve {
   Curve keys;
-  std::size_t dropped = 0;  // keys out of order or not finite
-  bool goes_on_before = false,
-       goes_on_after = false;  // the value repeats or rises beyond the first or last key
+  std::size_t dropped = 0;                             // keys out of order or not finite
+  bool goes_on_before = false, goes_on_after = false;  // it repeats or rises beyond its keys
 };
 
 // Reads a curve of at most `most` keys. Throws InputError where the arrays of the curve do not fit
