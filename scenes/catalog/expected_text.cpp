@@ -14,8 +14,7 @@ struct Span {
   std::size_t begin = 0, end = 0;
 };
 
-// Finds the value of the last member `expected` of the outermost object, in a text that is known to be
-// JSON.
+// Finds the value of the last member `expected` of the outermost object, in a text that is known to be JSON.
 Span find_value(const std::string& text) {
   Span found;
   std::size_t depth = 0, key_begin = 0, value_begin = 0;

@@ -17,8 +17,8 @@ void require_count(const Scene& scene, const std::string& what, std::size_t foun
                      ", the scene file expects " + std::to_string(*expected) + "; correct one of them");
 }
 
-// Measures the time of each effect: the time between two calls of enter() counts for the effect of the
-// first call.
+// Measures the time of each effect: the time between two calls of enter() counts for the
+// effect of the first call.
 class EffectClock {
  public:
   explicit EffectClock(std::size_t effects) : ms_(effects + 1), running_(effects) {}

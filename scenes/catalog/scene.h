@@ -17,11 +17,11 @@ struct Expected {
   std::optional<std::string> digest;  // digest of all frames, see FrameDigest
 };
 
-// One scene file, scenes/NAME.json or any other path that ends in .json: a shape, the effects that move it,
-// and the result that is expected. A scene file may name another scene as its `base` and state only the
-// differences. Its `patch` (RFC 6902) changes places in the base, such as `/effects/0/weight`. Any other
-// member of the file merges with the base's member if it is an object, and replaces the base's member
-// otherwise.
+// One scene file, scenes/NAME.json or any other path that ends in .json: a shape, the effects that
+// move it, and the result that is expected. A scene file may name another scene as its `base` and
+// state only the differences. Its `patch` (RFC 6902) changes places in the base, such as
+// `/effects/0/weight`. Any other member of the file merges with the base's member if it is an object,
+// and replaces the base's member otherwise.
 struct Scene {
   std::string name;   // of a scene file by its path: the file's plain name (plain_name.h)
   std::string story;  // two sentences
@@ -34,7 +34,7 @@ struct Scene {
   std::string recipe;  // everything that the frames depend on, in canonical text
 };
 
-// What list_scenes() tells of a scene file.
+// An entry of list_scenes(): the facts that a scene file states about its scene.
 struct SceneSummary {
   std::string name, story;
   std::size_t frames = 0;
@@ -43,9 +43,9 @@ struct SceneSummary {
   std::string fault;  // the error if the file is no scene; then only the name is set besides
 };
 
-// Returns the folder of scene files: $CSCD_SCENES, or else the nearest folder `scenes` with a scene file in
-// it, going up from the current directory and then from the program's own place. Throws InputError if there
-// is none.
+// Returns the folder of scene files: $CSCD_SCENES, or else the nearest folder `scenes` with a scene
+// file in it, going up from the current directory and then from the program's own place. Throws
+// InputError if there is none.
 std::filesystem::path scenes_folder();
 
 // Returns all scenes in the order of their names, including those with a fault.

@@ -8,8 +8,8 @@
 
 namespace cscd::scenes {
 
-// Raise this number when an unchanged scene file gives other frames. Caches of other versions are then
-// ignored.
+// Raise this number when an unchanged scene file gives other frames. Caches of other
+// versions are then ignored.
 inline constexpr int kGeneratorVersion = 2;
 
 // Returns $CSCD_CACHE, or else `.cache` beside the scenes' folder, or else the user's own folder of caches.
@@ -25,17 +25,16 @@ std::filesystem::path cache_file(const Scene& scene);
 // while frames are generated.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
 
-// Generates the scene of a file, whatever the file expects, and returns the actual counts and digest.
-// Writes them into the file as its `expected`. The file is replaced as a whole, and its other text stays as
-// it was.
+// Generates the scene of a file, whatever the file expects, and returns the actual counts and digest. Writes
+// them into the file as its `expected`. The file is replaced as a whole, and its other text stays as it was.
 Expected accept_scene(const std::filesystem::path& file, const Progress& progress = {});
 
 // Returns the cost of each effect of a scene when its cache was generated. Call open_scene first. Throws
 // InputError if the file beside the cache that holds the costs cannot be read.
 std::vector<EffectCost> effect_costs(const Scene& scene);
 
-// Writes exactly the frames that open_scene gives to a file. Throws InputError if the path exists, unless
-// `force` is set.
+// Writes exactly the frames that open_scene gives to a file. Throws InputError if the path
+// exists, unless `force` is set.
 void export_scene(const Scene& scene, const std::filesystem::path& path, bool force,
                   const Progress& progress = {});
 

@@ -1,6 +1,5 @@
-// Checks every scene file: its counts, its frames, and the properties that make it a workload. The first
-// test generates a scene anew. The others, each of which is a process of its own under ctest, read its
-// cache.
+// Checks every scene file: its counts, its frames, and the properties that make it a workload. The first test
+// generates a scene anew. The others, each of which is a process of its own under ctest, read its cache.
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,8 +15,7 @@
 namespace cscd::scenes {
 namespace {
 
-// The counts that a scene was ordered with. The expected counts in its file only say what its author
-// thought.
+// The counts that a scene was ordered with. The expected counts in its file only say what its author thought.
 struct Asked {
   const char* name;
   std::size_t triangles, vertices;

@@ -8,9 +8,8 @@
 
 #include "scenes/character/transform.h"
 
-// A character as model files hold it: a tree of nodes, surfaces of triangles that hang on one node or
-// follow several nodes, and animations of the nodes. These are plain values; nothing here knows a file
-// format.
+// A character as model files hold it: a tree of nodes, surfaces of triangles that hang on one node or follow
+// several nodes, and animations of the nodes. These are plain values; nothing here knows a file format.
 namespace cscd::scenes {
 
 // A map as files write it: scale, then rotate, then move. A mirrored or flat scale is kept as the file

@@ -7,7 +7,7 @@
 
 namespace cscd::scenes {
 
-// What to make of a model file: the options of the import.
+// The options of an import: which clip, components and repairs to use.
 struct ImportOptions {
   std::string clip;  // a name, else a number; empty: the first clip that moves the surface
   std::optional<std::size_t> clip_number;  // instead of `clip`, where a number might be a name
@@ -17,8 +17,8 @@ struct ImportOptions {
   std::size_t fill_holes = 0;              // holes of up to so many edges are filled; 0 fills none
   bool flip_inward = false;                // turn closed components that face inward
   std::optional<double> weld;              // tolerance as a share of the diagonal
-  // Survey the file instead of importing one clip: take all components in the bind pose and at the start of
-  // every clip.
+  // Survey the file instead of importing one clip: take all components in the bind pose and at
+  // the start of every clip.
   bool survey = false;
 
   bool operator==(const ImportOptions&) const = default;

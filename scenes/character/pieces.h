@@ -10,8 +10,8 @@
 
 namespace cscd::scenes {
 
-// One connected component of a surface, as a mesh of its own. The surface that it is taken from is called
-// the whole.
+// One connected component of a surface, as a mesh of its own. The surface that it is taken
+// from is called the whole.
 struct Piece {
   std::vector<TriangleId> triangles;  // numbers in the whole
   std::vector<VertexId> vertices;     // [vertices of `mesh`]; their numbers in the whole

@@ -71,8 +71,7 @@ Quaternion sample(const EulerAngles& angles, double seconds) {
   return from_euler(sample(angles.degrees, seconds), angles.order);
 }
 
-// The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's
-// map.
+// The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's map.
 ScaleTurnMove parts_at_rest(const Node& node) {
   if (node.written) return *node.written;
   const Parts rest = parts_of(node.local);

@@ -26,8 +26,8 @@ Pose bind_pose(const Character& character);
 // animation does not drive stay at rest.
 Pose pose_at(const Character& character, const Animation& animation, double seconds);
 
-// The weights of the morph targets at rest, at a time of an animation in seconds, and at the share s in [0,
-// 1] of the straight way from `a` to `b`.
+// The weights of the morph targets at rest, at a time of an animation in seconds, and at the share s in
+// [0, 1] of the straight way from `a` to `b`.
 MorphWeights rest_weights(const Character& character);
 MorphWeights weights_at(const Character& character, const Animation& animation, double seconds);
 MorphWeights blend(const MorphWeights& a, const MorphWeights& b, double s);

@@ -47,8 +47,8 @@ TEST(Pose, HoldsTheFirstAndLastKeyAndTurnsBetween) {
   EXPECT_LT((half - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), kNear);
 }
 
-// A channel that only moves a node must leave the node's rotation at rest, and nodes without a channel must
-// stay.
+// A channel that only moves a node must leave the node's rotation at rest, and nodes
+// without a channel must stay.
 TEST(Pose, PartsWithoutKeysStayAtRest) {
   Character tube = bending_tube();
   tube.nodes[4].local = quarter_turn({1, 0, 0});
@@ -85,8 +85,8 @@ TEST(Pose, CubicRotationsAreNormalised) {
   const Quaternion none{0, 0, 0, 0};
   for (Key<Quaternion>& key : keys) key = {key.time, key.value, Between::cubic, none, none};
   const Vec3 turned = pose_at(tube, tube.animations[0], 0.25)[4].column[0];
-  // The rotation of the normalised sum of both quaternions, with the second weighted by 3 s^2 - 2 s^3 =
-  // 0.15625.
+  // The rotation of the normalised sum of both quaternions, with the second weighted by
+  // 3 s^2 - 2 s^3 = 0.15625.
   const double half = std::sqrt(0.5), angle = 2 * std::atan2(0.15625 * half, 0.84375 + 0.15625 * half);
   EXPECT_LT((turned - Vec3(std::cos(angle), std::sin(angle), 0)).norm(), 1e-9);
 }
@@ -149,8 +149,8 @@ TEST(Pose, VerticesWithoutWeightsFollowTheirNode) {
   EXPECT_EQ(moving_nodes(tube), std::vector<int>{4});
 }
 
-// A scale that follows a node with `inverse` cancels it at every time, and one that follows it without
-// repeats it.
+// A scale that follows a node with `inverse` cancels it at every time, and one that
+// follows it without repeats it.
 TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
   Character tree;
   const ScaleTurnMove twice{Vec3::Zero(), {}, {2, 1, 1}}, half{Vec3::Zero(), {}, {0.5, 1, 1}};
@@ -174,8 +174,8 @@ TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
   EXPECT_THROW(validate(tree, {}), InputError);
 }
 
-// In files whose nodes rest in the first pose of a clip, the offsets of the joints still tell how the skin
-// was bound.
+// In files whose nodes rest in the first pose of a clip, the offsets of the joints still
+// tell how the skin was bound.
 TEST(BindPose, ComesFromTheOffsetsAndNotFromTheRest) {
   Character tube = bending_tube();
   const Pose bound = bind_pose(tube);

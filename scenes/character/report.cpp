@@ -41,8 +41,8 @@ void read(const std::string& word, Number& value) {
     throw InputError("import report: '" + printable(word) + "' is not a number");
 }
 
-// Calls `visit` with the name and the value of every single value of a report. Both writing and reading use
-// this one list.
+// Calls `visit` with the name and the value of every single value of a report. Both writing and
+// reading use this one list.
 template <class Report, class Visit>
 void visit_values(Report& r, Visit&& visit) {
   visit("format", r.format);

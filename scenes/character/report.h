@@ -7,8 +7,8 @@
 
 namespace cscd::scenes {
 
-// What was found in a model file and what the import made of it. The report crosses from the import process
-// as lines of text.
+// Describes a model file and the surface that the import made from it. The report crosses from the import
+// process as lines of text.
 struct ImportReport {
   std::string format;
   double centimetres_per_unit = 0;  // 0 where the file does not say; positions are never scaled
@@ -58,9 +58,9 @@ std::string to_text(const ImportReport& report);
 // Reads a report back. Throws InputError for a text that is not complete and in the form of to_text.
 ImportReport parse_report(const std::string& text);
 
-// Returns `text` as safe UTF-8 of at most `longest` bytes, cut between characters. Valid characters stay,
-// except those that control a terminal or the direction of writing; every run of anything else becomes one
-// '?'.
+// Returns `text` as safe UTF-8 of at most `longest` bytes, cut between characters. Valid
+// characters stay, except those that control a terminal or the direction of writing; every run of
+// anything else becomes one '?'.
 std::string printable(const std::string& text, std::size_t longest = 200);
 
 }  // namespace cscd::scenes

@@ -106,9 +106,9 @@ inline Part figure_shirt(const Part& body, int node, double gap) {
   return shirt;
 }
 
-// The whole figure. Its parts are the body, the left eye, the right eye and the shirt. It has two clips of
-// one second each: in `walk` the body does not touch itself, and in `hug` its arms meet in front of the
-// chest.
+// The whole figure. Its parts are the body, the left eye, the right eye and the shirt. It has
+// two clips of one second each: in `walk` the body does not touch itself, and in `hug` its arms
+// meet in front of the chest.
 inline Character walking_figure() {
   const Shape body = figure_body();
   Character character;

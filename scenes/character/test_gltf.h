@@ -12,10 +12,9 @@
 
 namespace cscd::scenes {
 
-// Writes a character as a glTF 2 text with its data inside, so that a test of the import needs no model
-// file beside it. Every part becomes a mesh of one primitive; vertices have as many sets of four influences
-// as the part needs. The format rounds numbers to float, and reduces nodes to a move, a rotation and a
-// scale.
+// Writes a character as a glTF 2 text with its data inside, so that a test of the import needs no model file
+// beside it. Every part becomes a mesh of one primitive; vertices have as many sets of four influences as the
+// part needs. The format rounds numbers to float, and reduces nodes to a move, a rotation and a scale.
 class GltfText {
  public:
   explicit GltfText(const Character& character) : character_(character) {

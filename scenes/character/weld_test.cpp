@@ -18,8 +18,8 @@ TEST(Weld, JoinsWithinTheToleranceAcrossCells) {
   EXPECT_EQ(weld(points, 0.1), (Groups{0, 0, 2, 0}));
 }
 
-// A row of points, each of which lies near the next. Joining near points transitively would make them one
-// group.
+// A row of points, each of which lies near the next. Joining near points transitively
+// would make them one group.
 TEST(Weld, DoesNotDrawAGroupOutAlongAChain) {
   std::vector<Vec3> points;
   for (int i = 0; i < 30; ++i) points.emplace_back(0.09 * i, 0, 0);

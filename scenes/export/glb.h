@@ -14,8 +14,7 @@ namespace cscd::scenes {
 // Throws InputError for characters that validate() refuses and for what this writer cannot express: numbers
 // beyond single precision, keys whose times become equal by rounding, keys that are not joined by straight
 // lines, morph targets, vertices without a joint in a part with joints, sheared nodes, parts without
-// triangles, clips that move nothing, and files of 4 GiB.
-// nothing, and files of 4 GiB.
+// triangles, clips that move nothing, and files of 4 GiB or more.
 std::string to_glb(const Character& character);
 
 }  // namespace cscd::scenes

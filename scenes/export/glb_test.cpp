@@ -11,8 +11,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Returns the frames that a reader should see: poses at equally spaced times from the clip's start to its
-// end.
+// Returns the frames that a reader should see: poses at equally spaced times from the
+// clip's start to its end.
 Clip frames_of(const Character& character, double fps) {
   ClipHeader header;
   for (const Part& part : character.parts) {

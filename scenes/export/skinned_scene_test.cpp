@@ -79,8 +79,8 @@ TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
   EXPECT_EQ(written, (std::vector<std::string>{"octopus", "rope", "urchin"}));
 }
 
-// Bodies with limbs, with linear skinning instead of their own: the bones form a tree, and up to four blend
-// at a vertex.
+// Bodies with limbs, with linear skinning instead of their own: the bones form a tree, and up
+// to four blend at a vertex.
 TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
   const std::string frames = R"({"op": "replace", "path": "/frames", "value": 41})";
   expect_round_trip(changed(

@@ -17,9 +17,9 @@ struct Moment {
   MorphWeights weights;
 };
 
-// Returns the number of frames of a clip that lasts `seconds`: one frame every 1 / fps seconds from the
-// clip's start, and one at the clip's end. The last interval is shorter where the length is no whole number
-// of frames.
+// Returns the number of frames of a clip that lasts `seconds`: one frame every 1 / fps seconds
+// from the clip's start, and one at the clip's end. The last interval is shorter where the length
+// is no whole number of frames.
 std::size_t frames_of(double seconds, double fps);
 // Returns when a frame of such a clip is shown, in seconds after the clip's start.
 double second_of_frame(std::size_t frame, double seconds, double fps);

@@ -158,8 +158,7 @@ class Collada {
     return bent;
   }
 
-  // Tells whether a segment keeps one value all the way, so that it is straight however its keys are
-  // joined.
+  // Tells whether a segment keeps one value all the way, so that it is straight however its keys are joined.
   static bool stands_still(const std::string& kind, std::size_t key, std::size_t keys,
                            const std::vector<double>& outputs, const std::vector<double>& leaving,
                            const std::vector<double>& arriving) {

@@ -13,8 +13,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Above this many components the report does not count bones for each: debris can have many thousand
-// pieces.
+// Above this many components the report does not count bones for each: debris can have many thousand pieces.
 constexpr std::size_t kMostPiecesWithBones = 1000;
 
 // Counts the bones that a clip moves relative to the bone above. The clip has a channel either for the bone

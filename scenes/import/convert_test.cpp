@@ -136,8 +136,8 @@ TEST_F(Convert, WeldsAcrossTrianglesPartsAndMaterials) {
 }
 
 TEST_F(Convert, DoesNotWeldWhatMovesApart) {
-  // A second tube whose end touches the end of the first: their points are equal at rest and move apart
-  // later.
+  // A second tube whose end touches the end of the first: their points are equal at
+  // rest and move apart later.
   Character two = bending_tube();
   Part other = two.parts[0];
   for (Vec3& x : other.positions) x.x() += 4;

@@ -244,8 +244,8 @@ class Reader {
       reach(to.scales);
       animation.channels.push_back(std::move(to));
     }
-    // The keys give the clip's start and length, because importers differ in where they begin to count the
-    // duration.
+    // The keys give the clip's start and length, because importers differ in where they
+    // begin to count the duration.
     animation.start = first <= last ? first : 0;
     animation.seconds = first <= last ? last - first : 0;
     character_.animations.push_back(std::move(animation));

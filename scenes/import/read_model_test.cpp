@@ -12,8 +12,8 @@
 #include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
 
-// assimp's parsers leak memory on files that are cut short. This is accepted, because their process ends
-// soon after.
+// assimp's parsers leak memory on files that are cut short. This is accepted, because their
+// process ends soon after.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libassimp";
 }

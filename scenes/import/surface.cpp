@@ -13,8 +13,8 @@ namespace {
 // Seams are welded in the bind pose and then checked in this many poses, spread over all clips, so that the
 // surface does not depend on the clip that is chosen.
 constexpr std::size_t kProbes = 32;
-// In other poses the vertices of a seam may move apart by this many weld tolerances, because their weights
-// are rounded.
+// In other poses the vertices of a seam may move apart by this many weld tolerances, because
+// their weights are rounded.
 constexpr double kPosedSlack = 100;
 
 // Returns the positions of all raw vertices in poses that are spread over all clips.

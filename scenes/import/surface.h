@@ -12,9 +12,8 @@
 #include "scenes/character/report.h"
 #include "scenes/character/weld.h"
 
-// Makes one surface of the parts of a character: welded, mended where the options ask for it, and cut down
-// to the chosen components. The raw vertices and raw triangles are those of all parts, one part after the
-// other.
+// Makes one surface of the parts of a character: welded, mended where the options ask for it, and cut down to
+// the chosen components. The raw vertices and raw triangles are those of all parts, one part after the other.
 namespace cscd::scenes {
 
 // All parts in the bind pose.

@@ -30,9 +30,9 @@ struct LeftOut {
   std::size_t keys = 0, layers = 0;
 };
 
-// Reads all clips of a file, and adds to `left_out` what it leaves out. Throws InputError for damage, for
-// more clips or keys than the limits allow, and for animations that this reader cannot show as the FBX SDK
-// does.
+// Reads all clips of a file, and adds to `left_out` what it leaves out. Throws InputError for
+// damage, for more clips or keys than the limits allow, and for animations that this reader cannot
+// show as the FBX SDK does.
 std::vector<Clip> read_clips(const Objects& objects, const CharacterLimits& limits, LeftOut& left_out);
 
 }  // namespace cscd::scenes::fbx

@@ -71,8 +71,7 @@ class TextParser {
     }
   }
 
-  // Reads the values of an element. Values go on after a comma, whether the comma ends a line or begins
-  // one.
+  // Reads the values of an element. Values go on after a comma, whether the comma ends a line or begins one.
   void read_values(Element& element, int depth) {
     bool comma = false;
     for (;;) {

@@ -156,8 +156,7 @@ class CurveReader {
     return (b.value - a.value) / (b.seconds - a.seconds);
   }
 
-  // Sets the slopes of a TCB key from its tension, continuity and bias (Kochanek and Bartels, SIGGRAPH
-  // 1984).
+  // Sets the slopes of a TCB key from its tension, continuity and bias (Kochanek and Bartels, SIGGRAPH 1984).
   static void turn_by_tcb(std::vector<RawKey>& keys, std::size_t i) {
     RawKey& key = keys[i];
     const double tension = key.attributes.data[0], continuity = key.attributes.data[1],
@@ -257,7 +256,7 @@ class CurveReader {
     const double x[4] = {0, w * length, (1 - v) * length, length};
     const double y[4] = {a.value, a.value + a.leaving * w * length, b.value - b.arriving * v * length,
                          b.value};
-    // Where a weight is zero, the tangent points to the end of the other tangent.
+    // A key whose weight is zero leaves towards the end of the next key's tangent.
     curve.back().leaving = w > 0 ? a.leaving : slope(y, 1e-6) / slope(x, 1e-6);
     for (int i = 1; i < kPieces; ++i) {
       const double s = static_cast<double>(i) / kPieces, rise = slope(y, s) / slope(x, s);

@@ -15,8 +15,7 @@ struct ReadCurve {
   bool goes_on_before = false, goes_on_after = false;  // it repeats or rises beyond its keys
 };
 
-// Reads a curve of at most `most` keys. Throws InputError where the arrays of the curve do not fit
-// together.
+// Reads a curve of at most `most` keys. Throws InputError where the arrays of the curve do not fit together.
 ReadCurve read_curve(const Object& curve, double ticks_per_second, std::size_t most);
 
 }  // namespace cscd::scenes::fbx

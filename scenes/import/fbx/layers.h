@@ -17,8 +17,8 @@ struct Blending {
   std::string refusal;          // the error of a layer that cannot be used
 };
 
-// Reads how a layer is blended. `weight` is in per cent, or nullopt where it changes. The base layer is
-// taken as it is.
+// Reads how a layer is blended. `weight` is in per cent, or nullopt where it changes. The base
+// layer is taken as it is.
 Blending read_blending(const Object& layer, std::optional<double> weight, bool base);
 
 // The kinds of values that layers combine.

@@ -154,8 +154,7 @@ Detour detour_of(const std::string& name, const ModelTransform& transform, bool 
   const bool drops_own = inherit == Inherit::Rrs && !parent.own.unit;
   if (parent.sheared && (turns || drops_own))
     refuse_inherit(name, inherit, "below nodes whose scaling is uneven and turned");
-  // A node that does not turn leaves the axes as they are, so uneven scalings act correctly without a
-  // detour.
+  // A node that does not turn leaves the axes as they are, so uneven scalings act correctly without a detour.
   if (!turns && !drops_own) return detour;
   detour.undo = above;
   if (drops_own) detour.undo.push_back(parent.own);

@@ -13,8 +13,7 @@ struct ShapeChannel {
 };
 
 // Adds the blend shapes of a geometry to a part as morph targets, and returns their channels in the same
-// order. Throws InputError for damage, for counts above the limits, and for channels with shapes in
-// between.
+// order. Throws InputError for damage, for counts above the limits, and for channels with shapes in between.
 std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geometry,
                                       const CharacterLimits& limits, Part& part);
 

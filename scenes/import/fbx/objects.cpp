@@ -133,8 +133,7 @@ std::optional<double> Objects::setting(std::string_view name) const {
 }
 
 double Objects::ticks_per_second() const {
-  // Newer files may state by TCDefinition that they count time in other ticks; 127 stands for the old
-  // ticks.
+  // Newer files may state by TCDefinition that they count time in other ticks; 127 stands for the old ticks.
   constexpr double kOld = 46186158000.0, kNew = 141120000.0;
   constexpr std::int64_t kOldDefinition = 127, kFirstHeader = 1004;
   const Element* header = document_.root.child("FBXHeaderExtension");

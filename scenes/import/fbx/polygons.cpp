@@ -17,8 +17,7 @@ void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> po
                        std::vector<std::array<std::int32_t, 3>>& triangles) {
   const auto at = [&](std::size_t k) -> const Vec3& { return positions[static_cast<std::size_t>(c[k % 4])]; };
   const Vec3 first = at(2) - at(0), second = at(3) - at(1), normal = first.cross(second);
-  // The diagonal from corner k lies inside if both triangles beside it turn as the whole quadrilateral
-  // does.
+  // The diagonal from corner k lies inside if both triangles beside it turn as the whole quadrilateral does.
   const auto inside = [&](std::size_t k) {
     const Vec3 one = (at(k + 1) - at(k)).cross(at(k + 2) - at(k)),
                other = (at(k + 2) - at(k)).cross(at(k + 3) - at(k));

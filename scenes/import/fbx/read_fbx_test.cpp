@@ -99,8 +99,8 @@ TEST(FbxMesh, InstancesStandWhereTheirNodesDo) {
   expect_at(was[6], kPoints[0] + Vec3(0, 2, 0));
 }
 
-// Returns two sums over the triangles: of their areas, signed by the direction of z, and of the sizes of
-// their areas.
+// Returns two sums over the triangles: of their areas, signed by the direction of z, and of
+// the sizes of their areas.
 std::pair<double, double> areas(const std::vector<double>& points, const std::vector<double>& polygons) {
   FbxText file;
   file.model(20, "node", 0, "", "Mesh");

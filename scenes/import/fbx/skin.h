@@ -23,10 +23,9 @@ struct SkinPlace {
 // Returns the Skin that moves a Geometry, or null. Throws InputError if there are several.
 const Object* skin_of(const Objects& objects, const Object& geometry);
 
-// Fills a part's joints and influences. The part's vertices are those of the geometry, and `part.node` is
-// the node that they follow without a skin. If `skin` is null, no joint moves the vertices. Throws
-// InputError for damage, for counts above the limits, and for kinds of skinning other than the recipe
-// below.
+// Fills a part's joints and influences. The part's vertices are those of the geometry, and `part.node` is the
+// node that they follow without a skin. If `skin` is null, no joint moves the vertices. Throws InputError for
+// damage, for counts above the limits, and for kinds of skinning other than the recipe below.
 //
 // The FBX SDK moves a vertex v, whose mesh has the map `geometry` to its node, to
 //   sum over clusters of weight * link * TransformLink^-1 * Transform * geometry * v,

@@ -21,8 +21,8 @@ Quaternion quaternion(std::span<const double> q) {
   return {q[3], q[0], q[1], q[2]};
 }
 
-// The rotations of keys must be unit quaternions up to rounding. Tangents may have any length and are left
-// alone.
+// The rotations of keys must be unit quaternions up to rounding. Tangents may have any
+// length and are left alone.
 void normalise(Quaternion& value, const std::string& where) {
   value = unit(value, where);
 }

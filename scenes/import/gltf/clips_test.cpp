@@ -19,8 +19,8 @@ TEST(GltfClips, StepsLinesAndCubicsAreJoinedAsTheySay) {
   EXPECT_EQ(root_at(2.9, times, values, "STEP").x(), 0);
   EXPECT_EQ(root_at(3, times, values, "STEP").x(), 8);
   EXPECT_NEAR(root_at(1.5, times, values, "LINEAR").x(), 2, 1e-6);
-  // The order is arriving tangent, value, leaving tangent. Tangents are per second, and the keys lie two
-  // seconds apart.
+  // The order is arriving tangent, value, leaving tangent. Tangents are per second, and the
+  // keys lie two seconds apart.
   const std::vector<float> cubic = {0, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 8, 0, 0, 0, 0, 0};
   EXPECT_NEAR(root_at(2, times, cubic, "CUBICSPLINE").x(), 4 + 0.125 * 2 * 1 - 0.125 * 2 * 2, 1e-6);
   EXPECT_EQ(root_at(0, times, cubic, "CUBICSPLINE").x(), 0);

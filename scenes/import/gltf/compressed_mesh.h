@@ -20,10 +20,10 @@ class CompressedMesh {
   std::size_t triangles() const;
   std::vector<std::uint32_t> corners() const;  // three for each triangle
 
-  // Returns the attribute with the number that the extension gives for it. `accessor` tells what the
-  // attribute's integers mean; its count is ignored, because some exporters write the count before
-  // compression. Throws InputError if there is no such attribute, or if its width differs from the
-  // accessor's.
+  // Returns the attribute with the number that the extension gives for it. `accessor` tells
+  // what the attribute's integers mean; its count is ignored, because some exporters write the
+  // count before compression. Throws InputError if there is no such attribute, or if its width
+  // differs from the accessor's.
   Numbers attribute(int id, const tinygltf::Accessor& accessor, const std::string& what) const;
 
  private:

@@ -21,8 +21,8 @@ struct CompressedView {
 CompressedView compressed_view(const tinygltf::Value& extension, std::size_t view_length,
                                const std::string& what);
 
-// Decompresses a view. Throws InputError for damaged data, and for data that cannot hold as much as the
-// view says.
+// Decompresses a view. Throws InputError for damaged data, and for data that cannot hold
+// as much as the view says.
 Bytes decompress(const CompressedView& view, std::span<const unsigned char> compressed,
                  const std::string& what);
 

@@ -12,8 +12,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-// A file with sparse positions, a strip, a cubic, weights of morph targets, a matrix and two sets of
-// joints.
+// A file with sparse positions, a strip, a cubic, weights of morph targets, a matrix and two sets of joints.
 TubeFile with_everything() {
   TubeFile file;
   const std::vector<std::uint16_t> where = {1, 5};

@@ -19,8 +19,8 @@ constexpr std::size_t kDeepest = 64;
 // The form that a member of a given name must have, wherever it stands in the sections that are read.
 enum class Kind { whole, wholes, wholes_by_name, by_name_list, numbers, text, flag, object, objects };
 struct Rule {
-  Kind kind;               // of a list of numbers; 0: any length
-  std::size_t length = 0;  // of numbers; 0: any
+  Kind kind;
+  std::size_t length = 0;  // of a list of numbers; 0: any length
 };
 const std::map<std::string_view, Rule> kRules = {{"scene", {Kind::whole}},
                                                  {"mesh", {Kind::whole}},
@@ -112,8 +112,8 @@ class Checker {
   }
 
  private:
-  // Returns the kind that a member must have where it stands: some names mean different things in different
-  // places.
+  // Returns the kind that a member must have where it stands: some names mean different
+  // things in different places.
   static Kind kind_of(Kind usual, const std::string& name, const json& value, const std::string& where) {
     if (name == "mode" && where.find(kMeshopt) != std::string::npos) return Kind::text;
     if (name == "indices") return value.is_object() ? Kind::object : Kind::whole;

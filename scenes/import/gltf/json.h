@@ -16,11 +16,10 @@ struct CheckedJson {
   std::vector<std::string> notes;                      // messages about what is left out
 };
 
-// Parses and checks the JSON of a glTF file. tinygltf treats a member of a wrong type, a fraction in place
-// of an index and the like as absent, and goes on with the default. This function refuses such a file first
-// and names the member: indices and counts must be whole numbers that an int holds, and vectors must have
-// their length. It also limits how deep the file nests, because tinygltf descends by recursion. Throws
-// InputError.
+// Parses and checks the JSON of a glTF file. tinygltf treats a member of a wrong type, a fraction in place of
+// an index and the like as absent, and goes on with the default. This function refuses such a file first and
+// names the member: indices and counts must be whole numbers that an int holds, and vectors must have their
+// length. It also limits how deep the file nests, because tinygltf descends by recursion. Throws InputError.
 CheckedJson checked_json(std::string_view text);
 
 }  // namespace cscd::scenes::gltf

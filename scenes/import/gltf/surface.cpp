@@ -19,8 +19,8 @@ void require_count(std::size_t count, std::size_t limit, const char* what) {
     throw InputError("has more than " + std::to_string(limit) + " " + what + "; simplify the model");
 }
 
-// Splits strips and fans into triangles as section 3.7.2.1 of the specification does. The corners are in
-// range.
+// Splits strips and fans into triangles as section 3.7.2.1 of the specification does.
+// The corners are in range.
 Triangles triangles(const Corners& corners, int mode) {
   Triangles triangles;
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {

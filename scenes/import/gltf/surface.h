@@ -5,8 +5,8 @@
 
 namespace cscd::scenes::gltf {
 
-// Converts a 4 x 4 matrix in glTF's order, column by column. Throws InputError where the matrix is no
-// affine map.
+// Converts a 4 x 4 matrix in glTF's order, column by column. Throws InputError where the
+// matrix is no affine map.
 Transform affine(std::span<const double> matrix, const std::string& what);
 
 class Attributes;

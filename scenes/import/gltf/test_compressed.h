@@ -9,8 +9,8 @@
 // Files of the tube, compressed by the encoders of the libraries that read them.
 namespace cscd::scenes::gltf {
 
-// Replaces the view of an accessor by a compressed view. The plain bytes are dropped, and a buffer stands
-// in for them.
+// Replaces the view of an accessor by a compressed view. The plain bytes are dropped, and a
+// buffer stands in for them.
 inline void compress(TubeFile& file, int accessor, const std::vector<unsigned char>& compressed,
                      std::size_t count, std::size_t stride, const char* mode, const char* filter = nullptr) {
   const auto packed = static_cast<std::size_t>(file.view(compressed));

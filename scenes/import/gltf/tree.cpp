@@ -20,8 +20,8 @@ std::vector<int> parents(const tinygltf::Model& model) {
   return parent;
 }
 
-// Marks the topmost nodes that are shown: those of the default scene, or else of the first scene, or else
-// all nodes.
+// Marks the topmost nodes that are shown: those of the default scene, or else of the first
+// scene, or else all nodes.
 std::vector<bool> in_scene(const tinygltf::Model& model, const std::vector<int>& parent) {
   if (model.scenes.empty()) return std::vector<bool>(model.nodes.size(), true);
   std::vector<bool> shown(model.nodes.size(), false);

@@ -9,8 +9,8 @@ namespace cscd::scenes::gltf {
 // normalised() would return the identity.
 Quaternion unit(const Quaternion& q, const std::string& where);
 
-// A file's nodes as one tree, parents first. Nodes outside the scene are part of the tree too, because they
-// may be joints.
+// A file's nodes as one tree, parents first. Nodes outside the scene are part of the tree too,
+// because they may be joints.
 struct Tree {
   std::vector<Node> nodes;
   std::vector<int> place;   // [nodes of the file]; the character's node
