@@ -1,5 +1,5 @@
-// A program in which the rope's effects are the only ones: it defines the list of effects itself, so that the
-// linker takes no other effect's code from the library. The rope must not notice.
+// A program that holds the rope's effects and no others. It defines the list of effects itself, so that the
+// linker takes no other effect's code from the library. The rope's frames must not change.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ EffectRow chain_contact_row();
 EffectRow chain_dynamics_row();
 EffectRow skinning_linear_row();
 
-// Null where the program holds no such function.
+// Each of these is null if the program holds no such function.
 [[gnu::weak]] EffectRow contact_response_row();
 [[gnu::weak]] EffectRow keyframes_row();
 [[gnu::weak]] EffectRow skinning_dual_quaternion_row();

@@ -9,12 +9,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Half-open range of bytes; empty where there is none.
+// A half-open range of bytes; empty where nothing was found.
 struct Span {
   std::size_t begin = 0, end = 0;
 };
 
-// Where the last member `expected` of the outermost object has its value, in a text that is known to be JSON.
+// Finds the value of the last member `expected` of the outermost object, in a text that is known to be JSON.
 Span find_value(const std::string& text) {
   Span found;
   std::size_t depth = 0, key_begin = 0, value_begin = 0;
@@ -65,7 +65,8 @@ std::string with_expected(const std::string& text, const Expected& expected, con
       const bool first_member = text[last] == '{';
       changed.insert(last + 1, std::string(first_member ? "" : ",") + "\n  \"expected\": " + value);
     }
-    // A file that is written in a way that was not thought of loses its white space rather than its meaning.
+    // If the edited text does not have the wanted meaning, because the file is written in an unforeseen
+    // way, the whole text is written anew: the file loses its white space and keeps its meaning.
     return Json::parse(changed, nullptr, false) == wanted ? changed : wanted.dump(2) + "\n";
   } catch (const Json::exception& error) {
     throw InputError(where + ": is not JSON: " + error.what());

@@ -6,8 +6,9 @@
 
 namespace cscd::scenes {
 
-// The text of a scene file with another `expected`, which names all four values. Everything else stays as it
-// is written, white space included. Throws InputError if `text` is no JSON object.
+// Returns the text of a scene file with `expected` replaced or added; all four values of `expected` must be
+// set. The rest of the text stays as it is written, white space included. `where` begins error texts.
+// Throws InputError if `text` is no JSON object.
 std::string with_expected(const std::string& text, const Expected& expected, const std::string& where);
 
 }  // namespace cscd::scenes

@@ -17,7 +17,8 @@ void require_count(const Scene& scene, const std::string& what, std::size_t foun
                      ", the scene file expects " + std::to_string(*expected) + "; correct one of them");
 }
 
-// Charges the time between two calls to the effect that was entered at the first.
+// Measures the time of each effect: the time between two calls of enter() counts for the
+// effect of the first call.
 class EffectClock {
  public:
   explicit EffectClock(std::size_t effects) : ms_(effects + 1), running_(effects) {}
@@ -29,7 +30,7 @@ class EffectClock {
   double ms(std::size_t effect) const { return ms_[effect]; }
 
  private:
-  std::vector<double> ms_;  // the last is of what lies between the effects of two frames
+  std::vector<double> ms_;  // [effects + 1]; the last is the time between the effects of two frames
   std::size_t running_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
 };
@@ -51,7 +52,7 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
   for (std::size_t frame = 0; frame < scene.frames; ++frame) {
     if (frame > 0) effects.advance(state, static_cast<int>(frame), [&](std::size_t i) { clock.enter(i); });
     const FrameView view{state.positions, state.bones};
-    // The bones move as the animation has them, whatever the surface is kept from.
+    // The bones move as the animation has them, even where the surface is held back.
     const FrameView predicted{state.predicted, state.bones};
     const FrameView* prediction = effects.predicts() && frame > 0 ? &predicted : nullptr;
     sink.append(view, prediction);

@@ -11,7 +11,7 @@ bool is_safe(char c) {
   return letter_or_digit || of_other_alphabet || c == '.' || c == '-' || c == '_';
 }
 
-// Whether a byte goes on with a character of UTF-8 that an earlier byte began.
+// Tells whether a byte continues a character of UTF-8 that an earlier byte began.
 bool goes_on(char c) {
   return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u;
 }

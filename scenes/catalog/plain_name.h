@@ -5,9 +5,9 @@
 
 namespace cscd::scenes {
 
-// What a file is called in records, tables and the names of files that are made of it: the stem of its path,
-// at most 64 bytes long. Keeps letters of all alphabets, digits, `.`, `-` and `_`; any other character
-// becomes `_`, and so does a first `.` or `-`.
+// Returns the name that a file has in records, in tables and in the names of files made from it: the stem
+// of its path, cut to at most 64 bytes. Letters of all alphabets, digits, `.`, `-` and `_` stay. Any other
+// character becomes `_`, and so does a first `.` or `-`.
 std::string plain_name(const std::filesystem::path& path);
 
 }  // namespace cscd::scenes

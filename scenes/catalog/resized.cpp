@@ -11,7 +11,7 @@
 namespace cscd::scenes {
 namespace {
 
-// The scene's own resolution is taken for what lies so near to it.
+// The scene's own resolution is used for numbers of triangles within this factor of it.
 constexpr double kOwn = 1.1;
 
 const EffectRow* row_of(const EffectCall& call) {
@@ -20,7 +20,8 @@ const EffectRow* row_of(const EffectCall& call) {
   return nullptr;
 }
 
-// Effects of one pace: those that move bones run in substeps, those that move the surface once a frame.
+// Returns the effects of one pace. Effects that move bones run in substeps, and effects that move the
+// surface run once a frame.
 std::vector<EffectCall> calls_of(const Scene& scene, Pace pace) {
   std::vector<EffectCall> calls;
   for (const EffectCall& call : scene.effects) {
@@ -28,7 +29,7 @@ std::vector<EffectCall> calls_of(const Scene& scene, Pace pace) {
     if (row && row->predicts)
       throw InputError("scene " + scene.name + ": its effect " + call.name +
                        " changes the motion by the surface; name a scene without it");
-    if (!row || row->pace == pace) calls.push_back(call);  // an unknown one is refused by the sequence
+    if (!row || row->pace == pace) calls.push_back(call);  // the sequence refuses an unknown effect
   }
   return calls;
 }

@@ -1,4 +1,4 @@
-// What the rope has beside what every scene has (scene_files_test.cpp).
+// Checks the properties that the rope has beyond those of every scene (scene_files_test.cpp).
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace cscd::scenes {
 namespace {
 
 constexpr std::size_t kRings = 865, kSides = 28;
-// Rings this far apart are more than three diameters apart along the rope.
+// Rings with numbers this far apart are more than three diameters apart along the rope.
 constexpr std::size_t kFar = 28;
 
-// Where one ring is: all its vertices lie in a ball.
+// A ball that holds all vertices of one ring.
 struct Ball {
   Vec3 centre;
   double radius;
@@ -45,7 +45,7 @@ class Rope : public testing::Test {
   static inline std::unique_ptr<Clip> clip_;
 };
 
-// Closest distance of two segments, to within rounding.
+// Returns the closest distance of two segments, to within rounding.
 double distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
   const Vec3 p = p1 - p0, q = q1 - q0, r = p0 - q0;
   const double a = p.squaredNorm(), b = p.dot(q), e = q.squaredNorm(), c = p.dot(r), f = q.dot(r);
@@ -65,12 +65,12 @@ double distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) 
   return least;
 }
 
-// The surface between two neighbouring rings lies in the hull of their balls, hence within the larger radius
-// of the segment between their centres. While vertices move in straight lines so do the centres, and no
-// radius exceeds the larger of its ends. So two stretches stay apart if their segments, moving so, keep a
-// distance of two radii.
+// The surface between two neighbouring rings. It lies in the convex hull of the rings' balls, and so within
+// the larger radius of the segment between their centres. While vertices move in straight lines, so do the
+// centres, and no radius exceeds the larger of its values at both ends. So two stretches stay apart if the
+// distance of their moving segments stays above the sum of their radii.
 struct Stretch {
-  Vec3 start[2], end[2];  // of the two centres, at t = 0 and t = 1
+  Vec3 start[2], end[2];  // the two centres at t = 0 and t = 1
   double radius;
   Vec3 at(std::size_t i, double t) const { return (1 - t) * start[i] + t * end[i]; }
 };
@@ -81,7 +81,7 @@ Stretch stretch(const std::vector<Ball>& start, const std::vector<Ball>& end, st
           std::max({start[ring].radius, start[ring + 1].radius, end[ring].radius, end[ring + 1].radius})};
 }
 
-// A lower bound, above 0 only if proven, of the gap from t0 to t1.
+// Returns a lower bound of the gap from time t0 to time t1. A positive bound proves that there is a gap.
 double gap_over(const Stretch& a, const Stretch& b, double speed, double t0, double t1) {
   const double t = (t0 + t1) / 2;
   const double now = distance(a.at(0, t), a.at(1, t), b.at(0, t), b.at(1, t)) - a.radius - b.radius;
@@ -100,7 +100,7 @@ TEST_F(Rope, NeverTouchesItselfWithinAnInterval) {
       fastest = std::max(fastest, (end[ring].centre - start[ring].centre).norm());
     for (std::size_t i = 0; i + 1 < kRings; ++i)
       for (std::size_t j = i + kFar; j + 1 < kRings;) {
-        // Centres of neighbouring rings are less than 0.3 apart: what is far off allows a leap.
+        // Centres of neighbouring rings are less than 0.3 apart, so a large distance allows to skip rings.
         const double spare = (start[i].centre - start[j].centre).norm() - 2 * fastest - 2.8;
         if (spare > 0.3) {
           j += static_cast<std::size_t>(spare / 0.3);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 16 << 20;
 
-// One object of the file, with the place of it for the error texts.
+// Reads one object of the file, with the object's place for error texts.
 class Reader {
  public:
   Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
@@ -55,7 +55,7 @@ class Reader {
 
 Parameters::Value to_value(const Json& json, const std::string& where);
 
-// All entries of an object but the one named.
+// Returns all entries of an object except the entry `but`.
 Parameters to_parameters(const Json& json, const std::string& where, std::string_view but = {}) {
   std::map<std::string, Parameters::Value, std::less<>> values;
   for (const auto& [key, value] : json.items())
@@ -114,9 +114,9 @@ Json parse_json(const std::string& text, const std::string& where) {
   }
 }
 
-// A scene with a base is that scene's file, changed first by its patch (RFC 6902, which reaches single items
-// of lists) and then by what else it says (RFC 7396: objects merge, anything else replaces). Story and digest
-// are each scene's own.
+// Joins a scene with its base. The base's file is changed first by the scene's patch (RFC 6902, which
+// reaches single items of lists) and then by the scene's other members (RFC 7396: objects merge, anything
+// else replaces). Story and digest are never taken from the base.
 Json with_base(Json json, const std::string& where, const fs::path& folder) {
   const auto named = json.is_object() ? json.find("base") : json.end();
   if (named == json.end()) return json;

@@ -11,17 +11,19 @@
 
 namespace cscd::scenes {
 
-// What a scene must turn out to be, as far as its file says.
+// The counts and the digest that a scene must have, as far as its file gives them.
 struct Expected {
   std::optional<std::size_t> vertices, triangles, bones;
-  std::optional<std::string> digest;  // of all frames, see FrameDigest
+  std::optional<std::string> digest;  // digest of all frames, see FrameDigest
 };
 
-// One scene file, scenes/NAME.json or any other path that ends in .json: a shape, what moves it, and what
-// comes of it. It may name another as its `base` and say only what differs: `patch` (RFC 6902) changes places
-// in it, `/effects/0/weight`; what else is said merges with it if it is an object, and replaces it if not.
+// One scene file, scenes/NAME.json or any other path that ends in .json: a shape, the effects that
+// move it, and the result that is expected. A scene file may name another scene as its `base` and
+// state only the differences. Its `patch` (RFC 6902) changes places in the base, such as
+// `/effects/0/weight`. Any other member of the file merges with the base's member if it is an object,
+// and replaces the base's member otherwise.
 struct Scene {
-  std::string name;   // of a scene file by its path, the file's plain name (plain_name.h)
+  std::string name;   // of a scene file by its path: the file's plain name (plain_name.h)
   std::string story;  // two sentences
   std::string shape;
   Parameters shape_parameters;
@@ -32,29 +34,32 @@ struct Scene {
   std::string recipe;  // everything that the frames depend on, in canonical text
 };
 
+// An entry of list_scenes(): the facts that a scene file states about its scene.
 struct SceneSummary {
   std::string name, story;
   std::size_t frames = 0;
   Expected expected;
   std::vector<std::string> effects;
-  std::string fault;  // why the file is no scene; empty if it is one, else nothing but the name is filled in
+  std::string fault;  // the error if the file is no scene; then only the name is set besides
 };
 
-// The folder of scene files: $CSCD_SCENES; else the nearest `scenes` with a scene file in it, going up from
-// the current directory, then from the program's own place. Throws InputError when there is none.
+// Returns the folder of scene files: $CSCD_SCENES, or else the nearest folder `scenes` with a scene
+// file in it, going up from the current directory and then from the program's own place. Throws
+// InputError if there is none.
 std::filesystem::path scenes_folder();
 
-// Scenes in order of their names, those with a fault among them.
+// Returns all scenes in the order of their names, including those with a fault.
 std::vector<SceneSummary> list_scenes();
 
-// Whether this is the path of a scene file rather than a scene's name.
+// Tells whether the argument is the path of a scene file and not a scene's name.
 bool is_scene_file(const std::filesystem::path& name_or_path);
 
-// A scene by its name in the folder of scene files, or by the path of its file. Throws InputError for an
-// unknown scene, listing the known ones, and for a file that is not a scene, naming the place in it.
+// Loads a scene by its name in the folder of scene files, or by the path of its file. Throws InputError for
+// an unknown scene, with a list of the known scenes, and for a file that is no scene, with the place of the
+// fault in the file.
 Scene load_scene(std::string_view name_or_path);
 
-// The same from a text; `where` (a file) begins the error texts. A base is looked for in `folder` first.
+// Reads a scene from a text; `where` (a file) begins error texts. A base is looked for in `folder` first.
 Scene parse_scene(std::string_view name, const std::string& text, const std::string& where,
                   const std::filesystem::path& folder = {});
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The digest of a point cache; nothing when it cannot be read through.
+// Returns the digest of a point cache, or nullopt if the cache cannot be read to its end.
 std::optional<std::string> digest_of(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<std::string> digest_of(const fs::path& file) {
     copy_frames(reader, sink);
     return sink.text();
   } catch (const InputError&) {
-    return std::nullopt;  // damaged: it is generated again
+    return std::nullopt;  // a damaged cache is generated again
   }
 }
 
@@ -38,7 +38,7 @@ fs::path costs_file(const Scene& scene) {
   return cache_file(scene).replace_extension(".effects.json");
 }
 
-// The digest of the cached frames, for a scene whose file has none.
+// The file with the digest of the cached frames, for a scene whose own file has none.
 fs::path digest_file(const Scene& scene) {
   return cache_file(scene).replace_extension(".digest");
 }
@@ -56,12 +56,12 @@ void write_costs(const Scene& scene, const Generated& generated) {
   write_whole(costs_file(scene), effects.dump(1) + "\n");
 }
 
-// Held while a cache is looked at and generated; the system lets go of it when the process ends.
+// A lock that is held while a cache is checked and generated. The system releases it when the process ends.
 class CacheLock {
  public:
   explicit CacheLock(const fs::path& cache)
       : file_(open(cache.string().append(".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666)) {
-    if (file_ >= 0) flock(file_, LOCK_EX);  // without one, the same is only generated twice
+    if (file_ >= 0) flock(file_, LOCK_EX);  // without the lock, a cache is only generated twice
   }
   ~CacheLock() {
     if (file_ >= 0) close(file_);
@@ -80,8 +80,8 @@ std::string first_line(const fs::path& path) {
   return line;
 }
 
-// Which file of which size stands there, and when it was last changed. The time of change is the system's:
-// whatever writes to the file moves it on.
+// Identifies a file with its size and the times of its last changes. The system sets the time of status
+// change, so anything that writes to the file changes that time.
 std::string identity_of(const fs::path& path) {
   struct stat facts {};
   if (stat(path.c_str(), &facts) != 0) return {};
@@ -92,8 +92,9 @@ std::string identity_of(const fs::path& path) {
          std::to_string(facts.st_size) + " " + nanoseconds(facts.st_mtim) + " " + nanoseconds(facts.st_ctim);
 }
 
-// Reading all frames for their digest takes longer than many a query, so it is done once for each file: a
-// cache whose digest was found right, and which has not been changed since, is whole.
+// Tells whether the scene's cache is complete. Reading all frames for their digest takes longer than many a
+// query, so it is done once for each file: a cache whose digest was right once, and which has not been
+// changed since, is complete.
 bool is_whole(const Scene& scene) {
   std::error_code error;
   if (!fs::exists(costs_file(scene), error)) return false;
@@ -106,7 +107,7 @@ bool is_whole(const Scene& scene) {
   try {
     write_whole(verified, now + "\n");
   } catch (const InputError&) {
-    // Where nothing can be written, the digest is looked at every time.
+    // Where nothing can be written, the digest is computed every time.
   }
   return true;
 }
@@ -152,7 +153,7 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
       throw InputError(file.parent_path().string() + ": cannot be made: " + error.message() +
                        "; let CSCD_CACHE name a folder that can");
     const CacheLock lock(file);
-    if (!is_whole(scene)) generate_to_cache(scene, progress);  // no other has meanwhile
+    if (!is_whole(scene)) generate_to_cache(scene, progress);  // unless another process has meanwhile
   }
   return std::make_unique<PointCacheReader>(file);
 }

@@ -8,27 +8,29 @@
 
 namespace cscd::scenes {
 
-// Raise when the same scene file gives other frames than before: caches of older versions are then left
-// alone.
+// Raise this number when an unchanged scene file gives other frames. Caches of other
+// versions are then ignored.
 inline constexpr int kGeneratorVersion = 2;
 
-// $CSCD_CACHE, else `.cache` beside the scenes' folder, else the user's own folder of caches.
+// Returns $CSCD_CACHE, or else `.cache` beside the scenes' folder, or else the user's own folder of caches.
 std::filesystem::path cache_folder();
 
-// Where the frames of this scene are cached: the name holds a hash of what the frames depend on.
+// Returns the file in which the frames of this scene are cached. Its name holds a hash of everything that
+// the frames depend on.
 std::filesystem::path cache_file(const Scene& scene);
 
-// The scene's frames, streamed from its cache. Generated first where the cache is missing, and again where it
-// is damaged: its digest is verified, once for each cache file that has not been changed since. Of several
-// processes that miss the same cache, one generates it. `progress` tells of generating only.
+// Returns the scene's frames, streamed from its cache. The frames are generated first if the cache is
+// missing, and generated again if it is damaged: the cache's digest is verified once for each state of the
+// cache file. If several processes miss the same cache, one of them generates it. `progress` is called only
+// while frames are generated.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
 
-// Generates the scene of a file, whatever the file expects of it, and returns what came of it: all four
-// values. Writes them into the file, which appears whole with its other text as it was.
+// Generates the scene of a file, whatever the file expects, and returns the actual counts and digest. Writes
+// them into the file as its `expected`. The file is replaced as a whole, and its other text stays as it was.
 Expected accept_scene(const std::filesystem::path& file, const Progress& progress = {});
 
-// What the effects of a scene took when its cache was generated; open_scene first. Throws InputError when the
-// file beside the cache that tells cannot be read.
+// Returns the cost of each effect of a scene when its cache was generated. Call open_scene first. Throws
+// InputError if the file beside the cache that holds the costs cannot be read.
 std::vector<EffectCost> effect_costs(const Scene& scene);
 
 }  // namespace cscd::scenes

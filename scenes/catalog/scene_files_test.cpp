@@ -1,5 +1,5 @@
-// Every scene file: its counts, its frames, and what makes it a workload. The first test generates a scene
-// anew; the others, each a process of its own under ctest, read its cache.
+// Checks every scene file: its counts, its frames, and the properties that make it a workload. The first test
+// generates a scene anew. The others, each of which is a process of its own under ctest, read its cache.
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,7 +16,7 @@
 namespace cscd::scenes {
 namespace {
 
-// A scene as it was asked for; expected counts in the file are only what its author thought.
+// The counts that a scene was ordered with. The expected counts in its file only say what its author thought.
 struct Asked {
   const char* name;
   std::size_t triangles, vertices;
@@ -31,8 +31,8 @@ void PrintTo(const Asked& asked, std::ostream* out) {
   *out << asked.name;
 }
 
-// Frames between two that are looked at: the exact test takes 0.04 s a frame in Release and ten times that
-// with sanitizers. CSCD_FULL=1 looks at every frame.
+// Every how many frames the tests check one. The exact test takes 0.04 s a frame in Release and ten times
+// that with sanitizers. CSCD_FULL=1 checks every frame.
 std::size_t stride() {
   if (std::getenv("CSCD_FULL")) return 1;
 #ifdef NDEBUG
@@ -44,7 +44,7 @@ std::size_t stride() {
 
 class SceneFiles : public testing::TestWithParam<Asked> {
  protected:
-  // Whether the surface is kept off itself: then contacts are what the scene is for.
+  // Tells whether the surface is kept off itself. Such a scene has contacts on purpose.
   static bool responds() { return std::string_view(GetParam().name).ends_with("_contact"); }
   void SetUp() override {
     if (stride() > 4 && responds() && GetParam().triangles > 12'000)
@@ -102,7 +102,7 @@ TEST_P(SceneFiles, HasNearContactsInHalfOfItsIntervals) {
   const TriangleMesh mesh = this->mesh(clip);
   Nearness nearness(mesh, clip.frame(0).positions);
   std::size_t near = 0, looked_at = 0;
-  // A share of fewer samples says nothing.
+  // A share of fewer samples would mean little.
   for (std::size_t i = 0; i < clip.interval_count(); i += std::min<std::size_t>(stride(), 4), ++looked_at) {
     const auto pair = nearness.closest(clip.frame(i).positions);
     near += pair && pair->distance < kNear;
@@ -113,7 +113,7 @@ TEST_P(SceneFiles, HasNearContactsInHalfOfItsIntervals) {
 }
 
 TEST_P(SceneFiles, MovesAllTheTimeAndNotTooFast) {
-  // In mean edge lengths an interval.
+  // Speeds are in mean edge lengths an interval.
   const Clip clip = frames();
   const double edge = Nearness(mesh(clip), clip.frame(0).positions).mean_edge();
   double sum = 0, fastest = 0;

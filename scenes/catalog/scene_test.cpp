@@ -87,7 +87,7 @@ TEST(Scene, WithContactResponseHasPredictionsInItsFramesAndItsDigest) {
   DigestSink digest;
   copy_frames(*clip, digest);
   EXPECT_EQ(digest.text(), generated.digest);
-  for (std::size_t i = 0; i < 5; ++i)  // nothing meets here
+  for (std::size_t i = 0; i < 5; ++i)  // no contact occurs here
     EXPECT_TRUE(std::ranges::equal(clip->interval(i).motion.end(), clip->frame(i + 1).positions));
 }
 
@@ -111,7 +111,7 @@ TEST(Scene, RunsTheEffectsThatItNamesAndNoOther) {
   EXPECT_NE(clip->frame(0).positions[5], clip->frame(5).positions[5]);
 }
 
-// A folder of scenes and one of caches, named by the environment.
+// A folder of scenes and a folder of caches, both named by environment variables.
 class Catalogue : public testing::Test {
  protected:
   Catalogue() {
@@ -135,7 +135,7 @@ class Catalogue : public testing::Test {
     copy_frames(source, sink);
     return sink.text();
   }
-  // How many frames open_scene had to generate.
+  // Returns how many frames open_scene had to generate.
   static std::size_t generated(const Scene& scene) {
     std::size_t frames = 0;
     const std::unique_ptr<ClipSource> source = open_scene(scene, [&](std::size_t, std::size_t) { ++frames; });

@@ -6,7 +6,7 @@
 
 namespace cscd::scenes {
 
-// A scene of 82 vertices that takes no time, with a wrong digest.
+// A scene of 82 vertices that is generated in no time, with a wrong digest.
 inline const std::string kSmallScene = R"({
   "schema": "cscd.scene/1",
   "story": "A chain falls. It is led by one end.",
@@ -21,7 +21,7 @@ inline const std::string kSmallScene = R"({
   "expected": {"vertices": 82, "triangles": 160, "bones": 4, "digest": "0000000000000000"}
 })";
 
-// The same with its true digest.
+// The small scene with its true digest.
 inline std::string small_scene_with_digest() {
   std::optional<Clip> clip;
   const Generated generated =

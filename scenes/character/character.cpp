@@ -8,7 +8,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Larger coordinates leave too little of a double for a surface, and make squares overflow.
+// Larger coordinates are refused: they leave too few bits of a double for the shape of a surface, and their
+// squares overflow.
 constexpr double kFarthest = 1e15;
 
 [[noreturn]] void refuse(const std::string& what) {

@@ -8,75 +8,78 @@
 
 #include "scenes/character/transform.h"
 
-// A character as model files hold it: a tree of nodes, triangle surfaces that hang on them or follow several
-// of them, and animations of the nodes. Plain values; nothing here knows a file format.
+// A character as model files hold it: a tree of nodes, surfaces of triangles that hang on one node or follow
+// several nodes, and animations of the nodes. These are plain values; nothing here knows a file format.
 namespace cscd::scenes {
 
-// A map as files write it: scale, then rotate, then move. A mirrored or flat scale is kept as it is written,
-// which no matrix could give back.
+// A map as files write it: scale, then rotate, then move. A mirrored or flat scale is kept as the file
+// writes it, because no decomposition of a matrix could give it back.
 struct ScaleTurnMove {
   Vec3 move = Vec3::Zero();
   Quaternion rotation;
   Vec3 scale = Vec3::Ones();
 };
 
-// A node that scales as another one above it does at the same time, or undoes what that one does.
+// Marks a node whose scale follows the animated scale of a node above it: it either scales by the same
+// factors at the same time or undoes them.
 struct FollowedScale {
-  int node;  // above
-  bool inverse;
+  int node;      // index of the node above
+  bool inverse;  // true: the reciprocal scale
 };
 
+// A node of the tree. Nodes are listed parents first.
 struct Node {
   std::string name;
   int parent;                              // smaller than the node's own index; -1 for the root
-  Transform local;                         // to the parent, at rest
-  std::optional<ScaleTurnMove> written{};  // the same, where the file gives it in parts
-  std::optional<FollowedScale> follows{};  // where animations move it with another node's scale
+  Transform local;                         // from the node's coordinates to its parent's, at rest
+  std::optional<ScaleTurnMove> written{};  // `local` in parts, where the file gives it so
+  std::optional<FollowedScale> follows{};  // where animations move the node with another node's scale
 };
 
-// A node that moves vertices of a part, and the map from the part's coordinates to the node's when both were
-// bound.
+// A node that moves vertices of a part. `offset` maps the part's coordinates to the node's coordinates at
+// the moment when the vertices were bound to the node.
 struct Joint {
   int node;
   Transform offset;
 };
 
+// How strongly one joint moves one vertex.
 struct Influence {
-  int joint;  // of the part
+  int joint;  // index into Part::joints
   double weight;
 };
 
-// One shape that a part can be blended towards (morph target, blend shape): what is added to its positions.
+// One shape that a part can be blended towards (morph target, blend shape), as the displacements that it
+// adds to the part's positions.
 struct MorphTarget {
   std::string name;
   std::vector<Vec3> displacements;  // [vertices]
   double weight = 0;                // at rest
 };
 
-// One surface, in coordinates of its own.
+// One surface of triangles, in coordinates of its own.
 struct Part {
-  std::string name;  // of the mesh
-  int node;          // where it hangs; vertices without influences follow it
+  std::string name;  // name of the mesh
+  int node;          // the part hangs on it; vertices without influences follow it
   std::vector<Vec3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<Joint> joints;
-  std::vector<std::size_t>
-      first;  // [vertices + 1]: those of vertex v are influences[first[v] .. first[v + 1])
-  std::vector<Influence> influences;  // weights positive; of one vertex they sum to 1
+  std::vector<std::size_t> first;     // [vertices + 1]; vertex v has influences[first[v] .. first[v + 1])
+  std::vector<Influence> influences;  // weights are positive; those of one vertex sum to 1
   std::vector<MorphTarget> targets{};
-  // Numbers of the mesh and of the primitive in it that the part was made of, as the file counts them; two
-  // parts may be instances of one mesh. Vertex v of the part is vertex v of that primitive.
+  // The numbers, as the file counts them, of the mesh and of the primitive in the mesh that the part was
+  // made from. Two parts may be instances of one mesh. Vertex v of the part is vertex v of that primitive.
   int mesh = -1, primitive = -1;
 };
 
 // How a value goes on from one key to the next.
 enum class Between {
   constant,  // stays until the next key
-  line,      // in a straight line; rotations along the shorter way
+  line,      // in a straight line; rotations turn the shorter way
   cubic      // along the cubic through both keys with their tangents (Hermite); rotations are normalised
 };
 
-// A tangent that does not rise.
+// The tangent of a value that does not change: zero in every component.
 template <class Value>
 inline const Value kFlat{};
 template <>
@@ -84,35 +87,37 @@ inline const Vec3 kFlat<Vec3> = Vec3::Zero();
 template <>
 inline const Quaternion kFlat<Quaternion>{0, 0, 0, 0};
 
+// A value that an animation prescribes at one moment.
 template <class Value>
 struct Key {
-  double time;  // seconds, growing
+  double time;  // seconds; strictly ascending in a list of keys
   Value value;
-  Between next = Between::line;
-  // Tangents for cubics, a second; of rotations the slopes of the four numbers.
+  Between next = Between::line;  // how the value goes on to the next key
+  // Tangents for Between::cubic, in units of the value a second. For rotations they are the slopes of the
+  // four numbers of the quaternion.
   Value arriving = kFlat<Value>, leaving = kFlat<Value>;
 };
 
-// One number over time.
+// One number over time, as its keys.
 using Curve = std::vector<Key<double>>;
 
-// A vector or a rotation whose components have keys at times of their own (FBX). A component without keys
-// stays at `rest`.
+// A vector or a set of angles whose three components each have keys at times of their own (as in FBX). A
+// component without keys stays at `rest`.
 struct Components {
   std::array<Curve, 3> axis;
   std::array<double, 3> rest{};
   bool empty() const { return axis[0].empty() && axis[1].empty() && axis[2].empty(); }
 };
 
-// A rotation as three angles in degrees about x, y and z; `order` lists the axes in the order in which they
-// are turned about.
+// A rotation as three angles in degrees about x, y and z. `order` lists the axes in the order in which the
+// rotations about them are applied.
 struct EulerAngles {
   Components degrees;
   std::array<int, 3> order{0, 1, 2};
 };
 
-// What moves one node. A list without keys leaves that part of the node at rest. Of whole values and
-// components a channel has one at most.
+// The keys that move one node. A list without keys leaves that part of the node at rest. A channel gives a
+// move, a rotation or a scale by keys of whole values or by keys of components, never by both.
 struct Channel {
   int node;
   std::vector<Key<Vec3>> moves;
@@ -122,44 +127,48 @@ struct Channel {
   EulerAngles angles{};
 };
 
-// What blends one part towards its targets.
+// The keys that blend one part towards its morph targets.
 struct MorphChannel {
   int part;
   std::vector<Curve> weights;  // [targets]
 };
 
+// One clip: what moves during it, and when.
 struct Animation {
   std::string name;               // may be empty
-  double start = 0, seconds = 0;  // the clip's first moment, and from there to its last
-  double ticks_per_second = 0;    // as the file says; 0 where it does not, 1 in formats of seconds
+  double start = 0, seconds = 0;  // seconds: the clip's first moment, and its length
+  double ticks_per_second = 0;    // 0 where the file does not say; 1 in formats that count in seconds
   std::vector<Channel> channels;
   std::vector<MorphChannel> morphs{};
 };
 
+// Everything that is read from one model file.
 struct Character {
   std::vector<Node> nodes;  // parents first
   std::vector<Part> parts;
   std::vector<Animation> animations;
   std::string format;
   double centimetres_per_unit = 0;  // 0 where the file does not say
-  std::vector<std::string> notes;   // what of the file was left out
+  std::vector<std::string> notes;   // messages about what was left out of the file
 };
 
-// Bounds on what a file may hold.
+// Upper bounds on what a model file may hold.
 struct CharacterLimits {
   std::size_t file_bytes = std::size_t{256} << 20;
-  std::size_t nodes = 100'000, parts = 10'000, joints = 4096;  // joints: of all parts together, as nodes
+  std::size_t nodes = 100'000, parts = 10'000, joints = 4096;  // joints: distinct nodes, over all parts
   std::size_t vertices = 10'000'000, triangles = 20'000'000, influences = 80'000'000;
   std::size_t animations = 10'000, keys = 20'000'000;
-  std::size_t displacements = 40'000'000;  // of all morph targets together, one a vertex
+  std::size_t displacements = 40'000'000;  // of all morph targets together, one a vertex and target
   std::size_t frames = 1'000'000, cache_bytes = std::size_t{8} << 30;
 };
 
-// Throws InputError for counts above the limits, indices out of range, numbers that are not finite, weights
-// that do not sum to 1, and times that do not grow. Everything below relies on it.
+// Checks a character against the limits and for consistency; all functions of this folder rely on it.
+// Throws InputError for counts above the limits, indices out of range, numbers that are not finite,
+// coordinates beyond 1e15, weights that do not sum to 1, and times of keys that do not ascend.
 void validate(const Character& character, const CharacterLimits& limits);
 
-// The nodes that move a part: joints with an influence, and those under vertices without. Sorted.
+// Returns the sorted indices of the nodes that move a vertex: the joints that have an influence, and the
+// nodes of the parts that have vertices without influences.
 std::vector<int> moving_nodes(const Character& character);
 
 }  // namespace cscd::scenes

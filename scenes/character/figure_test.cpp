@@ -4,11 +4,11 @@
 #include "scenes/character/pose.h"
 #include "scenes/character/test_figure.h"
 
-// What other tests rely on of the generated figure.
+// Checks the properties of the generated figure that other tests rely on.
 namespace cscd::scenes {
 namespace {
 
-// Some parts of the figure as one surface.
+// Some parts of the figure joined to one surface.
 struct Surface {
   Surface(const Character& character, const std::vector<std::size_t>& chosen) {
     for (const std::size_t p : chosen) {

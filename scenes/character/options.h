@@ -7,26 +7,29 @@
 
 namespace cscd::scenes {
 
-// What to make of a model file.
+// The options of an import: which clip, components and repairs to use.
 struct ImportOptions {
-  std::string clip;                        // a name, else a number; empty: the first that moves the surface
-  std::optional<std::size_t> clip_number;  // instead of `clip`, where a name might be a number
+  std::string clip;  // a name, else a number; empty: the first clip that moves the surface
+  std::optional<std::size_t> clip_number;  // instead of `clip`, where a number might be a name
   double fps = 30;                         // frames a second
-  bool from_bind_pose = false;             // a lead-in of half a second from the bind pose
-  std::string component = "all";           // see choose_pieces
-  std::size_t fill_holes = 0;              // fill holes of up to so many edges
+  bool from_bind_pose = false;             // put half a second from the bind pose before the clip
+  std::string component = "all";           // see choose_pieces (pieces.h)
+  std::size_t fill_holes = 0;              // holes of up to so many edges are filled; 0 fills none
   bool flip_inward = false;                // turn closed components that face inward
   std::optional<double> weld;              // tolerance as a share of the diagonal
-  // Instead of a clip: all components in the bind pose and at the start of every clip.
+  // Survey the file instead of importing one clip: take all components in the bind pose and at
+  // the start of every clip.
   bool survey = false;
 
   bool operator==(const ImportOptions&) const = default;
 };
 
+// Default of `ImportOptions::weld`, and the length of the lead-in in seconds.
 inline constexpr double kDefaultWeld = 1e-6;
 inline constexpr double kLeadInSeconds = 0.5;
 
-// As words for a command line, and back. parse_arguments throws InputError for what it does not know.
+// Write the options as words for a command line, and read them back. parse_arguments throws InputError for
+// an unknown option, a value that is missing or cannot be read, and a number out of range.
 std::vector<std::string> to_arguments(const ImportOptions& options);
 ImportOptions parse_arguments(std::span<const std::string> arguments);
 

@@ -10,23 +10,25 @@
 
 namespace cscd::scenes {
 
-// One connected component of a surface as a mesh of its own.
+// One connected component of a surface, as a mesh of its own. The surface that it is taken
+// from is called the whole.
 struct Piece {
-  std::vector<TriangleId> triangles;  // of the whole
-  std::vector<VertexId> vertices;     // of the whole, by the piece's own numbers
+  std::vector<TriangleId> triangles;  // numbers in the whole
+  std::vector<VertexId> vertices;     // [vertices of `mesh`]; their numbers in the whole
   TriangleMesh mesh;
 };
 
-// In the order of TriangleMesh::component.
+// Returns all components of a surface, in the order of TriangleMesh::component.
 std::vector<Piece> pieces_of(const TriangleMesh& whole);
 
-// The volume that a closed, consistently oriented piece encloses: positive if it faces outward. `positions`
-// are those of the whole.
+// Returns the volume that a closed, consistently oriented piece encloses, in cubic lengths of the scene:
+// positive if the piece faces outward. `positions` holds the positions of the whole's vertices.
 double signed_volume(const Piece& piece, std::span<const Vec3> positions);
 
-// Which components to use: "auto" is the closed, consistently oriented one with the most triangles, or the
-// one with the most where none is closed; "largest" the one with the most; "all"; or a number. Throws
-// InputError for anything else, and for a component that does not exist.
+// Returns the numbers of the components to use. "all" chooses every component, "largest" the component with
+// the most triangles, and "auto" the closed, consistently oriented component with the most triangles; where
+// no component is closed, "auto" chooses the largest. A number chooses that component. Throws InputError
+// for any other word and for the number of a component that does not exist.
 std::vector<std::size_t> choose_pieces(std::span<const Piece> pieces, const std::string& which);
 
 }  // namespace cscd::scenes

@@ -8,7 +8,7 @@
 namespace cscd::scenes {
 namespace {
 
-// An open sheet of 2, a box of 12, and a sphere of 80 facing inward.
+// An open sheet of 2 triangles, a box of 12, and a sphere of 80 that faces inward, far away at x = 1e4.
 test::Shape three_pieces() {
   test::Shape sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                     {test::corners(0, 1, 2), test::corners(0, 2, 3)}};
@@ -39,7 +39,7 @@ TEST(Pieces, AreChosenByKindSizeOrNumber) {
   EXPECT_EQ(choose_pieces(pieces, "1"), Numbers{1});
   for (const char* wrong : {"3", "-1", "big", ""})
     EXPECT_THROW(choose_pieces(pieces, wrong), InputError) << wrong;
-  // A large open piece is passed over for a closed one.
+  // The closed piece is chosen before the open piece; where none is closed, the open piece is.
   EXPECT_EQ(choose_pieces(std::span(pieces).first(2), "auto"), Numbers{1});
   EXPECT_EQ(choose_pieces(std::span(pieces).first(1), "auto"), Numbers{0});
 }

@@ -22,7 +22,8 @@ Quaternion between(const Quaternion& a, const Quaternion& b, double s) {
   return slerp(a, b, s);
 }
 
-// The cubic from p with slope m to q with slope n, both slopes over the whole way (glTF 2.0, appendix C).
+// The value at share s of the cubic from p with slope m to q with slope n. Both slopes are per whole way
+// from p to q (glTF 2.0, appendix C).
 double hermite(double p, double m, double q, double n, double s) {
   const double s2 = s * s, s3 = s2 * s;
   return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * m + (3 * s2 - 2 * s3) * q + (s3 - s2) * n;
@@ -70,7 +71,7 @@ Quaternion sample(const EulerAngles& angles, double seconds) {
   return from_euler(sample(angles.degrees, seconds), angles.order);
 }
 
-// As the file writes it, or taken out of the map at rest where the file gives nothing else.
+// The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's map.
 ScaleTurnMove parts_at_rest(const Node& node) {
   if (node.written) return *node.written;
   const Parts rest = parts_of(node.local);
@@ -122,7 +123,7 @@ Pose bind_pose(const Character& character) {
 Pose pose_at(const Character& character, const Animation& animation, double seconds) {
   std::vector<Transform> local;
   for (const Node& node : character.nodes) local.push_back(node.local);
-  std::map<int, Vec3> scales;  // of the nodes that the clip drives
+  std::map<int, Vec3> scales;  // scales of the nodes that the clip drives
   for (const Channel& channel : animation.channels) {
     const ScaleTurnMove rest = parts_at_rest(character.nodes[at(channel.node)]);
     Vec3 move = rest.move, scale = rest.scale;
@@ -142,7 +143,7 @@ Pose pose_at(const Character& character, const Animation& animation, double seco
     const auto driven = scales.find(follows->node);
     if (driven == scales.end()) continue;
     Vec3 scale = driven->second;
-    // Below a node of no extent nothing has a size of its own.
+    // Below a node that is scaled to nothing, no scale can restore the size; zero keeps the map finite.
     for (int k = 0; k < 3 && follows->inverse; ++k) scale[k] = scale[k] == 0 ? 0 : 1 / scale[k];
     local[n] = from_parts(Vec3::Zero(), {}, scale);
   }
@@ -185,7 +186,7 @@ Pose blend(const Character& character, const Pose& a, const Pose& b, double s) {
     }
     const Transform from = composed(inverse(a[at(parent)]), a[n]),
                     to = composed(inverse(b[at(parent)]), b[n]);
-    // Below a node of no extent nothing has a place of its own.
+    // Below a node that is scaled to nothing, a node has no place of its own; any finite map will do.
     local[n] = from.finite() && to.finite() ? blend(from, to, s) : Transform();
   }
   return world_of(character, local);
@@ -193,7 +194,7 @@ Pose blend(const Character& character, const Pose& a, const Pose& b, double s) {
 
 void skin(const Character& character, const Pose& pose, const MorphWeights& weights, std::vector<Vec3>& out) {
   out.clear();
-  std::vector<Transform> moved;  // by joint of the part
+  std::vector<Transform> moved;  // [joints of the part]
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const Part& part = character.parts[p];
     moved.clear();

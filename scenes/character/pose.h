@@ -7,34 +7,39 @@
 
 namespace cscd::scenes {
 
-// Where every node stands: one map a node, from its coordinates to the world's.
+// Where every node stands: [nodes] maps, each from the node's coordinates to the world's.
 using Pose = std::vector<Transform>;
 
-// By part, one weight for each of its morph targets.
+// [parts][targets of the part] weights of the morph targets.
 using MorphWeights = std::vector<std::vector<double>>;
 
+// The pose in which no animation moves the nodes.
 Pose rest_pose(const Character& character);
 
-// The pose in which the vertices were bound to the joints, where the offsets say so. The offsets of one part
-// are relative to each other; its topmost joint stands where it is at rest. Nodes that are no joints stand to
-// their parents as at rest.
+// Returns the pose in which the vertices were bound to the joints, as far as the offsets of the joints
+// tell. The offsets of one part only say how its joints stood to each other, so the part's topmost joint is
+// placed where it stands at rest. A node that is no joint stands to its parent as at rest.
 Pose bind_pose(const Character& character);
 
-// The pose at a time of an animation: keys are joined as each says (Between), and held before the first and
-// after the last. Nodes that it does not drive are at rest.
+// Returns the pose at a time of an animation, in seconds. Values go from key to key as each key says
+// (Between); the first key's value holds before it, and the last key's value after it. Nodes that the
+// animation does not drive stay at rest.
 Pose pose_at(const Character& character, const Animation& animation, double seconds);
 
+// The weights of the morph targets at rest, at a time of an animation in seconds, and at the share s in
+// [0, 1] of the straight way from `a` to `b`.
 MorphWeights rest_weights(const Character& character);
 MorphWeights weights_at(const Character& character, const Animation& animation, double seconds);
 MorphWeights blend(const MorphWeights& a, const MorphWeights& b, double s);
 
-// Between two poses: every node moves relative to its parent (see blend in transform.h), so that limbs keep
-// together.
+// Returns the pose at the share s in [0, 1] of the way between two poses. Every node moves relative to its
+// parent (see blend in transform.h), so that limbs keep together.
 Pose blend(const Character& character, const Pose& a, const Pose& b, double s);
 
-// Positions of all vertices, the parts one after the other: morph targets are added by their weights, then
-// joints move what came of it (linear blend skinning: the weighted mean of where the joints would take a
-// vertex). Without weights, those at rest.
+// Writes the positions of all vertices to `out`, the parts one after the other. Displacements of morph
+// targets are added by their weights first. Then the joints move each vertex by linear blend skinning: the
+// vertex goes to the weighted mean of the places to which its joints would take it. The overload without
+// weights uses the weights at rest.
 void skin(const Character& character, const Pose& pose, const MorphWeights& weights, std::vector<Vec3>& out);
 void skin(const Character& character, const Pose& pose, std::vector<Vec3>& out);
 

@@ -32,7 +32,7 @@ TEST(Pose, MovesVerticesWithTheirJoints) {
     if (x.x() < 1.4) {
       EXPECT_LT((bent[v] - x - Vec3(0, 0, 5)).norm(), kNear);
     } else if (x.x() > 2.6) {
-      // A quarter turn about the upper joint at x = 2.
+      // The upper joint, at x = 2, makes a quarter turn.
       EXPECT_LT((bent[v] - Vec3(2 - x.y(), x.x() - 2, x.z() + 5)).norm(), kNear);
     }
   }
@@ -47,7 +47,8 @@ TEST(Pose, HoldsTheFirstAndLastKeyAndTurnsBetween) {
   EXPECT_LT((half - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), kNear);
 }
 
-// A channel that moves a node only must keep its rotation at rest, and nodes without a channel stay.
+// A channel that only moves a node must leave the node's rotation at rest, and nodes
+// without a channel must stay.
 TEST(Pose, PartsWithoutKeysStayAtRest) {
   Character tube = bending_tube();
   tube.nodes[4].local = quarter_turn({1, 0, 0});
@@ -58,7 +59,7 @@ TEST(Pose, PartsWithoutKeysStayAtRest) {
   EXPECT_EQ(pose[2].origin, rest_pose(tube)[2].origin);
 }
 
-// One node that moves along x by the keys given.
+// Returns where one node stands on x at a time, moved by the keys given.
 double moved_to(std::vector<Key<Vec3>> keys, double seconds) {
   Character tube = bending_tube();
   tube.animations[0].channels = {{0, std::move(keys), {}, {}}};
@@ -70,8 +71,8 @@ TEST(Pose, KeysStayOrGoStraightOrAlongACubicAsTheySay) {
   EXPECT_EQ(moved_to({{0, one, Between::constant, flat, flat}, {2, two}}, 1.999), 1);
   EXPECT_EQ(moved_to({{0, one, Between::constant, flat, flat}, {2, two}}, 2), 2);
   EXPECT_EQ(moved_to({{0, one, Between::line, flat, flat}, {2, two}}, 1), 1.5);
-  // Flat at both ends: 3 s^2 - 2 s^3 of the way. With a slope of 3 a second at the start, over two seconds:
-  // (s^3 - 2 s^2 + s) times 6 beside that.
+  // A cubic with flat ends has gone 3 s^2 - 2 s^3 of the way. A slope of 3 a second at the start, over two
+  // seconds, adds 6 (s^3 - 2 s^2 + s).
   const Key<Vec3> end{2, two, Between::line, flat, flat};
   EXPECT_NEAR(moved_to({{0, one, Between::cubic, flat, flat}, end}, 0.5), 1 + 3 / 16.0 - 2 / 64.0, kNear);
   EXPECT_NEAR(moved_to({{0, one, Between::cubic, flat, steep}, end}, 0.5),
@@ -84,7 +85,8 @@ TEST(Pose, CubicRotationsAreNormalised) {
   const Quaternion none{0, 0, 0, 0};
   for (Key<Quaternion>& key : keys) key = {key.time, key.value, Between::cubic, none, none};
   const Vec3 turned = pose_at(tube, tube.animations[0], 0.25)[4].column[0];
-  // The weighted sum of both quaternions, 3 s^2 - 2 s^3 = 0.15625 of the way, as one rotation.
+  // The rotation of the normalised sum of both quaternions, with the second weighted by
+  // 3 s^2 - 2 s^3 = 0.15625.
   const double half = std::sqrt(0.5), angle = 2 * std::atan2(0.15625 * half, 0.84375 + 0.15625 * half);
   EXPECT_LT((turned - Vec3(std::cos(angle), std::sin(angle), 0)).norm(), 1e-9);
 }
@@ -97,11 +99,11 @@ TEST(Pose, ComponentsHaveKeysOfTheirOwnAndElseRest) {
   tube.animations[0].channels = {channel};
   const Transform upper = pose_at(tube, tube.animations[0], 1.5)[4];
   EXPECT_LT((upper.origin - Vec3(1 + 2.5, 7, 5 + 4)).norm(), kNear);
-  // First a quarter turn about x, then one about z: z goes to -y, and that to x.
+  // First a quarter turn about x, then a quarter turn about z: the z axis goes to -y, and -y goes to x.
   EXPECT_LT((upper.column[2] - Vec3(1, 0, 0)).norm(), 1e-9);
 }
 
-// No rotation, and no matrix, gives [-1, 1, 1] back once it has been multiplied out.
+// A scale of [1, -1, -1] is kept as the file writes it: a matrix would not tell it from a half turn about x.
 TEST(Pose, MirroredScalesAreKeptAsWritten) {
   Character tube = bending_tube();
   tube.nodes[4].written = ScaleTurnMove{{1, 0, 0}, {}, {1, -1, -1}};
@@ -147,7 +149,8 @@ TEST(Pose, VerticesWithoutWeightsFollowTheirNode) {
   EXPECT_EQ(moving_nodes(tube), std::vector<int>{4});
 }
 
-// Files whose nodes rest in the first pose of a clip: the offsets still know how the skin was bound.
+// A scale that follows a node with `inverse` cancels it at every time, and one that
+// follows it without repeats it.
 TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
   Character tree;
   const ScaleTurnMove twice{Vec3::Zero(), {}, {2, 1, 1}}, half{Vec3::Zero(), {}, {0.5, 1, 1}};
@@ -171,6 +174,8 @@ TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
   EXPECT_THROW(validate(tree, {}), InputError);
 }
 
+// In files whose nodes rest in the first pose of a clip, the offsets of the joints still
+// tell how the skin was bound.
 TEST(BindPose, ComesFromTheOffsetsAndNotFromTheRest) {
   Character tube = bending_tube();
   const Pose bound = bind_pose(tube);
@@ -188,7 +193,7 @@ TEST(BlendedPose, KeepsTheUpperJointOnItsWayAboutTheLower) {
   turned.nodes[2].local = quarter_turn();
   const Pose a = rest_pose(tube), b = rest_pose(turned);
   const Pose middle = blend(tube, a, b, 0.5);
-  // Half-way on the circle of radius 2, not on the chord.
+  // The joint is half-way on the circle of radius 2, which lies off the chord.
   EXPECT_LT((middle[4].origin - Vec3(std::sqrt(2.0), std::sqrt(2.0), 5)).norm(), kNear);
   EXPECT_EQ(blend(tube, a, b, 1)[4].origin, b[4].origin);
 }

@@ -41,7 +41,8 @@ void read(const std::string& word, Number& value) {
     throw InputError("import report: '" + printable(word) + "' is not a number");
 }
 
-// One list of the single values serves both ways.
+// Calls `visit` with the name and the value of every single value of a report. Both writing and
+// reading use this one list.
 template <class Report, class Visit>
 void visit_values(Report& r, Visit&& visit) {
   visit("format", r.format);
@@ -78,8 +79,8 @@ std::vector<std::string> split(const std::string& line, char at) {
   return words;
 }
 
-// The length in bytes of the UTF-8 character at the start of a text; 0 where there is no whole character, or
-// one that controls a terminal or the direction of writing.
+// Returns the length in bytes of the UTF-8 character at the start of `text`. Returns 0 where the text
+// starts with no whole character, or with a character that controls a terminal or the direction of writing.
 std::size_t printable_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return byte(0) >= ' ' && byte(0) != 0x7f ? 1 : 0;

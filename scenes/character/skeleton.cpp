@@ -5,7 +5,7 @@
 namespace cscd::scenes {
 namespace {
 
-// The vertices that a node moves: the sum of their weights and of their weighted positions.
+// The vertices that a node moves, summed up: their weights and their weighted positions.
 struct Load {
   double weight = 0;
   Vec3 sum = Vec3::Zero();
@@ -36,7 +36,7 @@ Skeleton make_skeleton(const Character& character, const Pose& bound, std::span<
                        const std::vector<bool>& used) {
   const std::vector<Load> load = loads(character, positions, used);
   Skeleton skeleton;
-  std::vector<int> bone_of(character.nodes.size(), -1);  // the node's own bone, or the next one above
+  std::vector<int> bone_of(character.nodes.size(), -1);  // each node's own bone, or the next bone above it
   for (std::size_t n = 0; n < bone_of.size(); ++n) {
     const int above = character.nodes[n].parent;
     bone_of[n] = above < 0 ? -1 : bone_of[static_cast<std::size_t>(above)];

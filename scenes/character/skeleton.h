@@ -9,21 +9,22 @@
 
 namespace cscd::scenes {
 
-// The bones of a rig: the nodes that move some of the vertices in use. A bone runs from its node to the mean
-// of its child bones; one without children to the mean of the vertices it moves, so that it ends inside the
-// body. Joints that move nothing (controls, helpers) are no bones; their children hang on the next bone
-// above.
+// The bones of a rig: the nodes that move some of the vertices in use. A bone runs from its node to the
+// mean of its child bones. A bone without children runs to the mean of the vertices that it moves, so that
+// it ends inside the body. Joints that move nothing (controls, helpers) are no bones; their children hang
+// on the next bone above.
 struct Skeleton {
-  std::vector<int> node;           // of each bone, growing
-  std::vector<BoneId> parent;      // BoneId{-1} for a root
-  std::vector<Vec3> tail_in_node;  // where the bone ends, in coordinates of its node
+  std::vector<int> node;           // [bones]; ascending
+  std::vector<BoneId> parent;      // [bones]; BoneId{-1} for a root
+  std::vector<Vec3> tail_in_node;  // [bones]; where the bone ends, in coordinates of its node
 };
 
-// `used` tells which vertices are in use; `bound` is the pose in which the bones are measured, `positions`
-// the vertices in it.
+// Makes the skeleton. `used` [vertices] tells which vertices are in use, `bound` is the pose in which the
+// bones are measured, and `positions` [vertices] are the positions of the vertices in that pose.
 Skeleton make_skeleton(const Character& character, const Pose& bound, std::span<const Vec3> positions,
                        const std::vector<bool>& used);
 
+// Writes the head and the tail of every bone in a pose to `out`, [bones].
 void bones_at(const Skeleton& skeleton, const Pose& pose, std::vector<Bone>& out);
 
 }  // namespace cscd::scenes

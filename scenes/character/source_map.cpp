@@ -7,7 +7,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Numbers as they lie in memory: writer and reader are one build on one machine.
+// Numbers are stored as they lie in memory, because writer and reader are one build on one machine.
 using Number = std::int32_t;
 constexpr std::size_t kNumbersOfTriangle = 4;
 

@@ -16,9 +16,9 @@ inline Transform quarter_turn(const Vec3& move = Vec3::Zero()) {
   return {{Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1)}, move};
 }
 
-// A tube along x from 0 to 4 on two joints: `lower` at 0 and `upper` at 2, under a root that stands at
-// (0, 0, 5). Vertices before x = 1.5 follow the lower joint, beyond 2.5 the upper, between both share. The
-// clip 'bend' turns the upper joint by a quarter turn in one second.
+// A tube along x from 0 to 4 on two joints: `lower` at x = 0 and `upper` at x = 2, under a root that stands
+// at (0, 0, 5). Vertices below x = 1.5 follow the lower joint, vertices beyond 2.5 the upper joint, and both
+// joints share the vertices between. The clip 'bend' turns the upper joint by a quarter turn in one second.
 inline Character bending_tube() {
   const test::Shape tube = test::capped_tube(8, 16, 0.5, 4);
   Character character;

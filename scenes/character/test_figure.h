@@ -12,8 +12,8 @@
 #include "scenes/shape/limbed_sphere.h"
 
 // A generated figure with the traits of real characters, so that tests over characters also run where no
-// model file is at hand: a body of tubes with two legs, eyes that cross the head at rest, and a shirt that is
-// open. Lengths are in centimetres; the figure stands on z = 0 and looks towards -y.
+// model file is at hand. The figure is a body of tubes with two legs, eyes that cross the head at rest, and
+// a shirt that is open. Lengths are in centimetres; the figure stands on z = 0 and looks towards -y.
 namespace cscd::scenes {
 
 // A limb of two bones that grows out of a square patch of the body's grid.
@@ -35,7 +35,7 @@ inline Limb figure_limb(const std::string& name, const std::string& parent, cons
 }
 
 // The body at rest: 1,136 quads, closed, of genus 0. Its bones are pelvis, chest, head, and for each side
-// leg, leg_2, arm and arm_2, the side in front.
+// leg, leg_2, arm and arm_2, whose names begin with left_ or right_.
 inline Shape figure_body() {
   LimbedSphereParameters p;
   p.cells = 8;
@@ -68,8 +68,8 @@ inline Shape figure_body() {
   return limbed_sphere(p);
 }
 
-// The body's triangles around the trunk and the shoulders, held off by `gap` along its normals and open in
-// front, at the waist, at the neck and at the sleeves.
+// The shirt: the body's triangles around the trunk and the shoulders, moved outward by `gap` along the
+// normals. It is open in front, at the waist, at the neck and at the sleeves.
 inline Part figure_shirt(const Part& body, int node, double gap) {
   std::vector<Vec3> normals(body.positions.size(), Vec3::Zero());
   for (const auto& t : body.triangles) {
@@ -106,8 +106,9 @@ inline Part figure_shirt(const Part& body, int node, double gap) {
   return shirt;
 }
 
-// Parts: the body, the left and the right eye, the shirt. Clips, one second each: in `walk` the body does not
-// touch itself, in `hug` its arms meet in front of the chest.
+// The whole figure. Its parts are the body, the left eye, the right eye and the shirt. It has
+// two clips of one second each: in `walk` the body does not touch itself, and in `hug` its arms
+// meet in front of the chest.
 inline Character walking_figure() {
   const Shape body = figure_body();
   Character character;
@@ -141,7 +142,7 @@ inline Character walking_figure() {
   skin.first.push_back(skin.influences.size());
   character.parts.push_back(skin);
 
-  // Balls of 80 triangles that hang on the head and stick half in it.
+  // The eyes are balls of 80 triangles that hang on the head and stick halfway in it.
   const int head = node_of("head");
   const Vec3 to_head = std::ranges::find(skin.joints, head, &Joint::node)->offset.origin;
   for (const double side : {1.0, -1.0}) {
@@ -159,7 +160,7 @@ inline Character walking_figure() {
   }
   character.parts.push_back(figure_shirt(character.parts.front(), node_of("clothes"), 1));
 
-  // Degrees about x, y and z, at equal times from 0 to 1 second.
+  // Rotations in degrees about x, y and z, at equally spaced times from 0 to 1 second.
   const auto turns = [&](const std::string& bone, const std::vector<Vec3>& degrees) {
     Channel channel{node_of(bone), {}, {}, {}};
     for (std::size_t i = 0; i < degrees.size(); ++i)

@@ -12,9 +12,9 @@
 
 namespace cscd::scenes {
 
-// Writes a character as a glTF 2 file in one piece: what a test says of importing need not lie beside it.
-// Every part becomes a mesh of one primitive; vertices have as many sets of four influences as the part
-// needs. Numbers are rounded to float, and nodes to a move, a turn and a scale, as the format has them.
+// Writes a character as a glTF 2 text with its data inside, so that a test of the import needs no model file
+// beside it. Every part becomes a mesh of one primitive; vertices have as many sets of four influences as the
+// part needs. The format rounds numbers to float, and reduces nodes to a move, a rotation and a scale.
 class GltfText {
  public:
   explicit GltfText(const Character& character) : character_(character) {
@@ -44,7 +44,7 @@ class GltfText {
     return digits;
   }
 
-  // An accessor of these values; a buffer view of its own for each.
+  // Adds an accessor of these values, with a buffer view of its own, and returns its number.
   template <class Value>
   int accessor(const std::vector<Value>& values, std::size_t width, const char* type, int component,
                const std::string& bounds = {}) {

@@ -15,7 +15,7 @@ Quaternion weighted(double s, const Quaternion& a, double t, const Quaternion& b
   return {s * a.w + t * b.w, s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
 }
 
-// The rotation `after` what `before` does.
+// The rotation that first does `before`, then `after`.
 Quaternion product(const Quaternion& after, const Quaternion& before) {
   const Quaternion &p = after, &q = before;
   return {p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
@@ -28,8 +28,8 @@ std::array<Vec3, 3> columns_of(const Quaternion& q) {
           Vec3(2 * (q.x * q.z + q.w * q.y), 2 * (q.y * q.z - q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y))};
 }
 
-// Of a rotation given by its columns (Shepperd 1978): the largest part comes from a square root, the others
-// from it.
+// The quaternion of a rotation given by its columns (Shepperd 1978). A square root gives the largest of the
+// four numbers, and the others follow from it.
 Quaternion quaternion_of(const std::array<Vec3, 3>& c) {
   const double trace = c[0].x() + c[1].y() + c[2].z();
   Quaternion q;
@@ -45,7 +45,7 @@ Quaternion quaternion_of(const std::array<Vec3, 3>& c) {
   return normalised(q);
 }
 
-// Any direction at a right angle to `unit`.
+// Returns some direction at a right angle to `unit`.
 Vec3 across(const Vec3& unit) {
   const Vec3 other = std::abs(unit.x()) < 0.5 ? Vec3::UnitX() : Vec3::UnitY();
   return unit.cross(other);
@@ -83,8 +83,8 @@ Quaternion normalised(const Quaternion& q) {
 
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double s) {
   Quaternion low = a, high = dot(a, b) < 0 ? weighted(-1, b, 0, b) : b;
-  // The normalised sum is exactly half-way. After k halvings an arc of at most 90 degrees (of quaternions)
-  // has 90 / 2^k left, and the chord strays from it by the cube of that.
+  // The normalised sum of both ends is exactly half-way. After k halvings an arc of at most 90 degrees
+  // (between quaternions) has 90 / 2^k left, and its chord strays from the arc by the cube of that.
   for (int halvings = 0; halvings < 14 && s > 0 && s < 1; ++halvings) {
     const Quaternion middle = normalised(weighted(1, low, 1, high));
     (s < 0.5 ? high : low) = middle;
@@ -113,7 +113,7 @@ Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& s
 }
 
 Parts parts_of(const Transform& map) {
-  // Gram-Schmidt; what has no direction of its own takes one at a right angle.
+  // Gram-Schmidt orthogonalisation. A column that has no direction of its own gets one at a right angle.
   const auto& c = map.column;
   std::array<Vec3, 3> axis;
   const double first = c[0].norm();
@@ -123,7 +123,8 @@ Parts parts_of(const Transform& map) {
   axis[1] = second / second.norm();
   axis[2] = axis[0].cross(axis[1]);
   Parts parts{map.origin, quaternion_of(axis), {}};
-  // Back through the quaternion, so that rotation and rest give the map however it rounded.
+  // Take `rest` from the columns of the rounded quaternion, so that rotation and rest together give the map
+  // however the quaternion was rounded.
   const std::array<Vec3, 3> rotation = columns_of(parts.rotation);
   for (std::size_t i = 0; i < 3; ++i)
     parts.rest[i] = {rotation[0].dot(c[i]), rotation[1].dot(c[i]), rotation[2].dot(c[i])};

@@ -7,7 +7,8 @@
 namespace cscd::scenes {
 
 // An affine map x -> x0 column[0] + x1 column[1] + x2 column[2] + origin. Products are written out term by
-// term: frames must be the same bits on every processor, and Eigen's matrix products are not.
+// term because frames must have the same bits on every processor, and Eigen's matrix products differ
+// between processors.
 struct Transform {
   std::array<Vec3, 3> column{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   Vec3 origin = Vec3::Zero();
@@ -18,10 +19,10 @@ struct Transform {
   bool finite() const;
 };
 
-// x -> after(before(x)).
+// The map x -> after(before(x)).
 Transform composed(const Transform& after, const Transform& before);
 
-// The map back; not finite where there is none.
+// The inverse map. Its numbers are not finite where `map` has no inverse.
 Transform inverse(const Transform& map);
 
 // A rotation as a unit quaternion.
@@ -29,30 +30,33 @@ struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;
 };
 
-// The unit quaternion of the same direction; the identity for zero or what is not finite.
+// The unit quaternion in the direction of q. Returns the identity if q is zero or not finite.
 Quaternion normalised(const Quaternion& q);
 
-// The rotation at a share s in [0, 1] of the shorter way from a to b at constant angular speed (Shoemake,
-// SIGGRAPH 1985), by halving the way until it is straight to 1e-12: square roots only, no sine.
+// Returns the rotation at the share s in [0, 1] of the shorter way from a to b, at constant angular speed
+// (spherical linear interpolation: Shoemake, SIGGRAPH 1985). It halves the way until the rest is straight
+// to 1e-12, which takes square roots only and no sine.
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double s);
 
-// Turns by `degrees` about the axes x, y and z; `order` lists these axes (0 to 2) in the order of turning.
+// Returns the rotation that turns by degrees[k] about axis k (0 to 2 for x, y, z). `order` lists the axes
+// in the order of turning.
 Quaternion from_euler(const Vec3& degrees, const std::array<int, 3>& order);
 
-// Scale, then rotate, then move.
+// The map that scales, then rotates, then moves.
 Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& scale);
 
-// The inverse of from_parts: the map without its move as a rotation and what is left to do before it. `rest`
-// is triangular: scales on the diagonal (one of them negative for a mirroring), shears above it.
+// An affine map taken apart: x -> rotation(rest(x)) + move. `rest` is upper triangular: its diagonal holds
+// scales (one of them negative for a map that mirrors), and shears stand above the diagonal.
 struct Parts {
   Vec3 move;
   Quaternion rotation;
   std::array<Vec3, 3> rest;  // columns
 };
+// Takes a map apart; the inverse of from_parts where the map has no shear.
 Parts parts_of(const Transform& map);
 
-// Between two maps: rotations along the shorter way, everything else in straight lines. s = 0 gives a, s = 1
-// gives b, exactly.
+// Returns the map at the share s in [0, 1] between two maps. The rotation turns along the shorter way;
+// everything else goes in straight lines. s = 0 gives exactly a, and s = 1 exactly b.
 Transform blend(const Transform& a, const Transform& b, double s);
 
 }  // namespace cscd::scenes

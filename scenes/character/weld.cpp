@@ -22,18 +22,19 @@ struct CellHash {
   }
 };
 
-// The groups met so far, by the cells of a grid as wide as the tolerance.
+// The groups met so far, found through the cells of a grid whose cells are as wide as the tolerance.
 class Grid {
  public:
   Grid(std::span<const Vec3> positions, double tolerance) : positions_(positions), tolerance_(tolerance) {
-    // A cell that is too small for the coordinates would tell equal numbers apart, or overflow.
+    // A cell must not be smaller than the coordinates' rounding, or cell numbers would tell equal numbers
+    // apart, or overflow.
     double largest = 0;
     for (const Vec3& x : positions) largest = std::max(largest, x.cwiseAbs().maxCoeff());
     cell_ = std::max({tolerance, largest * 1e-15, std::numeric_limits<double>::min()});
   }
 
-  // The smallest point of the first group within reach; the point itself, as a new group, where there is
-  // none.
+  // Returns the smallest of the points that lead a group and lie within the tolerance of `point`. Where
+  // there is none, the point leads a new group, and its own index is returned.
   std::int32_t group_of(std::int32_t point) {
     const Vec3& x = positions_[static_cast<std::size_t>(point)];
     const Cell cell = cell_of(x);
@@ -75,7 +76,7 @@ std::vector<std::int32_t> weld(std::span<const Vec3> positions, double tolerance
 
 void split_groups(std::vector<std::int32_t>& group, std::span<const Vec3> positions, double tolerance) {
   const std::vector<std::int32_t> before = group;
-  std::unordered_map<std::int32_t, std::vector<std::int32_t>> split;  // old group to the ones it falls into
+  std::unordered_map<std::int32_t, std::vector<std::int32_t>> split;  // group to its pieces
   for (std::size_t v = 0; v < group.size(); ++v) {
     const auto point = static_cast<std::int32_t>(v);
     if (before[v] == point) continue;
@@ -99,7 +100,7 @@ double largest_spread(std::span<const std::int32_t> group, std::span<const Vec3>
 
 WeldedTriangles welded(std::span<const RawTriangle> triangles, std::span<const std::int32_t> group) {
   WeldedTriangles out;
-  std::vector<std::pair<Triangle, std::size_t>> sorted;  // corners in order, where it stands
+  std::vector<std::pair<Triangle, std::size_t>> sorted;  // corners in ascending order, index in `out`
   for (std::size_t r = 0; r < triangles.size(); ++r) {
     const RawTriangle& raw = triangles[r];
     Triangle corner;

@@ -18,7 +18,8 @@ TEST(Weld, JoinsWithinTheToleranceAcrossCells) {
   EXPECT_EQ(weld(points, 0.1), (Groups{0, 0, 2, 0}));
 }
 
-// A row of points, each near the next: a closed chain of joins would make them one.
+// A row of points, each of which lies near the next. Joining near points transitively
+// would make them one group.
 TEST(Weld, DoesNotDrawAGroupOutAlongAChain) {
   std::vector<Vec3> points;
   for (int i = 0; i < 30; ++i) points.emplace_back(0.09 * i, 0, 0);
@@ -42,7 +43,7 @@ TEST(Weld, LeavesOutCollapsedAndDuplicateTriangles) {
   const std::vector<RawTriangle> raw{{0, 1, 2}, {4, 1, 0}, {1, 2, 4}, {2, 1, 4}, {1, 3, 2}};
   const WeldedTriangles out = welded(raw, group);
   EXPECT_EQ(out.collapsed, 1u);
-  EXPECT_EQ(out.duplicate, 2u);  // one turned, one inside out
+  EXPECT_EQ(out.duplicate, 2u);  // one with its corners rotated, one inside out
   ASSERT_EQ(out.triangles.size(), 2u);
   EXPECT_EQ(out.triangles[0], (Triangle{VertexId{0}, VertexId{1}, VertexId{2}}));
   EXPECT_EQ(out.triangles[1], (Triangle{VertexId{1}, VertexId{3}, VertexId{2}}));

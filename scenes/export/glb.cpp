@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 
-// Section numbers are those of the glTF 2.0 specification.
+// Section numbers refer to the glTF 2.0 specification.
 namespace cscd::scenes {
 namespace {
 
@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 
-// Numbers that the specification gives to the kinds of numbers and to what a buffer view is for.
+// The specification's numbers for component types and for the targets of buffer views.
 template <class Value>
 constexpr int kComponent = 0;
 template <>
@@ -28,7 +28,7 @@ template <>
 constexpr int kComponent<std::uint32_t> = 5125;
 enum class Target { none = 0, vertices = 34962, corners = 34963 };
 
-constexpr std::size_t kSet = 4;  // influences of a vertex that one pair of JOINTS_n and WEIGHTS_n holds
+constexpr std::size_t kSet = 4;  // influences of a vertex in one pair of JOINTS_n and WEIGHTS_n
 
 [[noreturn]] void refuse(const std::string& what) {
   throw InputError(what + "; a .glb file cannot hold that");
@@ -48,11 +48,12 @@ void append(std::vector<float>& out, const Quaternion& q) {
   for (const double x : {unit.x, unit.y, unit.z, unit.w}) append(out, x);
 }
 
-// The binary chunk, with the list of what lies where in it.
+// The binary chunk, with the list of its views and accessors.
 class Buffer {
  public:
-  // The number of the accessor of these values, `width` of them an element. Every accessor has a view of its
-  // own, which begins at a multiple of four bytes (3.6.2.4), because all elements written take one.
+  // Adds values, `width` of them in each element, and returns the number of their accessor. Every accessor
+  // has a view of its own, which begins at a multiple of four bytes (3.6.2.4), because the sizes of all
+  // elements written are multiples of four.
   template <class Value>
   std::size_t add(const std::vector<Value>& values, std::size_t width, const char* type,
                   Target target = Target::none) {
@@ -68,7 +69,8 @@ class Buffer {
     return accessors_.size() - 1;
   }
 
-  // The same with the least and the largest value of each component, which positions and times of keys need.
+  // Adds values as add() does, with the least and the largest value of each component, which the
+  // specification requires for positions and for times of keys.
   std::size_t add_bounded(const std::vector<float>& values, std::size_t width, const char* type,
                           Target target = Target::none) {
     const std::size_t accessor = add(values, width, type, target);
@@ -166,8 +168,8 @@ Json node_of(const Node& node) {
   return out;
 }
 
-// The quaternion and its negative are one rotation. The one that is nearer to the key before is written, so
-// that readers who do not look for the shorter way go it too.
+// A quaternion and its negative are the same rotation. This chooses the sign that is nearer to the key
+// before, so that readers that do not look for the shorter way go the shorter way too.
 std::vector<Key<Quaternion>> nearest_signs(std::vector<Key<Quaternion>> keys) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const Quaternion& p = keys[i - 1].value;
@@ -177,7 +179,7 @@ std::vector<Key<Quaternion>> nearest_signs(std::vector<Key<Quaternion>> keys) {
   return keys;
 }
 
-// Writes the keys of one clip; keys at the same times share the accessor of their times.
+// Writes the keys of one clip. Keys at the same times share the accessor of their times.
 class ClipWriter {
  public:
   ClipWriter(const Animation& animation, Buffer& buffer)
@@ -225,7 +227,7 @@ class ClipWriter {
   std::map<std::vector<float>, std::size_t> inputs_;
 };
 
-// Numbers of four bytes and chunks of the container (4.4).
+// Write numbers of four bytes and the chunks of the container (4.4).
 std::string word(std::size_t number) {
   const auto value = static_cast<std::uint32_t>(number);
   return {reinterpret_cast<const char*>(&value), sizeof value};
@@ -255,7 +257,7 @@ std::string to_glb(const Character& character) {
   }
   for (const Part& part : character.parts) {
     auto node = static_cast<std::size_t>(part.node);
-    if (nodes[node].contains("mesh")) {  // a node has one mesh; the next hangs on a node below
+    if (nodes[node].contains("mesh")) {  // a node has one mesh; another hangs on a node below
       nodes[node]["children"].push_back(nodes.size());
       node = nodes.size();
       nodes.push_back({{"name", part.name}});

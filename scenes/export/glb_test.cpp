@@ -11,7 +11,8 @@
 namespace cscd::scenes {
 namespace {
 
-// The frames that a reader should see: poses at equal times from the clip's start to its end.
+// Returns the frames that a reader should see: poses at equally spaced times from the
+// clip's start to its end.
 Clip frames_of(const Character& character, double fps) {
   ClipHeader header;
   for (const Part& part : character.parts) {
@@ -53,8 +54,8 @@ void expect_round_trip(const Character& character, double fps = 30) {
   EXPECT_EQ(back.report.clips.size(), character.animations.size());
 }
 
-// The tube of bending_tube() on joints along it, all children of the root or each of the one before; every
-// vertex follows `influences` of them, nearer ones more.
+// The tube of bending_tube() on joints along it. The joints are all children of the root, or form a chain.
+// Every vertex follows `influences` joints, and nearer joints more strongly.
 Character tube_on(int joints, std::size_t influences, bool chain) {
   Character tube = bending_tube();
   tube.nodes.resize(2);
@@ -104,7 +105,7 @@ TEST(Glb, VerticesMayFollowMoreThanFourAndMoreThanEightJoints) {
   }
 }
 
-// A tree of bones, meshes with a skin and without, two of them on one node.
+// The figure has a tree of bones and meshes with and without a skin, then also two meshes on one node.
 TEST(Glb, AFigureOfSeveralMeshesIsReadBackAsItWas) {
   Character figure = walking_figure();
   expect_round_trip(figure);
@@ -125,7 +126,7 @@ TEST(Glb, ClipsMayHaveAnyRate) {
   for (const double fps : {24.0, 60.0, 10.0}) expect_round_trip(tube_on(6, 2, true), fps);
 }
 
-// Both quaternions of a rotation are legal keys; the file has those that lie near each other.
+// Both quaternions of a rotation are legal keys. The file must have those that lie near each other.
 TEST(Glb, RotationsGoTheShorterWay) {
   Character tube = bending_tube();
   Quaternion& last = tube.animations[0].channels[0].rotations.back().value;

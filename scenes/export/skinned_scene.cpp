@@ -8,9 +8,9 @@
 namespace cscd::scenes {
 namespace {
 
-// A bone is rigid if its map differs from a rotation by so little. Maps of bones are products of many
-// rotations, which are orthogonal to some 1e-7 where limbs are long; what that moves a vertex, near its bone,
-// is less than single precision rounds off.
+// A bone is rigid if its map differs from a rotation by at most this. Maps of bones are products of many
+// rotations, which are orthogonal only to some 1e-7 where limbs are long. Near the bone, that error moves a
+// vertex by less than single precision rounds off.
 constexpr double kRigid = 1e-6;
 
 void require_linear(const Scene& scene) {
@@ -21,7 +21,7 @@ void require_linear(const Scene& scene) {
                      "them, which is all that a skin in a model file can say; export it as .h5");
 }
 
-// What is written has to be read back.
+// Refuses scenes that could be written and then not be read back.
 void require_readable(const Scene& scene, std::size_t bones) {
   const CharacterLimits limits;
   if (scene.frames > limits.frames || scene.frames * bones > limits.keys / 2)
@@ -53,7 +53,7 @@ class Recorder {
   Character take() { return std::move(character_); }
 
  private:
-  // The node of a bone stands at the bone's head; at rest it has the world's axes.
+  // The node of a bone stands at the bone's head and has the world's axes at rest.
   void add_surface(const Shape& shape) {
     Part part;
     part.name = character_.nodes[0].name;
@@ -70,7 +70,7 @@ class Recorder {
       character_.animations[0].channels.push_back({node, {}, {}, {}});
       part.joints.push_back({node, offset});
     }
-    // Readers that know nodes by their names must not take the surface's for a bone.
+    // The surface's node gets a name that no bone has, because some readers know nodes by their names.
     while (std::ranges::count(character_.nodes, character_.nodes[0].name, &Node::name) > 1)
       character_.nodes[0].name += "_surface";
     part.positions = shape.positions;
@@ -86,7 +86,7 @@ class Recorder {
     character_.parts.push_back(std::move(part));
   }
 
-  // Bones come after their parents, whose place in this frame is known then.
+  // Bones come after their parents, so the parent's place in this frame is already known.
   void add_keys(const SceneState& state, std::size_t bone, double seconds) {
     const Eigen::Matrix3d& turn = state.rotations[bone];
     world_.push_back({{turn.col(0), turn.col(1), turn.col(2)}, state.bones[bone].head});
@@ -106,10 +106,10 @@ class Recorder {
   const Scene& scene_;
   Character character_;
   std::size_t frames_ = 0;
-  std::vector<Transform> world_;  // of every bone's node in the current frame
+  std::vector<Transform> world_;  // [bones so far]; map of each bone's node in the current frame
 };
 
-// The frames are looked at in other ways.
+// Ignores the frames: the recorder takes the states instead.
 class NoFrames final : public FrameSink {
  public:
   void append(const FrameView&, const FrameView*) override {}

@@ -32,13 +32,13 @@ std::string refusal(const Scene& scene) {
   return "";
 }
 
-// Lets the scene promise the frames that come of it.
+// Sets the scene's expected digest to that of its frames.
 void promise(Scene& scene) {
   DigestSink sink;
   scene.expected.digest = run_scene(scene, [&](const ClipHeader&) -> FrameSink& { return sink; }).digest;
 }
 
-// A scene of the catalogue with changes, and the digest of what comes of them.
+// A scene of the catalogue with a patch, and with the digest of the frames that result.
 Scene changed(const std::string& base, const std::string& patch) {
   Scene scene = parse_scene(base,
                             R"({"schema": "cscd.scene/1", "base": ")" + base +
@@ -61,7 +61,8 @@ TEST(SkinnedScene, ASceneMayBeCalledLikeABone) {
   expect_round_trip(scene);
 }
 
-// Every scene that ends in linear skinning, and refusals of all others by the effect that is in the way.
+// Every scene that ends in linear skinning is read back as it was. All others are refused, and the error
+// names the effect that is in the way.
 TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
   std::vector<std::string> written;
   for (const SceneSummary& summary : list_scenes()) {
@@ -78,7 +79,8 @@ TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
   EXPECT_EQ(written, (std::vector<std::string>{"octopus", "rope", "urchin"}));
 }
 
-// Bodies with limbs, skinned linearly instead: bones in a tree, blended by up to four.
+// Bodies with limbs, with linear skinning instead of their own: the bones form a tree, and up
+// to four blend at a vertex.
 TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
   const std::string frames = R"({"op": "replace", "path": "/frames", "value": 41})";
   expect_round_trip(changed(
@@ -87,7 +89,7 @@ TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
       {"op": "replace", "path": "/effects/3", "value": {"name": "skinning_linear"}})"));
 }
 
-// With far too few substeps the bones of a chain do not stay rigid.
+// With far too few substeps, the bones of a chain do not stay rigid.
 TEST(SkinnedScene, BonesThatStretchAreRefused) {
   EXPECT_NE(refusal(changed("rope", R"({"op": "replace", "path": "/frames", "value": 4},
       {"op": "remove", "path": "/effects/1"}, {"op": "remove", "path": "/effects/0/steady_bone"},

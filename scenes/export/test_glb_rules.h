@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// Rules of the glTF 2.0 specification that a reader may rely on, checked on the bytes of a .glb file.
+// Checks the rules of the glTF 2.0 specification that a reader may rely on, on the bytes of a .glb file.
 namespace cscd::scenes {
 
 class GlbRules {
@@ -52,7 +52,7 @@ class GlbRules {
     return number;
   }
 
-  // The numbers of an accessor, as doubles.
+  // Returns the numbers of an accessor as doubles.
   std::vector<double> numbers(const nlohmann::json& index, int component, const char* type,
                               std::size_t width) {
     const auto& accessor = file["accessors"][index.get<std::size_t>()];

@@ -13,7 +13,7 @@
 #include "scenes/import/convert.h"
 #include "scenes/import/read_model.h"
 
-// What cscd-import makes of an exported file.
+// Reads an exported file back as cscd-import does.
 namespace cscd::scenes {
 
 struct ReadBack {
@@ -39,12 +39,12 @@ inline ReadBack read_back(const std::string& glb, const ImportOptions& options =
   return {std::move(character), std::move(report), std::move(clip)};
 }
 
-// Single precision rounds by half of this share.
+// Rounding to single precision changes a number by at most half of this share.
 inline constexpr double kUlp = 0x1p-23;
 
-// All frames, vertex by vertex, and the triangles. Positions, offsets, weights and keys lose a few roundings
-// of the surface's distance from the origin. The times of keys are rounded too, by a share that grows with
-// the frame's number, and a vertex is then as far off as it moves in that time.
+// Compares the triangles and all frames, vertex by vertex. Positions, offsets, weights and keys lose a few
+// roundings of the surface's distance from the origin. The times of keys are rounded too, by a share that
+// grows with the frame's number, and a vertex is then off by as much as it moves in that time.
 inline void expect_same_frames(const Clip& wanted, const Clip& got) {
   ASSERT_EQ(got.frame_count(), wanted.frame_count());
   ASSERT_EQ(got.header().vertex_count, wanted.header().vertex_count);

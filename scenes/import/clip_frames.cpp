@@ -10,12 +10,12 @@
 namespace cscd::scenes {
 namespace {
 
-// A clip whose length is this near to a whole number of frames (times in files are single precision) ends
-// with a whole frame.
+// A clip ends with a whole frame if its length differs from a whole number of frames by less than this.
+// Times in files are single precision, so their lengths are seldom exact.
 constexpr double kNearFrame = 1e-3;
-// So many poses of a clip are looked at to see whether it moves anything.
+// At most this many poses of a clip are tried to see whether the clip moves anything.
 constexpr std::size_t kMostLooks = 4096;
-// What moves less than this share of the diagonal is rounding.
+// Movement below this share of the diagonal counts as rounding.
 constexpr double kMoves = 1e-9;
 
 Moment moment_at(const Character& character, const Animation& animation, double seconds) {
@@ -35,7 +35,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Does the clip move a used vertex between two of its frames?
+// Tells whether the clip moves a used vertex between two of its frames.
 bool moves_surface(const Character& character, const Animation& animation, const std::vector<bool>& used,
                    double diagonal, double fps) {
   if (animation.channels.empty() && animation.morphs.empty()) return false;

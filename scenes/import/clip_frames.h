@@ -8,31 +8,33 @@
 #include "scenes/character/pose.h"
 #include "scenes/character/report.h"
 
-// Which clip of a character is shown, and by which poses.
+// Chooses the clip of a character that is imported, and the poses that its frames show.
 namespace cscd::scenes {
 
-// A pose of the nodes with the weights of the morph targets.
+// A pose of the nodes together with the weights of the morph targets.
 struct Moment {
   Pose pose;
   MorphWeights weights;
 };
 
-// The frames of a clip: every 1 / fps seconds from its start, and its end. The last frame is the clip's end,
-// so the last interval is shorter where the length is no whole number of frames.
+// Returns the number of frames of a clip that lasts `seconds`: one frame every 1 / fps seconds
+// from the clip's start, and one at the clip's end. The last interval is shorter where the length
+// is no whole number of frames.
 std::size_t frames_of(double seconds, double fps);
-// When a frame is shown, in seconds after the clip's start.
+// Returns when a frame of such a clip is shown, in seconds after the clip's start.
 double second_of_frame(std::size_t frame, double seconds, double fps);
 
-// The moments to be written, one after the other.
+// The moments that the import writes, one after the other.
 struct Frames {
   std::size_t count = 0;
   std::function<Moment(std::size_t)> moment;
 };
 
-// Chooses the clip that the options name, and tells the report of it: by its name, else by its number, else
-// by its name without regard to case. Without a name, the first clip that moves one of the `used` raw
-// vertices. For a survey: the bind pose, and the start of every clip. Throws InputError for a clip that there
-// is not, or that is not one only, and where nothing moves.
+// Chooses the clip that the options name and plans its frames; records the choice in the report. A name is
+// looked for exactly first, then as the number of a clip, then without regard to case. Without a name, the
+// first clip is chosen that moves one of the vertices in use (`used`, [raw vertices]) by more than
+// rounding, measured by `diagonal`. A survey gets the bind pose `bound` and the start of every clip
+// instead. Throws InputError if no clip or several clips fit the name, and if no clip moves the surface.
 Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,
                    double diagonal, const ImportOptions& options, ImportReport& report);
 

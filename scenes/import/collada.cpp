@@ -13,7 +13,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Keys this near stand for the curve between them (1/60 s, with room for how times are rounded).
+// Keys that lie at most this many seconds apart stand for the curve between them: 1/60 s, with room for how
+// times are rounded.
 constexpr double kDense = 1.0 / 60 + 1e-4;
 
 std::string_view after_hash(std::string_view url) {
@@ -36,7 +37,7 @@ std::vector<double> numbers_of(const char* text) {
   }
 }
 
-// Calls `visit` for every element, without recursion: how deep a file nests is not in our hands.
+// Calls `visit` for every element, without recursion: a file may nest deeper than the stack allows.
 template <class Visit>
 void walk(pugi::xml_node root, const Visit& visit) {
   struct Walker final : pugi::xml_tree_walker {
@@ -86,7 +87,7 @@ class Collada {
   }
 
  private:
-  // Names and identities of the nodes that the scene shows or that it can take from the library.
+  // Counts the names and ids of the nodes that the scene shows or can take from the library.
   void count_nodes() {
     const std::string scene(
         after_hash(root_.child("scene").child("instance_visual_scene").attribute("url").value()));
@@ -110,7 +111,8 @@ class Collada {
     return found == counts.end() ? 0 : found->second;
   }
 
-  // The nodes that assimp would take for a joint: by identity or name, and only then by scoped identity.
+  // Returns how many nodes assimp would take for a joint: those whose id or name fits, or, if there are
+  // none, those whose scoped id fits.
   std::size_t fits(const std::string& joint) const {
     const std::size_t named = counted(named_, joint);
     return named > 0 ? named : counted(by_sid_, joint);
@@ -121,14 +123,14 @@ class Collada {
     return found == by_id_.end() ? pugi::xml_node() : found->second;
   }
 
-  // The source that an element's input of a meaning names.
+  // The source named by the input of `owner` that has this meaning.
   pugi::xml_node source_of(pugi::xml_node owner, std::string_view meaning) const {
     for (const pugi::xml_node input : owner.children("input"))
       if (input.attribute("semantic").value() == meaning) return target_of(input.attribute("source").value());
     return {};
   }
 
-  // Whether the channel moves a node by keys that are not joined by straight lines but are near each other.
+  // Tells whether the channel moves a node by dense keys that are joined by other than straight lines.
   bool check_channel(pugi::xml_node channel) const {
     const std::string target = channel.attribute("target").value();
     const std::string node = target.substr(0, target.find('/'));
@@ -156,7 +158,7 @@ class Collada {
     return bent;
   }
 
-  // Whether a segment has one value all the way, so that it is straight whatever joins its keys.
+  // Tells whether a segment keeps one value all the way, so that it is straight however its keys are joined.
   static bool stands_still(const std::string& kind, std::size_t key, std::size_t keys,
                            const std::vector<double>& outputs, const std::vector<double>& leaving,
                            const std::vector<double>& arriving) {
@@ -165,7 +167,7 @@ class Collada {
     for (std::size_t k = 0; k < numbers; ++k)
       if (outputs[numbers * key + k] != outputs[numbers * (key + 1) + k]) return false;
     if (kind == "STEP") return true;
-    // Tangents of Bezier curves are points of the plane of time and value, where there is one value.
+    // Where there is one value, tangents of Bezier curves are points in the plane of time and value.
     if (kind != "BEZIER" || numbers != 1 || leaving.size() != 2 * keys || arriving.size() != 2 * keys)
       return false;
     return leaving[2 * key + 1] == outputs[key] && arriving[2 * (key + 1) + 1] == outputs[key];

@@ -13,11 +13,11 @@
 namespace cscd::scenes {
 namespace {
 
-// Debris of many thousand pieces is not told bone by bone.
+// Above this many components the report does not count bones for each: debris can have many thousand pieces.
 constexpr std::size_t kMostPiecesWithBones = 1000;
 
-// The bones that a clip moves against the bone above: by a channel of their own, or by one of the nodes
-// between, which are no bones.
+// Counts the bones that a clip moves relative to the bone above. The clip has a channel either for the bone
+// itself or for one of the nodes between both bones, which are no bones.
 std::size_t driven_bones(const Character& character, const Animation& animation,
                          const std::vector<int>& bones) {
   std::vector<bool> channel(character.nodes.size(), false), bone(channel);
@@ -58,7 +58,7 @@ void describe(const Character& character, const ImportOptions& options, ImportRe
   }
 }
 
-// Of each raw vertex, the node that moves it most.
+// Returns for each raw vertex the node that moves it most.
 std::vector<int> main_nodes(const Character& character) {
   std::vector<int> nodes;
   for (const Part& part : character.parts)
@@ -80,7 +80,7 @@ SourceMap source_map(const Character& character, const RawSurface& raw, const Ch
     if (chosen.raw_triangle[t] == ChosenSurface::kFilled) continue;
     corners.part = raw.triangle_part[chosen.raw_triangle[t]];
     const std::int32_t first = raw.first_vertex[static_cast<std::size_t>(corners.part)];
-    // Turned triangles list their corners in another order than the raw ones.
+    // A triangle that was turned round lists its corners in another order than its raw triangle.
     for (std::size_t k = 0; k < 3; ++k)
       for (const std::int32_t corner : raw.triangles[chosen.raw_triangle[t]])
         if (chosen.weld_group[static_cast<std::size_t>(corner)] == chosen.raw_vertex[+chosen.triangles[t][k]])

@@ -9,9 +9,10 @@
 
 namespace cscd::scenes {
 
-// Poses a character frame by frame and writes it as a point cache: the chosen components of its welded
-// surface, with the bones that move them and the bind pose as the pose at rest. Where its vertices come from
-// goes to a file of its own. Throws InputError for what cannot be made of it, with the counts.
+// Poses a character frame by frame and writes it to `cache` as a point cache: the chosen components of its
+// welded surface, with the bones that move them and the bind pose as the pose at rest. Writes the source
+// map of the surface (scenes/character/source_map.h) to `sources`, and returns the report. Throws
+// InputError, with the counts, where the character gives no such surface or too many frames.
 ImportReport convert(const Character& character, const ImportOptions& options, const CharacterLimits& limits,
                      const std::filesystem::path& cache, const std::filesystem::path& sources);
 

@@ -56,8 +56,8 @@ TriangleMesh mesh_of(const Clip& clip) {
   return TriangleMesh(clip.header().triangles, clip.header().vertex_count);
 }
 
-// Every triangle with three vertices of its own, and the two halves of the list as two parts on one skeleton:
-// what exporters make of hard edges and two materials.
+// A tube as exporters write it with hard edges and two materials: every triangle has three vertices of its
+// own, and the two halves of the list of triangles are two parts on one skeleton.
 Character torn_tube() {
   Character tube = bending_tube();
   const Part whole = tube.parts[0];
@@ -117,12 +117,12 @@ TEST_F(Convert, ClipsBlendMorphTargets) {
 
 TEST_F(Convert, ABoneIsDrivenByTheNodesBetweenItAndTheBoneAbove) {
   Character tube = bending_tube();
-  tube.animations[0].channels[0].node = 3;  // between both bones
+  tube.animations[0].channels[0].node = 3;  // a node between the two bones
   converted(tube);
   EXPECT_EQ(report.clips[0].driven, 1u);
-  tube.animations[0].channels[0].node = 1;  // of the mesh, which follows the bones
+  tube.animations[0].channels[0].node = 1;  // the node of the mesh, which follows the bones
   ImportOptions named;
-  named.clip = "bend";  // it moves nothing
+  named.clip = "bend";  // the clip moves nothing
   converted(tube, named);
   EXPECT_EQ(report.clips[0].driven, 0u);
 }
@@ -136,7 +136,8 @@ TEST_F(Convert, WeldsAcrossTrianglesPartsAndMaterials) {
 }
 
 TEST_F(Convert, DoesNotWeldWhatMovesApart) {
-  // A second tube whose end touches the first one's: equal points at rest, and later not.
+  // A second tube whose end touches the end of the first: their points are equal at
+  // rest and move apart later.
   Character two = bending_tube();
   Part other = two.parts[0];
   for (Vec3& x : other.positions) x.x() += 4;
@@ -153,7 +154,7 @@ TEST_F(Convert, DoesNotWeldWhatMovesApart) {
   EXPECT_EQ(report.welded_vertices, 0u);
 }
 
-// A sheet of two sides, 1e-7 of the diagonal apart: the default would weld them.
+// A sheet whose two sides lie 1e-7 of the diagonal apart, so that the default tolerance would weld them.
 TEST_F(Convert, LowersTheToleranceWhereDetailWouldCollapse) {
   Character thin = bending_tube();
   for (Vec3& x : thin.parts[0].positions) x.z() *= 4e-7;
@@ -183,7 +184,7 @@ TEST_F(Convert, BeginsInTheBindPose) {
     const Vec3 bound = tube.parts[0].positions[v] + Vec3(0, 0, 5);
     EXPECT_LT((clip.frame(0).positions[v] - bound).norm(), 1e-12);
     if (bound.x() < 2.6) continue;
-    // Half of the quarter turn about (2, 0) after half of the lead-in.
+    // After half of the lead-in, half of the quarter turn about (2, 0) is done.
     const double half = std::sqrt(0.5), along = bound.x() - 2, across = bound.y();
     const Vec3 turned(2 + half * (along - across), half * (along + across), bound.z());
     EXPECT_LT((clip.frame(5).positions[v] - turned).norm(), 1e-9);
@@ -218,13 +219,13 @@ TEST_F(Convert, EndsWhereTheClipEnds) {
   bend.seconds = 10.0 / 24;
   bend.channels[0].rotations[1].time = bend.seconds;
   const Clip clip = converted(tube);
-  // 12 whole frames of a thirtieth, and half a frame more.
+  // 12 whole frames of 1/30 second, and half a frame more.
   ASSERT_EQ(clip.frame_count(), 14u);
   EXPECT_EQ(report.clips[0].frames, 14u);
   std::vector<Vec3> end;
   skin(tube, pose_at(tube, bend, bend.seconds), end);
   EXPECT_TRUE(std::equal(end.begin(), end.end(), clip.frame(13).positions.begin()));
-  // A length that is a whole number of frames but for the rounding of a float.
+  // Rounding to float must not add a frame to a length that is a whole number of frames.
   bend.seconds = static_cast<double>(static_cast<float>(0.7));
   EXPECT_EQ(converted(tube).frame_count(), 22u);
   bend.seconds = 0.7;
@@ -247,7 +248,7 @@ TEST_F(Convert, TakesTheFirstClipThatMovesTheSurface) {
   options.clip = "1";
   EXPECT_EQ(converted(tube, options).frame_count(), 31u) << "whoever names it gets it";
 
-  // Morph targets alone move it, too.
+  // A clip that moves the surface by morph targets alone is found too.
   Animation smile{"smile", 0, 1, 0, {}};
   smile.morphs = {{0, {Curve{{0, 0.0}, {1, 1.0}}}}};
   tube.parts[0].targets = {{"wide", std::vector<Vec3>(tube.parts[0].positions.size(), Vec3(0, 0.5, 0)), 0}};
@@ -279,7 +280,7 @@ TEST_F(Convert, ComparesNamesOfClipsWithoutCaseWhereThatIsUnique) {
   EXPECT_NE(refusal(tube, options).find("choose by number: 0 'bend', 1 'Walk', 2 'Walk'"), std::string::npos);
 }
 
-// What an answer needs to speak of the file: the pose at rest, and where triangles and vertices come from.
+// Answers that speak of the file need the pose at rest, and where triangles and vertices come from.
 TEST_F(Convert, TellsWhereTheSurfaceComesFrom) {
   Character tube = torn_tube();
   tube.parts[1].mesh = 3;
@@ -344,7 +345,7 @@ TEST_F(Convert, MovesToTheRestWhereThereIsNoClip) {
 TEST_F(Convert, FillsHolesAndFlipsComponents) {
   Character tube = bending_tube();
   Part& part = tube.parts[0];
-  // Take the fan of one end away, and turn everything inside out.
+  // Remove the fan of triangles at one end, and turn the rest inside out.
   const std::int32_t tip = static_cast<std::int32_t>(part.positions.size()) - 1;
   std::erase_if(part.triangles, [&](const auto& t) { return t[0] == tip || t[1] == tip || t[2] == tip; });
   for (auto& t : part.triangles) std::swap(t[1], t[2]);

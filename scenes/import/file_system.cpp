@@ -10,7 +10,7 @@
 namespace cscd::scenes {
 namespace {
 
-// A file that has been read whole; writing fails.
+// A file that has been read into memory whole. Writing to it fails.
 class MemoryStream final : public Assimp::IOStream {
  public:
   explicit MemoryStream(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
@@ -25,7 +25,7 @@ class MemoryStream final : public Assimp::IOStream {
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
     std::size_t target = offset;
     if (origin == aiOrigin_CUR) target += at_;
-    if (origin == aiOrigin_END) target = bytes_.size() - offset;  // as stdio streams of assimp do not
+    if (origin == aiOrigin_END) target = bytes_.size() - offset;  // stdio streams of assimp add it
     if (target > bytes_.size()) return aiReturn_FAILURE;
     at_ = target;
     return aiReturn_SUCCESS;

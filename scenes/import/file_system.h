@@ -7,7 +7,8 @@
 
 namespace cscd::scenes {
 
-// What assimp may read: the files of the model's own folder (scenes/sandbox/own_folder.h).
+// The files that assimp may read: those of the model's own folder (scenes/sandbox/own_folder.h), with at
+// most `most_bytes` bytes.
 class FolderFiles final : public Assimp::IOSystem {
  public:
   FolderFiles(const std::filesystem::path& model, std::size_t most_bytes) : folder_(model, most_bytes) {}

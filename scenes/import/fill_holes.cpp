@@ -13,8 +13,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Loop = std::vector<VertexId>;
 
-// The boundary edges as the missing triangles would run along them, one after the other. Where two holes
-// share a vertex it is not clear how they go on; such loops are left out.
+// The loops of boundary edges, each in the direction in which the missing triangles would run along it.
+// Where two holes share a vertex, the way on is ambiguous; such loops are left out and counted as unclear.
 struct Boundary {
   std::vector<Loop> loops;
   std::size_t unclear = 0;
@@ -84,7 +84,7 @@ FilledHoles fill_holes(const TriangleMesh& mesh, std::span<const Vec3> positions
     }
     for (const auto& t : patch) {
       std::array<int, 3> corner{t.first, t.second, t.third};
-      std::sort(corner.begin(), corner.end());  // along the polyline, hence turned as the hole is
+      std::sort(corner.begin(), corner.end());  // along the polyline, and so oriented as the hole is
       filled.triangles.push_back({loop[static_cast<std::size_t>(corner[0])],
                                   loop[static_cast<std::size_t>(corner[1])],
                                   loop[static_cast<std::size_t>(corner[2])]});

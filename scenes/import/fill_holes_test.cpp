@@ -7,7 +7,7 @@
 namespace cscd::scenes {
 namespace {
 
-// The triangles at these vertices taken away.
+// Removes the triangles at these vertices.
 test::Shape without(test::Shape shape, const std::vector<int>& vertices) {
   std::erase_if(shape.triangles, [&](const Triangle& t) {
     return std::any_of(t.begin(), t.end(), [&](VertexId v) {

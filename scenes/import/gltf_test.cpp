@@ -8,7 +8,7 @@
 #include "scenes/character/test_gltf.h"
 #include "scenes/import/read_model.h"
 
-// Characters written as glTF and read back: what the file says must arrive.
+// Writes characters as glTF and reads them back: what the file says must arrive.
 namespace cscd::scenes {
 namespace {
 
@@ -21,7 +21,7 @@ Character read_back(const Character& character) {
   return back;
 }
 
-// Vertices in the bind pose and along every clip, by where they are: importers may number them anew.
+// Compares the vertices at three times of every clip, in their order.
 void expect_same_motion(const Character& wanted, const Character& got) {
   ASSERT_EQ(got.animations.size(), wanted.animations.size());
   for (std::size_t a = 0; a < wanted.animations.size(); ++a)
@@ -41,7 +41,8 @@ TEST(Gltf, MovesAsItIsWritten) {
   expect_same_motion(bending_tube(), read_back(bending_tube()));
 }
 
-// Eight joints that are children of one node, a ninth that moves nothing, and eight influences a vertex.
+// A tube with eight joints that are children of one node, a ninth joint that moves nothing, and eight
+// influences a vertex.
 Character crowd() {
   Character tube = bending_tube();
   tube.nodes.resize(2);
@@ -89,8 +90,8 @@ TEST(Gltf, ClipsWithoutNamesAndClipsOfSomeBonesArrive) {
   expect_same_motion(tube, back);
 }
 
-// A second mesh without a skin, which hangs on the joint that turns, and vertices of the first whose weights
-// are all zero, which follow the node of their mesh.
+// A second mesh has no skin and hangs on the joint that turns. Some vertices of the first mesh have zero
+// weights only, and follow the node of their mesh.
 TEST(Gltf, WhatHasNoWeightsFollowsItsNode) {
   Character tube = bending_tube();
   Part hat = tube.parts[0];
@@ -109,7 +110,7 @@ TEST(Gltf, WhatHasNoWeightsFollowsItsNode) {
   expect_same_motion(tube, back);
 }
 
-// The node of a skinned mesh says nothing about where it is: its joints do.
+// The joints of a skinned mesh say where it is; its own node does not.
 TEST(Gltf, SkinnedMeshesIgnoreTheirNode) {
   Character tube = bending_tube();
   const Character straight = tube;

@@ -1,6 +1,6 @@
-// cscd-import MODEL CACHE.h5 REPORT SOURCES [options]: turns a model file into a point cache, a report and a
-// source map. `cscd` runs it under limits (bench/input/import.h), so that no reader of model files ever runs
-// in the program that answers.
+// cscd-import MODEL CACHE.h5 REPORT SOURCES [options]: turns a model file into a point cache, a report and
+// a source map. `cscd` runs this program under limits (bench/input/import.h), so that a reader of model
+// files never runs in the program that answers queries.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -25,7 +25,8 @@ int complain(const std::string& what) {
   return kBadInput;
 }
 
-// assimp may go on without what did not fit; a file would then seem to hold no triangles.
+// Ends the process instead of throwing. assimp may catch bad_alloc and go on without the data that did not
+// fit, and the file would then seem to hold no triangles.
 [[noreturn]] void end_without_memory() {
   std::fprintf(stderr, "%s\n", kNoMemory);
   std::_Exit(kBadInput);

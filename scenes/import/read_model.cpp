@@ -27,7 +27,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Importers of assimp by name; glTF and FBX are read without it.
+// The formats, with the names of assimp's importers. glTF and FBX are read without assimp.
 struct Format {
   std::string_view extension, importer, name;
 };
@@ -40,7 +40,7 @@ constexpr std::array kFormats = {
     Format{".bvh", "BVH Importer (MoCap)", "BVH"},
 };
 
-// What assimp means by 0 ticks a second is "the file does not say"; its own viewer takes 25.
+// assimp reports 0 ticks a second where the file does not say; its own viewer takes 25 then.
 constexpr double kTicksWhereUnsaid = 25;
 
 const Format& format_of(const std::filesystem::path& path) {
@@ -56,7 +56,7 @@ const Format& format_of(const std::filesystem::path& path) {
 void keep_only(Assimp::Importer& importer, std::string_view name) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
     if (importer.GetImporterInfo(i)->mName != name) {
-      const std::unique_ptr<Assimp::BaseImporter> ours(importer.GetImporter(i));  // once it is unregistered
+      const std::unique_ptr<Assimp::BaseImporter> ours(importer.GetImporter(i));  // ours once unregistered
       importer.UnregisterLoader(ours.get());
     }
 }
@@ -100,7 +100,7 @@ class Reader {
     if (count > 0) character_.notes.push_back(std::to_string(count) + " " + what);
   }
 
-  // Depth first without recursion: how deep a file nests is not in our hands.
+  // Walks the nodes depth first without recursion: a file may nest deeper than the stack allows.
   void read_nodes() {
     std::vector<std::pair<const aiNode*, int>> open{{scene_.mRootNode, -1}};
     while (!open.empty()) {
@@ -116,7 +116,7 @@ class Reader {
     }
   }
 
-  // assimp knows nodes by name alone, so of two that have one name neither can be told.
+  // assimp refers to nodes by name alone, so two nodes with one name cannot be told apart.
   void require_one(const std::string& name, const char* what) const {
     if (twice_.contains(name))
       throw InputError(std::string(what) + " '" + name + "': two nodes have this name; rename one of them");
@@ -232,8 +232,8 @@ class Reader {
                                      static_cast<double>(q.y), static_cast<double>(q.z)});
                 });
       read_keys(channel.mScalingKeys, channel.mNumScalingKeys, tick, to.scales, vector);
-      // A single key holds at all times, so it says nothing of the length: for what a channel leaves out,
-      // assimp adds one at 0.
+      // A single key holds at all times, so it does not bear on the length. assimp adds a single key at
+      // time 0 for what a channel leaves out.
       const auto reach = [&](const auto& keys) {
         if (keys.size() < 2) return;
         first = std::min(first, keys.front().time);
@@ -244,7 +244,8 @@ class Reader {
       reach(to.scales);
       animation.channels.push_back(std::move(to));
     }
-    // By its keys: importers differ in where they begin to count the duration.
+    // The keys give the clip's start and length, because importers differ in where they
+    // begin to count the duration.
     animation.start = first <= last ? first : 0;
     animation.seconds = first <= last ? last - first : 0;
     character_.animations.push_back(std::move(animation));
@@ -253,11 +254,11 @@ class Reader {
   const aiScene& scene_;
   const CharacterLimits& limits_;
   Character character_;
-  std::vector<const aiNode*> source_;    // by node
+  std::vector<const aiNode*> source_;    // [nodes]
   std::map<std::string, int> by_name_;   // the first of equal names
   std::set<std::string> twice_;          // names that two nodes have
-  std::map<unsigned, int> skinned_;      // meshes with joints that are already in
-  std::size_t vertices_ = 0, keys_ = 0;  // so far
+  std::map<unsigned, int> skinned_;      // meshes with joints that already have a part
+  std::size_t vertices_ = 0, keys_ = 0;  // counts so far
   std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
 };
 
@@ -287,8 +288,9 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
   keep_only(importer, format.importer);
   importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Nothing else: what to weld is decided by position (assimp's own step keeps seams of normals and textures
-  // open), weights are not cut to four, and the checks are ours.
+  // No other step of assimp runs. Vertices are welded by position instead (assimp's own step keeps seams of
+  // normals and textures open), all weights of a vertex are kept (assimp can limit them to four), and
+  // validate() makes the checks.
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   const std::string_view error = importer.GetErrorString();
   if (error.find("bad_alloc") != error.npos) throw std::bad_alloc();

@@ -12,7 +12,8 @@
 #include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
 
-// On files that are cut short assimp's parsers lose memory; their process ends soon after.
+// assimp's parsers leak memory on files that are cut short. This is accepted, because their
+// process ends soon after.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libassimp";
 }
@@ -80,7 +81,7 @@ TEST_F(Model, FilesAreReadUpToALimitInAll) {
   EXPECT_EQ(files.Open("near.bin", "rb"), nullptr);
 }
 
-// Two triangles on two joints; a frame that says nothing of ticks and has a channel for one joint.
+// Two triangles on two joints. The file does not say how many ticks a second has, and animates one joint.
 constexpr char kXFile[] = R"(xof 0303txt 0032
 Frame Root {
  FrameTransformMatrix { 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;; }
@@ -137,7 +138,7 @@ TEST_F(Model, ReadsASkinnedAnimation) {
   EXPECT_LT(still, 1e-6);
 }
 
-// 4800 ticks are a second at 4800 of them, and long at 24. Where the file says nothing, 25.
+// The clip lasts 4800 ticks. Where the file does not give the ticks a second, 25 are taken.
 TEST_F(Model, TicksPerSecondOfAnyKindBecomeSeconds) {
   for (const int ticks : {1000, 24, 4800, 120, 0}) {
     const std::string said = ticks == 0 ? "" : "AnimTicksPerSecond { " + std::to_string(ticks) + "; }\n";
@@ -148,8 +149,8 @@ TEST_F(Model, TicksPerSecondOfAnyKindBecomeSeconds) {
   }
 }
 
-// Two triangles in the plane of a node that is scaled to centimetres: a unit of 2.54, a pivot that makes a
-// chain of helper nodes of the bone, one bone and a curve that moves it by 3 in a second.
+// Two triangles that hang on a bone, in units of 2.54 centimetres. The bone has a pivot, which turns
+// it into a chain of helper nodes, and a curve moves it by 3 in a second.
 constexpr char kFbxFile[] = R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {
 	FBXHeaderVersion: 1003
@@ -236,7 +237,7 @@ TEST_F(Model, HelperNodesOfFbxMoveBonesAndAreNone) {
   skin(flag, pose_at(flag, clip, clip.start + clip.seconds), at_end);
   ASSERT_EQ(at_end.size(), 4u);
   for (std::size_t v = 0; v < at_end.size(); ++v) {
-    // A quarter turn about the pivot (0, 1, 0), then the move; in the file's own units.
+    // A quarter turn about the pivot (0, 1, 0), then the move, in the file's own units.
     const Vec3& x = flag.parts[0].positions[v];
     EXPECT_LT((at_start[v] - Vec3(5 - (x.y() - 1), 1 + x.x(), 0)).norm(), 1e-5);
     EXPECT_LT((at_end[v] - at_start[v] - Vec3(0, 3, 0)).norm(), 1e-5);
@@ -247,7 +248,7 @@ TEST_F(Model, HelperNodesOfFbxMoveBonesAndAreNone) {
   EXPECT_EQ(flag.nodes[static_cast<std::size_t>(skeleton.node[0])].name, "Pole");
 }
 
-// Two triangles on two joints, in centimetres; the upper joint moves up by 1 in half a second.
+// Two triangles on two joints, in centimetres. The upper joint moves up by 1 in half a second.
 constexpr char kColladaFile[] = R"(<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
  <asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
@@ -299,7 +300,7 @@ TEST_F(Model, ReadsSkinsOfCollada) {
   std::vector<Vec3> bound, risen;
   skin(flag, bind_pose(flag), bound);
   skin(flag, pose_at(flag, flag.animations[0], flag.animations[0].start + 0.5), risen);
-  // assimp makes metres of Collada's units.
+  // assimp converts Collada's units to metres.
   for (std::size_t v = 0; v < bound.size(); ++v) {
     const Vec3& x = flag.parts[0].positions[v];
     EXPECT_LT((bound[v] - 0.01 * x).norm(), 1e-7);
@@ -318,7 +319,7 @@ TEST_F(Model, NamesThatTwoNodesHaveAreRefused) {
   EXPECT_NE(refusal(write("twin.x", replaced(kXFile, " Mesh Flag {", frame)))
                 .find("'Upper': two nodes have this name"),
             std::string::npos);
-  // A joint is named by its scoped id, which another branch may use again.
+  // A joint is named by its scoped id, which may occur again in another branch.
   const std::string twin = R"(<node id="other" sid="j2" name="other"/><node id="mesh")";
   std::string dae = replaced(kColladaFile, "low high", "low j2");
   dae = replaced(dae, R"(sid="high" name="high")", R"(sid="j2" name="second")");
@@ -338,7 +339,8 @@ TEST_F(Model, KeysOfColladaThatAreNotJoinedByLinesAreRefusedUnlessDense) {
     ASSERT_EQ(dense.notes.size(), 1u);
     EXPECT_NE(dense.notes[0].find("1 animation channels of keys joined by curves"), std::string::npos);
   }
-  // The last key joins nothing, and what does not change is straight however it is joined.
+  // Steps are accepted after the last key, which is joined to none, and between equal keys, where every way
+  // of joining gives a straight line.
   EXPECT_EQ(refusal(write("last.dae", replaced(kColladaFile, "LINEAR LINEAR", "LINEAR STEP"))), "");
   const std::string still =
       replaced(kColladaFile, "1 0 0 0 0 1 0 3 0 0 1 0 0 0 0 1", "1 0 0 0 0 1 0 2 0 0 1 0 0 0 0 1");
@@ -350,7 +352,7 @@ TEST_F(Model, RefusesOtherKindsAndDamage) {
   EXPECT_NE(refusal(write("a", "xof")).find("are not read"), std::string::npos);
   EXPECT_NE(refusal(write("cut.x", std::string(kXFile).substr(0, 300))).find("refuses it"),
             std::string::npos);
-  // glTF 1 has the same extension and an importer of its own, which must not be asked.
+  // glTF 1 has the same extension, and assimp has an importer for it, which must not be used.
   EXPECT_NE(refusal(write("old.gltf", R"({"asset":{"version":"1.0"},"meshes":{}})")).find("glTF 2"),
             std::string::npos);
 }

@@ -10,13 +10,14 @@
 namespace cscd::scenes {
 namespace {
 
-// Seams are welded in the bind pose and looked at in this many poses of all clips together, so that the
+// Seams are welded in the bind pose and then checked in this many poses, spread over all clips, so that the
 // surface does not depend on the clip that is chosen.
 constexpr std::size_t kProbes = 32;
-// In other poses the vertices of a seam may part by this many weld tolerances: their weights are rounded.
+// In other poses the vertices of a seam may move apart by this many weld tolerances, because
+// their weights are rounded.
 constexpr double kPosedSlack = 100;
 
-// Positions in poses that are spread over all clips.
+// Returns the positions of all raw vertices in poses that are spread over all clips.
 std::vector<std::vector<Vec3>> probes(const Character& character) {
   std::vector<std::vector<Vec3>> positions;
   if (character.animations.empty()) return positions;
@@ -47,15 +48,16 @@ Welded weld_at(const RawSurface& raw, std::span<const std::vector<Vec3>> poses, 
   return result;
 }
 
-// The largest tolerance up to the default at which no triangle collapses that does not collapse anyway, and
-// no edge gets a third triangle because two sides of something thin became one. A tolerance that the user
-// names is taken or refused.
+// Welds at the largest tolerance, up to the default, that does no harm. A tolerance does harm if a triangle
+// collapses that would not collapse when only equal vertices are joined, or if an edge gets a third
+// triangle because two sides of something thin were joined. A tolerance that the user names is used, or
+// refused if it does harm.
 Welded weld_surface(const RawSurface& raw, std::span<const std::vector<Vec3>> poses,
                     const std::optional<double>& wanted, ImportReport& report) {
   const auto crowded = [&](const Welded& w) {
     return crowded_edges(w.surface.triangles, raw.positions.size());
   };
-  // What is equal in the file is told from what is near by a tolerance of a few roundings of its floats.
+  // Vertices that are equal in the file are joined at a tolerance of a few roundings of the file's floats.
   const double least = 1e-8;
   const Welded exact = weld_at(raw, poses, least);
   const std::size_t exact_crowded = crowded(exact);
@@ -75,7 +77,7 @@ Welded weld_surface(const RawSurface& raw, std::span<const std::vector<Vec3>> po
   }
 }
 
-// Triangles of components that face inward, turned round.
+// Turns round the triangles of closed components that face inward. Returns the number of these components.
 std::size_t flip_inward(std::vector<Triangle>& triangles, std::span<const Vec3> positions) {
   std::size_t flipped = 0;
   for (const Piece& piece : pieces_of(TriangleMesh(triangles, positions.size()))) {

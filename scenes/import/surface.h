@@ -12,8 +12,8 @@
 #include "scenes/character/report.h"
 #include "scenes/character/weld.h"
 
-// From the parts of a character to one surface: welded, mended where that was asked for, and cut down to the
-// chosen components. Raw vertices are those of all parts one after the other.
+// Makes one surface of the parts of a character: welded, mended where the options ask for it, and cut down to
+// the chosen components. The raw vertices and raw triangles are those of all parts, one part after the other.
 namespace cscd::scenes {
 
 // All parts in the bind pose.
@@ -21,26 +21,29 @@ struct RawSurface {
   Pose bound;
   std::vector<Vec3> positions;              // [raw vertices]
   std::vector<RawTriangle> triangles;       // corners are raw vertices
-  double diagonal = 0;                      // of the box round all triangles
+  double diagonal = 0;                      // of the box around all triangles
   std::vector<std::int32_t> triangle_part;  // [triangles]
-  std::vector<std::int32_t> first_vertex;   // [parts]: the raw vertex that is the part's vertex 0
+  std::vector<std::int32_t> first_vertex;   // [parts]; the raw vertex that is the part's vertex 0
 };
 
-// Throws InputError for a character without triangles, or in one point.
+// Collects the parts of a character in its bind pose. Throws InputError for a character without triangles,
+// and for one whose triangles lie in a single point.
 RawSurface raw_surface(const Character& character);
 
-// The chosen surface with vertices numbered anew.
+// The chosen surface, with its vertices numbered anew.
 struct ChosenSurface {
-  std::vector<std::int32_t> weld_group;  // of each raw vertex, the raw vertex that stands for it
+  std::vector<std::int32_t> weld_group;  // [raw vertices]; the raw vertex that stands for its weld group
   std::vector<Piece> pieces;             // all components, chosen or not
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> raw_vertex;  // of each vertex
-  // Of each triangle, the raw triangle it was made of; kFilled for one that fills a hole.
+  std::vector<std::int32_t> raw_vertex;  // [vertices]
+  // [triangles]; the raw triangle that a triangle was made of, kFilled for a triangle that fills a hole.
   std::vector<std::size_t> raw_triangle;
   static constexpr std::size_t kFilled = std::numeric_limits<std::size_t>::max();
 };
 
-// Welds, fills holes and turns components as the options say, and chooses; tells the report of all of it.
+// Welds the raw surface, fills holes, turns components that face inward and chooses components, all as the
+// options say. Records each step in the report. Throws InputError for a weld tolerance and a component that
+// the surface cannot use.
 ChosenSurface choose_surface(const Character& character, const RawSurface& raw, const ImportOptions& options,
                              ImportReport& report);
 

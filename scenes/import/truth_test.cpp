@@ -8,8 +8,9 @@
 #include "scenes/clip/test_truth.h"
 #include "scenes/import/read_model.h"
 
-// Model files with one unusual feature each, against positions that an independent program posed by the
-// formats' specifications ($CSCD_IMPORT, else ../shared/import beside the repository; not part of it).
+// Compares model files with one unusual feature each against positions that an independent program computed
+// from the formats' specifications. The files lie in $CSCD_IMPORT, or else in shared/import beside the
+// repository or above it; they are not part of the repository.
 namespace cscd::scenes {
 namespace {
 

@@ -29,7 +29,7 @@ fs::path OwnFolder::inside(const std::string& name) const {
 std::optional<std::vector<char>> OwnFolder::read(const std::string& name) {
   const fs::path path = inside(name);
   if (path.empty()) return std::nullopt;
-  // A file that has become a pipe since the check must not block.
+  // O_NONBLOCK: opening must not block if the file has become a pipe since the check.
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return std::nullopt;
   std::vector<char> bytes;

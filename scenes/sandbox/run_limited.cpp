@@ -24,7 +24,7 @@ namespace cscd::scenes {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr bool kMayLimitMemory = false;  // its shadow memory is larger than any limit
+constexpr bool kMayLimitMemory = false;  // the sanitizer's shadow memory is larger than any limit
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
 constexpr bool kMayLimitMemory = false;
@@ -60,7 +60,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-// Between fork and exec: system calls only.
+// Turns the child process into the program. Between fork and exec only system calls are allowed.
 [[noreturn]] void become(const char* program, char* const* arguments, const Limits& limits, int errors,
                          int nothing, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -71,7 +71,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
   limit(RLIMIT_FSIZE, limits.file_bytes);
   limit(RLIMIT_NOFILE, limits.open_files);
   limit(RLIMIT_CORE, 0);
-  signal(SIGXFSZ, SIG_IGN);  // a full file is an error that the program can report
+  signal(SIGXFSZ, SIG_IGN);  // a full file becomes an error that the program can report
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(errors, STDERR_FILENO);
@@ -81,7 +81,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
   _exit(kNotStarted);
 }
 
-// Takes what there is; false at the end.
+// Appends what the pipe holds to `errors`. Returns false at the pipe's end.
 bool drain(int pipe, std::string& errors) {
   char bytes[1024];
   for (;;) {
@@ -135,7 +135,7 @@ Outcome run_limited(const std::filesystem::path& program, std::span<const std::s
   while (!ended && !too_late) {
     pollfd waits[2] = {{handle.id, POLLIN, 0}, {talks ? from.id : -1, POLLIN, 0}};
     const double left = limits.seconds - elapsed();
-    // Without a handle (an old kernel) look every few milliseconds.
+    // Without a handle (on an old kernel) the loop checks every few milliseconds.
     const double wait = handle.id >= 0 ? left * 1000 + 1 : 5;
     const int ready = poll(waits, 2, static_cast<int>(std::clamp(wait, 0.0, 1e6)));
     if (ready > 0 && waits[1].revents != 0) talks = drain(from.id, outcome.errors);

@@ -13,7 +13,7 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// Times beyond these are the SDK's way to say "no limit".
+// The SDK writes times beyond this for "no limit".
 constexpr double kMostTicks = 4e18;
 
 // Properties that place a node and that this reader takes to stand still.
@@ -61,7 +61,7 @@ class ClipReader {
       }
   }
 
-  // The layer's weight in per cent, or nothing where it changes.
+  // Returns the layer's weight in per cent, or nullopt where it changes.
   std::optional<double> weight_of(const Object& layer) const {
     double weight = number(layer, "Weight", 100);
     for (const Connection& connection : objects_.into(layer)) {
@@ -129,8 +129,8 @@ class ClipReader {
     }
   }
 
-  // The curves of a curve node. A component without a curve has the value that the node itself gives, and
-  // where it gives none, that of the property.
+  // Reads the curves of a curve node. A component without a curve has the value that the curve node itself
+  // gives, or else the value of the property.
   Components read_components(const Object& node, const std::array<std::string_view, 3>& names,
                              const Vec3& otherwise) {
     Components components;
@@ -152,7 +152,7 @@ class ClipReader {
     if (keys_ > limits_.keys)
       throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
     left_out_.keys += read.dropped;
-    // A single key holds at all times, so that it says nothing of the length.
+    // A single key holds at all times, so it does not bear on the length.
     if (read.keys.size() > 1) {
       first_ = std::min(first_, read.keys.front().time);
       last_ = std::max(last_, read.keys.back().time);
@@ -173,7 +173,8 @@ class ClipReader {
     return false;
   }
 
-  // Between rotations far apart, angles one by one and quaternions take different ways.
+  // Joining angles one by one and joining quaternions differ visibly between rotations that are far apart,
+  // so this refuses keys that are.
   void require_dense(const Components& values, const Object& model) const {
     constexpr double kWidest = 1.0 / 20;
     for (const Curve& curve : values.axis)
@@ -183,7 +184,7 @@ class ClipReader {
                            "': its rotation keys are joined as quaternions; bake the animation on export");
   }
 
-  // From LocalStart to LocalStop where the stack says so, else over all keys.
+  // Sets the clip's range: from LocalStart to LocalStop where the stack gives them, or else over all keys.
   void set_range(const Object& stack) {
     const double start = number(stack, "LocalStart", 0), stop = number(stack, "LocalStop", 0);
     if (stop > start && std::abs(start) < kMostTicks && std::abs(stop) < kMostTicks) {
@@ -202,7 +203,7 @@ class ClipReader {
                          ": goes on beyond its keys by repeating or rising; bake the animation on export");
   }
 
-  // A curve whose value beyond its first or last key is not that key's.
+  // A curve whose value goes on changing before its first key or after its last key.
   struct GoesOn {
     std::int64_t id;
     double first, last;
@@ -213,7 +214,7 @@ class ClipReader {
   LeftOut& left_out_;
   double ticks_per_second_;
   Clip clip_;
-  double first_ = 0, last_ = 0;  // of all keys of the clip
+  double first_ = 0, last_ = 0;  // over all keys of the clip
   std::vector<GoesOn> curves_;
   std::size_t keys_ = 0;
 };

@@ -36,7 +36,7 @@ TEST(FbxAnimation, AComponentWithoutCurveTakesTheNodesValueThenTheModels) {
 TEST(FbxAnimation, KeysThatHoldStepAtTheirOwnTime) {
   const Character character = read(sliding({0, 1.1, 2}, {1, 4, 6}, {kConstant, kNext, kConstant}));
   EXPECT_EQ(x_at(character, 0.9), 1);
-  // However the time of the key was rounded.
+  // The step must act however the time of the key was rounded.
   EXPECT_EQ(x_at(character, std::nextafter(1.1, 0)), 4);
   EXPECT_EQ(x_at(character, std::nextafter(1.1, 2)), 4);
   EXPECT_EQ(x_at(character, 1.2), 6);
@@ -54,7 +54,7 @@ TEST(FbxAnimation, CubicKeysFollowTheirStoredSlopes) {
     EXPECT_NEAR(x_at(character, time), hermite(1, 1.5, 3, -2.5, 2, time / 2), 1e-12);
 }
 
-// Newer text files write the bits of slopes as integers: 1069547520 is 1.5, -1071644672 is -2.5.
+// Newer text files write the bits of slopes as integers: 1069547520 is 1.5, and -1071644672 is -2.5.
 TEST(FbxAnimation, SlopesMayBeWrittenAsTheirBits) {
   const Character character = read(sliding({0, 2}, {1, 3}, {kCubicUser, kCubicUser},
                                            {1069547520, -1071644672, 218434821, 0, 0, 0, 218434821, 0}));

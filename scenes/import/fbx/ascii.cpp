@@ -6,8 +6,8 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-// Text files: `Name: value, value { children }`, comments from ';' to the end of the line, arrays as
-// `*3 { a: 1,2,3 }`.
+// Parses text files. Their form is `Name: value, value { children }`, with comments from ';' to the end of
+// the line and arrays such as `*3 { a: 1,2,3 }`.
 class TextParser {
  public:
   explicit TextParser(std::string_view text) : text_(text) {}
@@ -35,7 +35,7 @@ class TextParser {
   bool at_end() const { return at_ >= text_.size(); }
   char here() const { return at_end() ? '\0' : text_[at_]; }
 
-  // Returns whether a line ended on the way.
+  // Skips blanks and comments. Returns whether a line ended on the way.
   bool skip_blanks() {
     bool line_ended = false;
     while (!at_end()) {
@@ -71,7 +71,7 @@ class TextParser {
     }
   }
 
-  // Values go on after a comma, at whichever end of a line that stands.
+  // Reads the values of an element. Values go on after a comma, whether the comma ends a line or begins one.
   void read_values(Element& element, int depth) {
     bool comma = false;
     for (;;) {
@@ -114,7 +114,7 @@ class TextParser {
     return {number.is_integer ? Value::Kind::integer : Value::Kind::real, number.integer, number.real};
   }
 
-  // The count that stands after the star is not needed: the numbers end with the brace.
+  // Reads an array. The count after the star is not needed, because the numbers end at the brace.
   void read_array(Element& element) {
     const std::size_t open = text_.find_first_of("{}\n", at_);
     const std::size_t close = text_.find('}', at_);

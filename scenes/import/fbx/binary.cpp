@@ -7,10 +7,10 @@ namespace cscd::scenes::fbx {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 27;  // name, two marks, the order of bytes, version
-// From this version on sizes have 64 bits.
+// Files of this version and later store sizes in 64 bits.
 constexpr std::int64_t kWideSizes = 7500;
 
-// Reads a file from front to back and never beyond `end`.
+// Parses a file from front to back and never reads beyond its end.
 class BinaryParser {
  public:
   explicit BinaryParser(std::string_view bytes) : bytes_(bytes) {}
@@ -24,9 +24,9 @@ class BinaryParser {
     Document document;
     document.binary = true;
     document.version = number<std::uint32_t>();
-    if (document.version < 7000) return document;  // which the caller refuses
+    if (document.version < 7000) return document;  // the caller refuses it
     wide_ = document.version >= kWideSizes;
-    // The end of the list is an empty record. What follows that is a checksum.
+    // An empty record ends the list. A checksum follows.
     while (read_element(document.root.children, bytes_.size(), 0)) {
     }
     return document;
@@ -56,7 +56,7 @@ class BinaryParser {
     return taken;
   }
 
-  // Returns false at the record that ends a list.
+  // Reads one element. Returns false at the record that ends a list.
   bool read_element(std::vector<Element>& siblings, std::size_t limit, int depth) {
     if (depth > kDeepest) throw InputError("its FBX elements are nested too deeply; export it again");
     const std::uint64_t said_end = size(), values = size(), value_bytes = size();

@@ -20,23 +20,23 @@ constexpr std::int64_t kWeightedRight = 0x1000000, kWeightedNextLeft = 0x2000000
 constexpr double kThird = 1.0 / 3;
 // Weights are written in ten-thousandths.
 constexpr double kWeightUnit = 1e-4;
-// A weighted segment becomes this many cubics over equal shares of its parameter. They part from the segment
-// by the fourth power of a share.
+// A weighted segment becomes this many cubics over equal shares of its parameter. The cubics differ from
+// the segment by the fourth power of a share.
 constexpr int kPieces = 48;
 
-// Clamped keys are flat where a neighbour's value is this near.
+// Clamped keys are flat where a neighbour's value differs by at most this.
 constexpr double kFlatStep = 1e-4;
-// By this share a stored number may part from a computed slope and still be that slope.
+// A stored number counts as a computed slope if it differs by at most this share of the slope.
 constexpr double kStoredSlope = 1e-3;
 
-// What KeyAttrFlags and KeyAttrDataFloat say of a key and of the way to the next one.
+// The attributes that KeyAttrFlags and KeyAttrDataFloat give for a key and for the way to the next key.
 struct Attributes {
   std::int64_t flags = 0;
   double data[2] = {0, 0};   // slope after the key and before the next; of TCB keys tension and continuity
   float packed_weights = 0;  // two weights in one; of TCB keys the bias
 };
 
-// A key with all that the segments on both sides of it need.
+// A key with everything that the segments on both sides of it depend on.
 struct RawKey {
   std::int64_t ticks = 0;
   double value = 0;
@@ -47,8 +47,9 @@ struct RawKey {
   bool is(std::int64_t bit) const { return (attributes.flags & bit) != 0; }
 };
 
-// Text files of version 7200 and later write the bits of these floats as integers, because some of them are
-// packed integers. Integers below 2^23 would be floats next to zero, so they are what a hand wrote.
+// Converts a number of KeyAttrDataFloat to a float. Text files of version 7200 and later write the bits of
+// these floats as integers, because some of them are packed integers. An integer below 2^23 would be the
+// bits of a float next to zero, so it is taken for a number that was written by hand.
 float float_of(const WrittenNumber& n, bool packed) {
   constexpr std::int64_t kSmallestNormal = 1 << 23;
   if (n.is_integer && (packed || std::abs(n.real) >= kSmallestNormal))
@@ -99,7 +100,8 @@ class CurveReader {
     return keys;
   }
 
-  // Runs of keys share their attributes. Without attributes keys are joined by straight lines.
+  // Reads the attributes of all keys. Runs of keys share their attributes. Keys without attributes are
+  // joined by straight lines.
   std::vector<Attributes> read_attributes(std::size_t keys) const {
     std::vector<Attributes> attributes(keys);
     const Element *flags = element_.child("KeyAttrFlags"), *data = element_.child("KeyAttrDataFloat"),
@@ -143,7 +145,7 @@ class CurveReader {
       if (key.is(kTcb)) {
         turn_by_tcb(keys, i);
       } else if (key.is(kAuto) && !key.is(kUser)) {
-        // What an automatic key stores in the place of its slopes is a bias towards a neighbour.
+        // An automatic key stores a bias towards a neighbour in the place of its slopes.
         key.leaving = automatic_slope(keys, i, key.leaving);
         key.arriving = automatic_slope(keys, i, -key.arriving);
       }
@@ -154,7 +156,7 @@ class CurveReader {
     return (b.value - a.value) / (b.seconds - a.seconds);
   }
 
-  // Tension, continuity and bias (Kochanek and Bartels, SIGGRAPH 1984).
+  // Sets the slopes of a TCB key from its tension, continuity and bias (Kochanek and Bartels, SIGGRAPH 1984).
   static void turn_by_tcb(std::vector<RawKey>& keys, std::size_t i) {
     RawKey& key = keys[i];
     const double tension = key.attributes.data[0], continuity = key.attributes.data[1],
@@ -166,8 +168,8 @@ class CurveReader {
     key.leaving = share * ((1 + bias) * (1 + continuity) * before + (1 - bias) * (1 - continuity) * after);
   }
 
-  // The slope of an automatic key, found from its neighbours as ufbx found that the FBX SDK does it. The bias
-  // is in per cent, towards the next key where it is positive.
+  // Computes the slope of an automatic key from its neighbours, in the way that the authors of ufbx found
+  // the FBX SDK to use. The bias is in per cent; a positive bias pulls towards the next key.
   static double automatic_slope(const std::vector<RawKey>& keys, std::size_t i, double bias) {
     const RawKey& key = keys[i];
     if (keys.size() == 1) return 0;
@@ -189,7 +191,7 @@ class CurveReader {
     if (biased) {
       const double share = (key.seconds - previous.seconds) / (next.seconds - previous.seconds);
       slope = 0.5 * slope + 0.5 * ((1 - share) * before + share * after);
-      // Files that store the slope itself where a bias belongs mean that slope.
+      // If the number in the place of the bias equals the slope itself, the file means that slope.
       if (std::abs(std::abs(bias) - std::abs(slope)) > kStoredSlope * std::abs(slope)) {
         const double strength = std::abs(bias) / 100, target = bias > 0 ? after : before;
         const double way = std::abs(target - slope) > 1e-5 ? target - slope : bias;
@@ -197,7 +199,7 @@ class CurveReader {
       }
     }
     if (key.is(kClampProgressive)) {
-      // No further than to the neighbours' values at the ends of the tangents.
+      // Limit the slope so that the ends of the tangents stay within the neighbours' values.
       const double sign = slope >= 0 ? 1 : -1;
       const double most_left = std::max(0.0, sign * before / previous.weight_before_next),
                    most_right = std::max(0.0, sign * after / key.weight_after);
@@ -206,14 +208,14 @@ class CurveReader {
     return slope;
   }
 
-  // From the file's keys to those of a Curve.
+  // Converts the file's keys to those of a Curve.
   Curve join(const std::vector<RawKey>& raw) const {
     Curve curve;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const RawKey& key = raw[i];
       const bool steps_here = i > 0 && raw[i - 1].is(kConstant);
-      // The SDK counts time in whole ticks. A step half a tick early is taken at its own key, however the
-      // time of a frame was rounded.
+      // The SDK counts time in whole ticks. Placing a step half a tick early makes it act at its own key,
+      // however the time of a frame was rounded.
       const double time =
           steps_here ? (static_cast<double>(key.ticks) - 0.5) / ticks_per_second_ : key.seconds;
       curve.push_back({time, key.value, Between::line, key.arriving, key.leaving});
@@ -230,14 +232,15 @@ class CurveReader {
         if (weighted) add_weighted(key, raw[i + 1], curve);
       }
     }
-    // Very long times leave no room for half a tick.
+    // Times that are very long leave no room for half a tick.
     const auto out_of_order = [](const Key<double>& a, const Key<double>& b) { return !(a.time < b.time); };
     if (std::adjacent_find(curve.begin(), curve.end(), out_of_order) != curve.end())
       throw InputError(where_ + ": its keys are too close together; resample it");
     return curve;
   }
 
-  // A weighted segment is a Bezier curve in the plane of time and value. It becomes cubics over its parts.
+  // Adds the keys of a weighted segment. The segment is a Bezier curve in the plane of time and value, and
+  // becomes cubics over its parts.
   void add_weighted(const RawKey& a, const RawKey& b, Curve& curve) const {
     const double length = b.seconds - a.seconds, w = a.weight_after, v = a.weight_before_next;
     if (!(w >= 0 && w <= 1 && v >= 0 && v <= 1))
@@ -253,7 +256,7 @@ class CurveReader {
     const double x[4] = {0, w * length, (1 - v) * length, length};
     const double y[4] = {a.value, a.value + a.leaving * w * length, b.value - b.arriving * v * length,
                          b.value};
-    // Where a weight is nil, the tangent is that of the other end.
+    // A key whose weight is zero leaves towards the end of the next key's tangent.
     curve.back().leaving = w > 0 ? a.leaving : slope(y, 1e-6) / slope(x, 1e-6);
     for (int i = 1; i < kPieces; ++i) {
       const double s = static_cast<double>(i) / kPieces, rise = slope(y, s) / slope(x, s);

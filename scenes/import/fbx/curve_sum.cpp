@@ -5,12 +5,12 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// A curve's value at a time, and its slopes just before and just after.
+// A curve's value at a time, and its slopes just before and just after that time.
 struct Sample {
   double value = 0, before = 0, after = 0;
 };
 
-// The slope at a share s of the way between two keys.
+// Returns the slope at the share s of the way between two keys.
 double slope_between(const Key<double>& a, const Key<double>& b, double s) {
   const double length = b.time - a.time, secant = (b.value - a.value) / length;
   if (a.next == Between::constant) return 0;

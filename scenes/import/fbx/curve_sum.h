@@ -6,14 +6,14 @@
 
 namespace cscd::scenes::fbx {
 
-// factor * curve + offset.
+// Returns factor * curve + offset.
 Curve scaled(Curve curve, double factor, double offset);
 
-// Whether a curve has one value at all times.
+// Tells whether a curve has one value at all times.
 bool is_level(const Curve& curve);
 
-// The sum of two curves, with keys at the times of both. Returns nothing where one has steps while the other
-// one changes: no kind of Between tells both at once.
+// Returns the sum of two curves, with keys at the times of both. Returns nullopt where one curve has steps
+// while the other changes, because no kind of Between expresses both at once.
 std::optional<Curve> sum(const Curve& a, const Curve& b);
 
 }  // namespace cscd::scenes::fbx

@@ -12,7 +12,7 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// Deflate makes at most this many bytes of one.
+// Deflate expands one byte to at most this many.
 constexpr std::uint64_t kMostInflation = 1032;
 
 std::size_t size_of(char type) {
@@ -159,11 +159,11 @@ bool read_number(std::string_view word, WrittenNumber& number) {
   }
   number.integer = 0;
   const auto real = std::from_chars(begin, end, number.real);
-  if (real.ec == std::errc::result_out_of_range)  // strtod tells what is too large from what is too small
+  if (real.ec == std::errc::result_out_of_range)  // strtod tells too large from too small
     number.real = std::strtod(std::string(word).c_str(), nullptr);
   else if (real.ec != std::errc{})
     return false;
-  // Windows writes 1.#INF, -1.#IND and 1.#QNAN for what is not finite.
+  // Windows writes 1.#INF, -1.#IND and 1.#QNAN for numbers that are not finite.
   if (real.ptr != end && *real.ptr == '#')
     number.real = std::numeric_limits<double>::quiet_NaN();
   else if (real.ptr != end && *real.ptr != '(')  // nan(ind)

@@ -6,7 +6,7 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-constexpr double kWhole = 0.99999;  // of a weight; more is taken for all
+constexpr double kWhole = 0.99999;  // weights from here on count as 1
 constexpr char kBake[] = "; bake the animation to one layer on export";
 
 Curve curve_of(const Components& components, std::size_t axis) {
@@ -14,7 +14,7 @@ Curve curve_of(const Components& components, std::size_t axis) {
   return {{0, components.rest[axis]}};
 }
 
-// Turns about a single axis commute, so that their angles add up.
+// Rotations about a single axis commute, so their angles add up.
 bool turn_about_one_axis(const Components& a, const Components& b) {
   int axes = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -72,7 +72,7 @@ Blending read_blending(const Object& layer, std::optional<double> percent, bool 
   if (mode != kAdditive && mode != kOverride && mode != kPassThrough)
     return refuse("has an unknown blend mode");
   if (!(weight >= 0)) return refuse("has no weight between 0 and 100");
-  if (mode != kAdditive && blending.weight == 1) return blending;  // replaces
+  if (mode != kAdditive && blending.weight == 1) return blending;  // mode stays `replace`
   if (mode == kOverride) return refuse("overrides with a weight below 100");
   blending.mode = blending.weight == 0 ? BlendMode::ignore : BlendMode::mix;
   return blending;
@@ -90,8 +90,8 @@ void combine(Components& base, const Components& layer, Combined kind, const Ble
     if (!whole) throw InputError(std::string("a layer multiplies scalings with a weight below 100") + kBake);
     return multiply(base, layer);
   }
-  // By layer, the SDK turns by one rotation after the other. Angles add up where one of them is nil or both
-  // turn about one axis.
+  // In the accumulation mode "by layer", the SDK applies one rotation after the other. Their angles add up
+  // only where one rotation is zero or both are about the same axis.
   if (kind == Combined::turn && !blending.by_channel) {
     const bool one = is_still(base, 0) || is_still(layer, 0) || turn_about_one_axis(base, layer);
     if (!one || !whole)

@@ -9,16 +9,18 @@
 
 namespace cscd::scenes::fbx {
 
-// The surface of a Geometry object. Vertices are the file's control points.
+// The surface of a Geometry object. Its vertices are the file's control points.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::size_t lines = 0;  // polygons of fewer than three corners, which are left out
 };
 
+// Reads a Geometry object and cuts its polygons into triangles. Throws InputError for damage, for polygons
+// that cannot be cut, and for counts above the limits.
 Mesh read_mesh(const Object& geometry, const CharacterLimits& limits);
 
-// A list of points or of displacements: an array of three numbers each.
+// Returns a list of points or of displacements: an array with three numbers for each.
 std::vector<Vec3> read_points(const Element& element, std::size_t most, const std::string& what);
 
 }  // namespace cscd::scenes::fbx

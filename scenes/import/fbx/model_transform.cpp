@@ -23,7 +23,7 @@ Transform rotation_map(const Quaternion& q) {
   return from_parts(Vec3::Zero(), q, Vec3::Ones());
 }
 
-// A rotation that is not finite would become the identity without a word.
+// Refuses vectors that are not finite: a rotation that is not finite would silently become the identity.
 Vec3 finite_vector(const Object& model, std::string_view name, const Vec3& otherwise) {
   const Vec3 value = vector(model, name, otherwise);
   if (!value.allFinite())
@@ -69,7 +69,8 @@ class ChainBuilder {
  public:
   ChainBuilder(Character& character, int parent) : character_(character), parent_(parent) {}
 
-  // Each returns the node that holds the map, or -1 for the identity, which needs none unless it is animated.
+  // Each of these three returns the node that holds the map. An identity that is not animated needs no
+  // node; it returns -1.
   int move(const Vec3& by, bool animated) {
     if (by == Vec3::Zero() && !animated) return -1;
     make_room(0);
@@ -88,7 +89,7 @@ class ChainBuilder {
     written().scale = by;
     return current();
   }
-  // The inverse of a scaling further up, at every time.
+  // Append the inverse of a scaling further up, and the scaling itself, as they are at every time.
   void undo(const Scaling& above) { follow(above, true); }
   void redo(const Scaling& above) { follow(above, false); }
 
@@ -126,10 +127,10 @@ class ChainBuilder {
 
   Character& character_;
   int parent_, first_ = -1;
-  int filled_ = -1;  // the last slot of the current node that is taken: 0 move, 1 turn, 2 scale
+  int filled_ = -1;  // last slot taken in the current node: 0 move, 1 turn, 2 scale
 };
 
-// The scalings that must be taken back before a node turns, and those that act again after that.
+// The scalings to undo before a node turns, and those to apply again after the turn.
 struct Detour {
   std::vector<Scaling> undo, redo;
 };
@@ -153,7 +154,7 @@ Detour detour_of(const std::string& name, const ModelTransform& transform, bool 
   const bool drops_own = inherit == Inherit::Rrs && !parent.own.unit;
   if (parent.sheared && (turns || drops_own))
     refuse_inherit(name, inherit, "below nodes whose scaling is uneven and turned");
-  // What does not turn leaves the axes as they are, so uneven scalings act as they would anyway.
+  // A node that does not turn leaves the axes as they are, so uneven scalings act correctly without a detour.
   if (!turns && !drops_own) return detour;
   detour.undo = above;
   if (drops_own) detour.undo.push_back(parent.own);
@@ -180,8 +181,8 @@ ModelTransform read_transform(const Object& model) {
   t.between = finite_vector(model, "ScalingOffset", zero) + scale_pivot - turn_pivot;
   t.end = zero - scale_pivot;
   t.inherit = inherit_of(model);
-  // Where a node's space of rotation is not active, or serves limits only, the SDK takes neither the order
-  // nor the rotations before and after.
+  // Where a node's space of rotation is not active, or serves limits only, the SDK ignores the order and
+  // the rotations before and after.
   if (integer(model, "RotationActive", 0) != 0 && integer(model, "RotationSpaceForLimitOnly", 0) == 0) {
     t.order = order_of(model);
     t.pre = from_euler(finite_vector(model, "PreRotation", zero), kXyz);

@@ -13,7 +13,7 @@ double full_weight(const Object& channel, std::size_t most, const std::string& w
   if (element == nullptr) return kFullPercent;
   const std::vector<double> weights = reals(*element, most, what);
   if (weights.size() == 1 && weights[0] > 0) return weights[0];
-  // Blender writes a number for each vertex, which tells a group of vertices where it is not 100.
+  // Blender writes a number for each vertex; a number other than 100 stands for a vertex group.
   for (const double weight : weights)
     if (weight != kFullPercent)
       throw InputError(what + ": its full weights are not 100; apply vertex groups before the export");
@@ -60,7 +60,7 @@ std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geom
         {name, displacements_of(shape, vertices, what), channel.weight_per_percent * percent});
     channels.push_back(channel);
   };
-  // FBX 2011 writes shapes into the mesh, weighed by a property of their name.
+  // FBX 2011 writes shapes into the mesh, weighted by a property with the shape's name.
   for (const Element& shape : geometry.element->children) {
     if (shape.name != "Shape") continue;
     const std::string name(shape.text(0));

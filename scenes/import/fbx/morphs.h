@@ -5,15 +5,15 @@
 
 namespace cscd::scenes::fbx {
 
-// What moves one target of a part: a property that holds a percentage.
+// A property that moves one morph target of a part. The property holds a percentage.
 struct ShapeChannel {
   const Object* owner;
   std::string property;
   double weight_per_percent;
 };
 
-// Adds the blend shapes of a geometry to a part as morph targets; returns their channels in the same order.
-// Throws InputError for channels with shapes in between.
+// Adds the blend shapes of a geometry to a part as morph targets, and returns their channels in the same
+// order. Throws InputError for damage, for counts above the limits, and for channels with shapes in between.
 std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geometry,
                                       const CharacterLimits& limits, Part& part);
 

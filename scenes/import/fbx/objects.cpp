@@ -7,12 +7,12 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// A property is `P: name, type, label, flags, values...`.
+// A property is written as `P: name, type, label, flags, values...`.
 constexpr std::size_t kFirstPropertyValue = 4;
 
 const Element* property_in(const Element* properties, std::string_view name) {
   if (properties == nullptr) return nullptr;
-  // Of equal properties the last one holds.
+  // If properties have the same name, the last one is valid.
   for (std::size_t i = properties->children.size(); i-- > 0;)
     if (const Element& property = properties->children[i]; property.name == "P" && property.text(0) == name)
       return &property;
@@ -32,14 +32,14 @@ std::optional<double> number_in(const Element* property, std::size_t index) {
   return value.real;
 }
 
-// Text files write "Model::Hips"; binary ones "Hips", two bytes, "Model".
+// Text files write "Model::Hips"; binary files write "Hips", two bytes, "Model".
 std::string name_of(std::string_view written, bool binary) {
   if (binary) return std::string(written.substr(0, written.find(std::string_view("\0\1", 2))));
   const std::size_t colons = written.find("::");
   return std::string(colons == written.npos ? written : written.substr(colons + 2));
 }
 
-// By type; a type with several templates (node attributes) takes none.
+// Returns the default properties of each type. A type with several templates (node attributes) gets none.
 std::map<std::string_view, const Element*> templates_of(const Document& document) {
   std::map<std::string_view, const Element*> defaults;
   const Element* definitions = document.root.child("Definitions");
@@ -133,7 +133,7 @@ std::optional<double> Objects::setting(std::string_view name) const {
 }
 
 double Objects::ticks_per_second() const {
-  // Newer files may say by TCDefinition that they count time in other ticks; 127 stands for the old ones.
+  // Newer files may state by TCDefinition that they count time in other ticks; 127 stands for the old ticks.
   constexpr double kOld = 46186158000.0, kNew = 141120000.0;
   constexpr std::int64_t kOldDefinition = 127, kFirstHeader = 1004;
   const Element* header = document_.root.child("FBXHeaderExtension");

@@ -9,10 +9,11 @@
 #include "core/base/vec3.h"
 #include "scenes/import/fbx/document.h"
 
-// The objects of an FBX file and how they are connected. Objects are known by their numbers; names are for
-// people and need not be unique.
+// The objects of an FBX file and how they are connected. Objects are identified by their numbers; names are
+// for people and need not be unique.
 namespace cscd::scenes::fbx {
 
+// One object of the file. Texts point into the document.
 struct Object {
   std::int64_t id = 0;
   std::string_view type;     // "Model", "Geometry", "Deformer", ...
@@ -22,31 +23,32 @@ struct Object {
   const Element* defaults = nullptr;  // the properties that all objects of the type share, or null
 };
 
-// "The source belongs to the destination", or to one of the destination's properties.
+// States that the source belongs to the destination or to one of the destination's properties.
 struct Connection {
   const Object* source;
   const Object* destination;  // null for the scene itself
   std::string_view property;  // empty for the whole object
 };
 
+// All objects of a document and their connections.
 class Objects {
  public:
   // The document must outlive the objects. Throws InputError where two objects have one number.
   explicit Objects(const Document& document);
 
-  // All objects of a type, as the file lists them.
+  // Returns all objects of a type, in the order of the file.
   std::vector<const Object*> all(std::string_view type) const;
 
-  // What is connected to an object, in the order of the file.
+  // Returns the connections that end at an object, in the order of the file.
   std::vector<Connection> into(const Object& destination) const;
-  // Objects of a type that belong to an object as a whole.
+  // Returns the objects of a type that belong to an object as a whole.
   std::vector<const Object*> sources(const Object& destination, std::string_view type) const;
-  // What an object is connected to, in the order of the file.
+  // Returns the connections that start at an object, in the order of the file.
   std::vector<Connection> out_of(const Object& source) const;
 
-  // The first number of a property of the scene's settings.
+  // Returns the first number of a property of the scene's settings, or nullopt.
   std::optional<double> setting(std::string_view name) const;
-  // So many of the file's units of time are a second.
+  // Returns the number of the file's units of time in a second.
   double ticks_per_second() const;
 
  private:
@@ -56,14 +58,15 @@ class Objects {
   std::map<const Object*, std::vector<std::size_t>> into_, out_of_;
 };
 
-// A property of an object, in which an object's own value goes before its type's default.
+// Read a property of an object. An object's own value takes precedence over its type's default; `otherwise`
+// is returned where there is neither.
 bool has_property(const Object& object, std::string_view name);
 std::optional<double> number(const Object& object, std::string_view name);
 double number(const Object& object, std::string_view name, double otherwise);
 std::int64_t integer(const Object& object, std::string_view name, std::int64_t otherwise);
 Vec3 vector(const Object& object, std::string_view name, const Vec3& otherwise);
 
-// "node 'Hips'", for refusals.
+// Returns "node 'Hips'" and the like, for errors.
 std::string told(const char* kind, const Object& object);
 
 }  // namespace cscd::scenes::fbx

@@ -9,15 +9,15 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// Where the diagonals' lengths are equal up to rounding, the one from the first corner is taken, as most
-// programs do.
+// Where the diagonals' lengths are equal up to rounding, the diagonal from the first corner is chosen, as
+// most programs do.
 constexpr double kEqualLengths = 1e-9;
 
 void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> positions,
                        std::vector<std::array<std::int32_t, 3>>& triangles) {
   const auto at = [&](std::size_t k) -> const Vec3& { return positions[static_cast<std::size_t>(c[k % 4])]; };
   const Vec3 first = at(2) - at(0), second = at(3) - at(1), normal = first.cross(second);
-  // The diagonal from corner k lies inside where both triangles beside it turn as the whole does.
+  // The diagonal from corner k lies inside if both triangles beside it turn as the whole quadrilateral does.
   const auto inside = [&](std::size_t k) {
     const Vec3 one = (at(k + 1) - at(k)).cross(at(k + 2) - at(k)),
                other = (at(k + 2) - at(k)).cross(at(k + 3) - at(k));
@@ -34,11 +34,12 @@ void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> po
   }
 }
 
-// Larger polygons are triangulated only by ways that take less than the cube of their corners.
+// Polygons with more corners are triangulated only by methods whose time is less than the cube of the
+// number of corners.
 constexpr std::size_t kMostCornersCubed = 256;
 
-// Cuts off corners that lie where the corner before them lies, by triangles without extent. Such corners make
-// two edges of one that a polygon runs along twice.
+// Cuts off, by triangles without extent, the corners that lie where the corner before them lies. Such
+// corners would turn one edge that a polygon runs along twice into two edges.
 std::vector<std::int32_t> without_repeats(std::span<const std::int32_t> corners,
                                           std::span<const Vec3> positions,
                                           std::vector<std::array<std::int32_t, 3>>& triangles) {
@@ -62,7 +63,7 @@ std::vector<std::int32_t> without_repeats(std::span<const std::int32_t> corners,
   return kept;
 }
 
-// Whether a polygon encloses nothing, so that one way to cut it is as good as another.
+// Tells whether a polygon encloses no area, so that all ways to cut it are equally good.
 bool has_no_area(std::span<const std::int32_t> corners, std::span<const Vec3> positions) {
   constexpr double kNothing = 1e-14;
   const Vec3& start = positions[static_cast<std::size_t>(corners.front())];
@@ -95,7 +96,7 @@ bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> po
   if (patch.size() + 2 != corners.size()) return false;
   for (const auto& t : patch) {
     std::array<int, 3> k{t.first, t.second, t.third};
-    std::sort(k.begin(), k.end());  // along the polygon, hence turned as it is
+    std::sort(k.begin(), k.end());  // along the polygon, and so oriented as the polygon is
     triangles.push_back({corners[static_cast<std::size_t>(k[0])], corners[static_cast<std::size_t>(k[1])],
                          corners[static_cast<std::size_t>(k[2])]});
   }

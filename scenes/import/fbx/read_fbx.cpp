@@ -20,7 +20,7 @@ namespace {
 
 using namespace fbx;
 
-// Frames a second by the number of a TimeMode.
+// Returns the frame rate that the number of a TimeMode stands for.
 double frames_per_second(const Objects& objects) {
   constexpr double kRates[] = {
       0, 120, 100, 60, 50, 48, 30, 30, 30000.0 / 1001, 30000.0 / 1001, 25, 24, 1000, 24000.0 / 1001};
@@ -30,7 +30,7 @@ double frames_per_second(const Objects& objects) {
   if (mode == kCustom) rate = objects.setting("CustomFrameRate").value_or(0);
   if (mode >= 0 && mode < static_cast<double>(std::size(kRates)))
     rate = kRates[static_cast<std::size_t>(mode)];
-  // Times are written in ticks of FBX's own in any case.
+  // Without a rate, ticks serve as frames: the file's times are in FBX's own ticks in any case.
   return std::isfinite(rate) && rate > 0 ? rate : objects.ticks_per_second();
 }
 
@@ -45,7 +45,7 @@ class Builder {
     rest_ = rest_pose(character_);
     for (const Object* model : in_order_) add_parts(*model);
     for (const Clip& clip : clips_) {
-      // Programs write an empty stack for the take that nobody filled.
+      // Programs write an empty stack for a take that holds nothing.
       if (clip.models.empty() && clip.shapes.empty())
         ++empty_clips_;
       else
@@ -87,7 +87,7 @@ class Builder {
     return value[0] == value[1] && value[1] == value[2];
   }
 
-  // The model that a model hangs on, or null for the scene.
+  // Returns the model that a model hangs on, or null for the scene.
   const Object* parent_of(const Object& model) const {
     const Object* parent = nullptr;
     bool found = false;
@@ -102,14 +102,15 @@ class Builder {
     return parent;
   }
 
-  // Parents first, as the file connects them, without recursion: how deep a file nests is not in our hands.
+  // Adds the nodes, parents first, as the file connects them. Works without recursion: a file may nest
+  // deeper than the stack allows.
   void add_nodes() {
     character_.nodes.push_back({"RootNode", -1, {}});
     const std::vector<const Object*> models = objects_.all("Model");
     if (models.size() > limits_.nodes)
       throw InputError("has more than " + std::to_string(limits_.nodes) + " nodes; simplify the model");
     std::map<const Object*, std::vector<const Object*>> children;
-    std::set<const Object*> placed;  // files may say twice where a node hangs
+    std::set<const Object*> placed;  // files may state twice where a node hangs
     for (const Object* model : models)
       if (parent_of(*model) == nullptr) children[nullptr].push_back(model);
     for (const Object* model : models)
@@ -140,7 +141,7 @@ class Builder {
       }
   }
 
-  // The surfaces that hang on a model.
+  // Adds the surfaces that hang on a model.
   void add_parts(const Object& model) {
     for (const Object* geometry : objects_.sources(model, "Geometry")) {
       if (geometry->subtype == "Mesh")
@@ -234,7 +235,8 @@ class Builder {
     character_.animations.push_back(std::move(animation));
   }
 
-  // The parts of one model follow one another, so its last channels are looked through alone.
+  // Returns the channel of a node, and adds it if there is none. The parts of one model follow one another,
+  // so only the last three channels are searched.
   static Channel& channel(Animation& animation, int node) {
     const std::size_t count = animation.channels.size();
     for (std::size_t i = count; i-- > 0 && i + 3 >= count;)
@@ -279,13 +281,13 @@ class Builder {
   std::vector<Clip> clips_;
   std::map<const Object*, Animated> animated_;
   std::map<const Object*, Chain> chains_;
-  std::map<const Object*, int> node_of_;  // the last of a model's nodes
-  std::vector<const Object*> in_order_;   // models as their nodes stand
+  std::map<const Object*, int> node_of_;  // the last node of each model
+  std::vector<const Object*> in_order_;   // models in the order of their nodes
   Pose rest_;
   std::map<const Object*, Mesh> meshes_;
-  std::set<const Object*> skinned_;  // geometries whose place is their bones' alone and that are already in
-  std::vector<std::vector<ShapeChannel>> shapes_;  // by part
-  std::size_t vertices_ = 0, triangles_ = 0;       // so far
+  std::set<const Object*> skinned_;  // geometries placed by bones alone that already have a part
+  std::vector<std::vector<ShapeChannel>> shapes_;  // [parts]
+  std::size_t vertices_ = 0, triangles_ = 0;       // counts so far
   LeftOut clip_left_out_;
   SkinLeftOut skin_left_out_;
   std::size_t lines_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;

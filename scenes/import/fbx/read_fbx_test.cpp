@@ -17,7 +17,7 @@ void expect_at(const Vec3& was, const Vec3& expected) {
 
 const Vec3 kPoints[3] = {{1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}};
 
-// Two bones and the mesh have one name. Vertex 0 follows one bone, vertex 1 both, vertex 2 none.
+// Two bones and the mesh share one name. Vertex 0 follows one bone, vertex 1 both bones, and vertex 2 none.
 struct Skinned {
   FbxText file;
   const Transform link[2] = {moved({0, 0, 2}), product({moved({1, 1, 0}), turned(0, 40)})};
@@ -99,7 +99,8 @@ TEST(FbxMesh, InstancesStandWhereTheirNodesDo) {
   expect_at(was[6], kPoints[0] + Vec3(0, 2, 0));
 }
 
-// The sum of the triangles' areas, each against the normal z, and of their sizes.
+// Returns two sums over the triangles: of their areas, signed by the direction of z, and of
+// the sizes of their areas.
 std::pair<double, double> areas(const std::vector<double>& points, const std::vector<double>& polygons) {
   FbxText file;
   file.model(20, "node", 0, "", "Mesh");
@@ -117,7 +118,8 @@ std::pair<double, double> areas(const std::vector<double>& points, const std::ve
 }
 
 TEST(FbxMesh, PolygonsAreCutInsideAndFaceTheirWay) {
-  // A dart, whose first diagonal lies outside, and the other way round; an L; a comb of nine corners.
+  // The polygons are a dart whose first diagonal lies outside, the dart with the second diagonal outside,
+  // an L, and a comb of nine corners.
   EXPECT_EQ(areas({0, 0, 0, 4, 0, 0, 1, 1, 0, 0, 4, 0}, {0, 1, 2, -4}), std::make_pair(4.0, 4.0));
   EXPECT_EQ(areas({0, 4, 0, 0, 0, 0, 4, 0, 0, 1, 1, 0}, {0, 1, 2, -4}), std::make_pair(4.0, 4.0));
   EXPECT_EQ(areas({0, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0, 1, 2, 0, 0, 2, 0}, {0, 1, 2, 3, 4, -6}),
@@ -140,7 +142,8 @@ TEST(FbxMesh, ConvexQuadrilateralsTakeTheShorterDiagonal) {
 }
 
 TEST(FbxMesh, PolygonsThatRunTwiceThroughAPlaceKeepTheirArea) {
-  // A square with a square hole, joined by an edge that is run along both ways; then one with equal corners.
+  // The first polygon is a square with a square hole, joined by an edge that the polygon runs along both
+  // ways. The second has equal corners.
   const std::vector<double> points = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 3, 1, 0};
   const auto frame = areas(points, {0, 1, 2, 3, 0, 4, 5, 6, 7, -5});
   EXPECT_NEAR(frame.first, 12, 1e-9);
@@ -223,7 +226,7 @@ TEST(Fbx, RefusesWhatIsDamagedOrCannotBe) {
   EXPECT_NE(refusal_of(parents.text()).find("'a': hangs on two nodes"), std::string::npos);
 }
 
-// A binary file of one mesh, whose vertices are deflated.
+// A binary file of one mesh whose vertices are deflated.
 class BinaryFile {
  public:
   std::string bytes = std::string("Kaydara FBX Binary  \0\x1a\0", 23);
@@ -312,7 +315,7 @@ TEST(Fbx, ReadsBinaryFilesWithDeflatedArrays) {
     const std::vector<Vec3> was = vertices_at(character, 0);
     ASSERT_EQ(was.size(), 3u);
     for (std::size_t v = 0; v < 3; ++v) EXPECT_EQ(was[v], kPoints[v]);
-    // Cut anywhere before the end of the list, it is refused.
+    // A file that is cut anywhere before the end of the list is refused.
     for (std::size_t length = 0; length + (version >= 7500 ? 25 : 13) < bytes.size(); ++length)
       EXPECT_NE(refusal_of(bytes.substr(0, length)), "") << length;
   }

@@ -8,10 +8,10 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-// Where weights that are to be completed by the mesh's own node miss less, they are only rounded.
+// The mesh's own node completes weights that sum to less than 1. A gap below this is only rounding.
 constexpr double kRounding = 1e-5;
 
-// A matrix of 16 numbers, column by column.
+// Reads a matrix of 16 numbers, column by column.
 std::optional<Transform> read_matrix(const Element& parent, std::string_view name, const std::string& what) {
   const Element* element = parent.child(name);
   if (element == nullptr) return std::nullopt;
@@ -55,7 +55,8 @@ class SkinReader {
     const Element* type = skin.element->child("SkinningType");
     const std::string_view kind = type == nullptr ? std::string_view() : type->text(0);
     bool quaternions = kind == "DualQuaternion";
-    // 3ds Max blends both ways, vertex by vertex; a vertex that is not listed is skinned linearly.
+    // 3ds Max blends linear and dual quaternion skinning vertex by vertex. A vertex that is not listed is
+    // skinned linearly.
     const Element* shares = skin.element->child("BlendWeights");
     if (kind == "Blend" && shares != nullptr)
       for (const double share : reals(*shares, limits_.vertices, where())) quaternions |= share != 0;
@@ -115,8 +116,8 @@ class SkinReader {
     return composed(inverse(*link), place_.mesh_at_rest);
   }
 
-  // Sorts the influences by vertex and makes the weights of each sum to 1. In the mode "total 1" what misses
-  // of 1 stays with the mesh's node.
+  // Sorts the influences by vertex and makes the weights of each vertex sum to 1. In the mode "total 1",
+  // the mesh's node takes the weight that is missing from 1.
   void distribute() {
     const std::size_t vertices = part_.positions.size();
     std::vector<double> sum(vertices, 0);

@@ -8,7 +8,7 @@
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/read_fbx.h"
 
-// FBX text files written by code, for tests.
+// FBX text files that tests write in code.
 namespace cscd::scenes {
 
 inline std::string listed(const std::vector<double>& numbers) {
@@ -29,7 +29,7 @@ inline std::string property(const std::string& name, const std::vector<double>& 
   return "P: \"" + name + "\", \"\", \"\", \"A\"," + listed(numbers) + "\n";
 }
 
-// The ticks of a time in seconds.
+// Converts a time in seconds to ticks.
 inline double ticks(double seconds) {
   return std::nearbyint(seconds * 46186158000.0);
 }
@@ -52,7 +52,7 @@ struct FbxText {
     add("Model", id, name, subtype, properties);
     connect(id, parent);
   }
-  // A mesh of given points and polygons; the last corner of a polygon is written as -1 - vertex.
+  // Adds a mesh of these points and polygons. The last corner of a polygon is written as -1 - vertex.
   void mesh(int id, const std::vector<int>& models, const std::vector<double>& points,
             const std::vector<double>& polygons, const std::string& body = {}) {
     add("Geometry", id, "mesh", "Mesh", "",
@@ -73,7 +73,7 @@ struct FbxText {
     connect(id, skin);
     connect(bone, id);
   }
-  // The stack 50 with its first layer 51.
+  // Adds the stack 50 with its first layer 51.
   void clip(double start, double stop) {
     add("AnimationStack", 50, "clip", "",
         property("LocalStart", {ticks(start)}) + property("LocalStop", {ticks(stop)}));
@@ -88,7 +88,7 @@ struct FbxText {
     connect(id, layer);
     connect(id, target, property);
   }
-  // `flags` of all keys; `data`, four numbers a key, may be left out.
+  // Adds a curve. `flags` are those of all keys; `data` holds four numbers a key and may be left out.
   void curve(int id, int node, const std::string& channel, const std::vector<double>& seconds,
              const std::vector<double>& values, const std::vector<double>& flags = {},
              const std::vector<double>& data = {}) {
@@ -137,7 +137,7 @@ inline std::vector<Vec3> vertices_at(const Character& character, double seconds)
   return out;
 }
 
-// Maps by the formula's names, written out again so that tests do not lean on the reader.
+// The maps of the transform's formula, written out a second time so that tests do not depend on the reader.
 inline Transform moved(const Vec3& by) {
   Transform map;
   map.origin = by;
@@ -148,7 +148,7 @@ inline Transform scaled_by(const Vec3& by) {
   for (int k = 0; k < 3; ++k) map.column[static_cast<std::size_t>(k)] *= by[k];
   return map;
 }
-// By the right-hand rule about one axis.
+// A rotation about one axis by the right-hand rule.
 inline Transform turned(int axis, double degrees) {
   const double angle = degrees * 3.14159265358979323846 / 180, c = std::cos(angle), s = std::sin(angle);
   const auto next = static_cast<std::size_t>((axis + 1) % 3),
@@ -159,7 +159,7 @@ inline Transform turned(int axis, double degrees) {
   map.column[after][static_cast<int>(next)] = -s;
   return map;
 }
-// `axes` lists the axes in the order of turning.
+// Rotations about all axes; `axes` lists the axes in the order of turning.
 inline Transform turned(const Vec3& degrees, const std::array<int, 3>& axes = {0, 1, 2}) {
   Transform map;
   for (const int axis : axes) map = composed(turned(axis, degrees[axis]), map);

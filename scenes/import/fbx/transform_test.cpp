@@ -11,7 +11,7 @@ void expect_at(const Vec3& was, const Vec3& expected, const std::string& what) {
       << what << ": " << was.transpose() << " instead of " << expected.transpose();
 }
 
-// Compares the triangle of FbxText with a map.
+// Compares the triangle of FbxText with the triangle that a map gives.
 void expect_triangle(const std::vector<Vec3>& was, const Transform& map, const std::string& what) {
   const Vec3 points[3] = {{1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}};
   ASSERT_EQ(was.size(), 3u);
@@ -90,7 +90,7 @@ TEST(FbxTransform, TheGeometricTransformMovesTheMeshButNoChildren) {
   expect_triangle({all.begin() + 3, all.end()}, moved({1, 0, 7}), "child");
 }
 
-// A parent that scales unevenly, a child that turns: each type puts the scale elsewhere.
+// A parent that scales unevenly and a child that turns. Each inherit type puts the scale elsewhere.
 FbxText uneven(int type, bool animated, const std::string& more = {}) {
   FbxText file;
   file.model(20, "parent", 0, property("Lcl Scaling", {3, 1, 0.5}) + property("InheritType", {1}));

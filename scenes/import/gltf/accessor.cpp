@@ -30,11 +30,12 @@ const char* name_of(int component_type) {
   return i < kNames.size() ? kNames[i] : "unknown";
 }
 
-// The bytes of `count` elements, `stride` apart.
+// Returns where `count` elements of `size` bytes start in a view, `stride` bytes apart. Throws InputError
+// if they reach beyond the view.
 const unsigned char* elements(std::span<const unsigned char> view, std::size_t offset, std::size_t count,
                               std::size_t stride, std::size_t size, const std::string& what) {
   if (stride < size) throw InputError(what + ": elements overlap by their byteStride; repair the file");
-  // All factors are below 2^31, which json.cpp has seen to.
+  // No product overflows: all factors are below 2^31, which json.cpp has checked.
   if (count > 0 && (offset > view.size() || (count - 1) * stride + size > view.size() - offset))
     throw InputError(what + ": " + std::to_string(count) + " elements of " + std::to_string(size) +
                      " bytes reach beyond their buffer view of " + std::to_string(view.size()) +
@@ -120,7 +121,7 @@ Numbers Accessors::read(int index, const Expected& expected) {
         numbers.values[i * numbers.width + k] =
             number_at(first + i * stride + k * component, accessor.componentType, accessor.normalized);
   } else {
-    // Without a buffer view all numbers are 0, up to those that the sparse part gives.
+    // Without a buffer view all numbers are 0, except those that the sparse part gives.
     numbers.values.assign(numbers.count * numbers.width, 0);
   }
   if (accessor.sparse.isSparse) overwrite_sparse(accessor, expected.what, numbers);

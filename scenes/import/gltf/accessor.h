@@ -8,7 +8,7 @@
 
 namespace cscd::scenes::gltf {
 
-// Sets of component types, as an accessor's purpose allows them.
+// Sets of component types, as far as an accessor's purpose allows them.
 enum Components : unsigned {
   bytes = 1,            // BYTE
   unsigned_bytes = 2,   // UNSIGNED_BYTE
@@ -21,18 +21,19 @@ constexpr Components operator|(Components a, Components b) {
   return static_cast<Components>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
 
-// What a reader expects of an accessor.
+// The properties that a reader expects of an accessor.
 struct Expected {
-  std::string what;  // "positions of mesh 3"
-  int type;          // TINYGLTF_TYPE_...
-  Components components;
-  bool must_normalize = false;  // integers stand for fractions only
-  std::size_t most = 0;         // elements
+  std::string what;             // begins error texts: "positions of mesh 3"
+  int type;                     // TINYGLTF_TYPE_...
+  Components components;        // the types allowed
+  bool must_normalize = false;  // true: integers may only stand for fractions
+  std::size_t most = 0;         // largest number of elements
 };
 
-// An accessor's numbers: integers that the file calls normalized are fractions of their largest value.
+// An accessor's numbers. Integers that the file calls normalized are given as fractions of the largest
+// value of their type.
 struct Numbers {
-  std::size_t count = 0, width = 0;  // elements, and numbers of each
+  std::size_t count = 0, width = 0;  // number of elements, and of numbers in each element
   std::vector<double> values;        // [count * width]
 
   std::span<const double> operator[](std::size_t i) const {
@@ -40,14 +41,18 @@ struct Numbers {
   }
 };
 
-// Reads accessors and buffer views; keeps the views that it had to decompress. Throws InputError wherever an
-// accessor is not what is expected of it, or reaches beyond its bytes; nothing is allocated before that.
+// Reads accessors and buffer views, and caches the buffer views that it had to decompress. Throws
+// InputError wherever an accessor differs from what is expected of it or reaches beyond its bytes; memory
+// for its numbers is allocated only after these checks.
 class Accessors {
  public:
   explicit Accessors(const Document& document) : document_(document) {}
 
+  // Returns the accessor of this index once it has passed the checks that need no data.
   const tinygltf::Accessor& checked(int accessor, const Expected& expected) const;
+  // Returns the numbers of an accessor; its sparse part replaces some of them.
   Numbers read(int accessor, const Expected& expected);
+  // Returns the bytes of a buffer view, decompressed if they are compressed.
   std::span<const unsigned char> view(int index, const std::string& what);
 
  private:
@@ -57,7 +62,7 @@ class Accessors {
   std::map<int, Bytes> decompressed_;
 };
 
-// One number of a component type from the bytes where it stands.
+// Reads one number of a component type from the bytes at which it starts.
 double number_at(const unsigned char* bytes, int component_type, bool normalized);
 
 }  // namespace cscd::scenes::gltf

@@ -1,6 +1,6 @@
 #include "scenes/import/gltf/test_files.h"
 
-// How an accessor's numbers lie in a file must not matter.
+// The way in which an accessor's numbers lie in a file must not matter.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -44,12 +44,13 @@ TEST(GltfAccessors, RotationsMayBeNormalizedIntegers) {
   bytes.root["animations"][0]["samplers"][0]["output"] =
       bytes.accessor(std::vector<std::int8_t>{0, 0, 0, 127, 0, 0, b, b}, "VEC4", true);
   expect_same_motion(read(bytes), bending_tube(), 1e-6);
-  // Without the flag nobody can say what the integers mean.
+  // Integers that are not marked as normalized have no meaning as a rotation.
   shorts.root["accessors"][static_cast<std::size_t>(turned)].erase("normalized");
   EXPECT_NE(refusal(shorts).find("without being normalized"), std::string::npos);
 }
 
-// Positions as 16-bit integers in a box that the joints' bind matrices undo (KHR_mesh_quantization).
+// Positions are 16-bit integers in a box, and the joints' bind matrices undo the scale of the box
+// (KHR_mesh_quantization).
 TEST(GltfAccessors, PositionsMayBeQuantized) {
   for (const bool normalized : {true, false}) {
     TubeFile file;
@@ -97,7 +98,7 @@ TEST(GltfAccessors, IndicesMayBeOfEveryWidthOrAbsent) {
 
 TEST(GltfAccessors, OffsetsAndStridesAreFollowed) {
   TubeFile file;
-  // Positions and weights side by side: 12 and 16 bytes, after 8 bytes that belong to nobody.
+  // Positions and weights lie side by side, in 12 and 16 bytes, after 8 bytes that are not used.
   const std::size_t count = file.character.parts[0].positions.size();
   std::vector<float> mixed(2, 7.f);
   for (std::size_t v = 0; v < count; ++v) {
@@ -111,7 +112,7 @@ TEST(GltfAccessors, OffsetsAndStridesAreFollowed) {
     file.root["accessors"][static_cast<std::size_t>(accessor)]["byteOffset"] = offset;
   }
   expect_same_motion(read(file), bending_tube());
-  // One byte more, and the last element ends beyond the view.
+  // Moved by one byte more, the last element ends beyond the view.
   file.root["accessors"][TubeFile::kWeights]["byteOffset"] = 21;
   EXPECT_NE(refusal(file).find("beyond their buffer view"), std::string::npos);
 }
@@ -130,7 +131,7 @@ TEST(GltfAccessors, SparseNumbersReplaceOthers) {
   json& accessor = file.root["accessors"].back();
   accessor["sparse"] = sparse;
   expect_same_motion(read(file), bending_tube());
-  // One that replaces an element that is not there.
+  // The sparse part replaces an element that does not exist.
   const std::vector<std::uint16_t> beyond = {1, 30000};
   accessor["sparse"]["indices"]["bufferView"] = file.view(beyond);
   EXPECT_NE(refusal(file).find("sparse part: replaces element 30000"), std::string::npos);
@@ -146,7 +147,7 @@ TEST(GltfAccessors, SparseNumbersNeedNoOthers) {
   accessor["sparse"] = {{"count", count},
                         {"indices", {{"bufferView", file.view(where)}, {"componentType", 5125}}},
                         {"values", {{"bufferView", file.view(file.numbers.positions)}}}};
-  // Indices may be sparse, too.
+  // Indices may be sparse too.
   std::vector<std::uint16_t> corner_places(file.numbers.corners.size());
   for (std::size_t i = 0; i < corner_places.size(); ++i) corner_places[i] = static_cast<std::uint16_t>(i);
   json& corners = file.root["accessors"][TubeFile::kCorners];
@@ -159,7 +160,7 @@ TEST(GltfAccessors, SparseNumbersNeedNoOthers) {
   EXPECT_EQ(character.parts[0].triangles, bending_tube().parts[0].triangles);
 }
 
-// Each case spoils one member of the tube's file; the refusal must name what is wrong.
+// Each case spoils one member of the tube's file. The refusal must name what is wrong.
 TEST(GltfAccessors, WhatDoesNotFitIsRefused) {
   struct Case {
     const char *where, *value, *words;

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-// "%20" becomes a space, and so on (RFC 3986). A per cent sign without two digits stays.
+// Replaces "%20" by a space, and so on (RFC 3986). A per cent sign without two digits stays.
 std::string percent_decoded(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -28,15 +28,15 @@ std::string percent_decoded(const std::string& text) {
   return out;
 }
 
-// "data:KIND;base64,DIGITS", or "data:KIND,BYTES" with some bytes percent-encoded (RFC 2397).
+// Decodes "data:KIND;base64,DIGITS", or "data:KIND,BYTES" with some bytes percent-encoded (RFC 2397).
 Bytes from_data_uri(const std::string& uri, const std::string& where) {
   constexpr char kBase64[] = ";base64";
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos) throw InputError(where + ": its data URI has no comma; repair the file");
   const std::string payload = percent_decoded(uri.substr(comma + 1));
   if (!std::string_view(uri).substr(0, comma).ends_with(kBase64)) return {payload.begin(), payload.end()};
-  // tinygltf decodes up to the first character that is no digit; the caller sees that bytes are missing. It
-  // knows few kinds of data, and all mean the same here.
+  // tinygltf decodes up to the first character that is no digit; the caller notices that bytes are missing.
+  // tinygltf knows few kinds of data, and all kinds mean the same here.
   Bytes bytes;
   std::string ignored;
   tinygltf::DecodeDataURI(&bytes, ignored, "data:application/octet-stream;base64," + payload, 0, false);

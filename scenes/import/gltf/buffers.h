@@ -11,9 +11,10 @@ namespace cscd::scenes::gltf {
 
 using Bytes = std::vector<unsigned char>;
 
-// The bytes of the buffers that `list` describes (the checked 'buffers' of a file): from the binary chunk,
-// from data within the text, or from a file of the model's own folder. Throws InputError where a buffer holds
-// fewer bytes than it says.
+// Returns the bytes of the buffers that `list` (the checked member 'buffers' of a file) describes,
+// [buffers]: from the binary chunk, from data within the text, or from a file in the model's own folder. A
+// buffer that only stands in for compressed data yields nullopt. Throws InputError where a buffer cannot be
+// read or holds fewer bytes than it says.
 std::vector<std::optional<Bytes>> read_buffers(const nlohmann::json& list,
                                                std::optional<std::span<const char>> binary,
                                                OwnFolder& folder);

@@ -21,7 +21,8 @@ Quaternion quaternion(std::span<const double> q) {
   return {q[3], q[0], q[1], q[2]};
 }
 
-// Rotations of keys are unit quaternions up to rounding; tangents are of any length.
+// The rotations of keys must be unit quaternions up to rounding. Tangents may have any
+// length and are left alone.
 void normalise(Quaternion& value, const std::string& where) {
   value = unit(value, where);
 }
@@ -36,7 +37,7 @@ struct ByNode {
 struct Reach {
   double first = std::numeric_limits<double>::infinity(), last = -first;
 
-  // A single key holds at all times, so it says nothing of the clip's length.
+  // A single key holds at all times, so it does not bear on the clip's length.
   template <class Value>
   void take(const std::vector<Key<Value>>& keys) {
     if (keys.size() < 2) return;
@@ -47,13 +48,13 @@ struct Reach {
 
 }  // namespace
 
-// A sampler's numbers.
+// The numbers of one sampler.
 struct Clips::Sampled {
   std::string where;
   Numbers times, values;
   Between next;
-  // Of the values, by key: as many elements as morph targets; of a cubic three times as many, those of the
-  // arriving tangents first and those of the leaving tangents last.
+  // Number of values that one key sets: the number of morph targets, or 1. A key of a cubic has three times
+  // as many in `values`: the arriving tangents first, then the values, then the leaving tangents.
   std::size_t elements = 1;
 };
 
@@ -89,7 +90,8 @@ Clips::Sampled Clips::sampled(const tinygltf::Animation& source, int index, cons
   return out;
 }
 
-// `convert` makes a value of the first element, or of the element of one morph target.
+// Makes the keys of a sampler. `convert` makes a value from the key's only element, or from the element of
+// one morph target.
 template <class Value, class Convert>
 std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert) {
   std::vector<Key<Value>> keys;

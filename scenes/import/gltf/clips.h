@@ -6,14 +6,16 @@
 
 namespace cscd::scenes::gltf {
 
-// Makes clips of a file's animations, and counts what it leaves out.
+// Makes clips from a file's animations, and counts what it leaves out.
 class Clips {
  public:
   Clips(Accessors& accessors, const CharacterLimits& limits) : accessors_(accessors), limits_(limits) {}
 
-  // `parts` stand in the order of their nodes.
+  // Reads one animation. `parts` must be in ascending order of their nodes. Throws InputError for damaged
+  // keys and for more keys than the limits allow.
   Animation read(const tinygltf::Animation& source, const Tree& tree, const std::vector<Part>& parts);
 
+  // Returns messages about what was left out of all clips read so far.
   std::vector<std::string> notes() const;
 
  private:
@@ -28,7 +30,7 @@ class Clips {
 
   Accessors& accessors_;
   const CharacterLimits& limits_;
-  // Of all clips so far.
+  // Counts over all clips read so far.
   std::size_t keys_ = 0, unordered_ = 0, twice_ = 0, no_targets_ = 0;
 };
 

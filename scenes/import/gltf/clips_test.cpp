@@ -4,7 +4,7 @@
 namespace cscd::scenes::gltf {
 namespace {
 
-// The root's place in a file whose clip moves it by these numbers.
+// Returns where the root stands in a file whose clip moves it by these numbers.
 Vec3 root_at(double seconds, const std::vector<float>& times, const std::vector<float>& values,
              const std::string& interpolation) {
   TubeFile file;
@@ -19,7 +19,8 @@ TEST(GltfClips, StepsLinesAndCubicsAreJoinedAsTheySay) {
   EXPECT_EQ(root_at(2.9, times, values, "STEP").x(), 0);
   EXPECT_EQ(root_at(3, times, values, "STEP").x(), 8);
   EXPECT_NEAR(root_at(1.5, times, values, "LINEAR").x(), 2, 1e-6);
-  // Arriving tangent, value, leaving tangent; the tangents count for each second of the two between the keys.
+  // The order is arriving tangent, value, leaving tangent. Tangents are per second, and the
+  // keys lie two seconds apart.
   const std::vector<float> cubic = {0, 0, 0, 0, 0, 0, 1, 0, 0, 2, 0, 0, 8, 0, 0, 0, 0, 0};
   EXPECT_NEAR(root_at(2, times, cubic, "CUBICSPLINE").x(), 4 + 0.125 * 2 * 1 - 0.125 * 2 * 2, 1e-6);
   EXPECT_EQ(root_at(0, times, cubic, "CUBICSPLINE").x(), 0);
@@ -38,7 +39,7 @@ TEST(GltfClips, CubicRotationsAreNormalised) {
   const Character character = read(file);
   const Transform upper = pose_at(character, character.animations[0], 0.5)[4];
   EXPECT_NEAR(upper.column[0].norm(), 1, 1e-6);
-  // By hand: z = h / 2 + 2 / 8, w = (1 + h) / 2.
+  // By hand: z = h / 2 + 2 / 8 and w = (1 + h) / 2.
   const double z = static_cast<double>(h) / 2 + 0.25, w = (1 + static_cast<double>(h)) / 2;
   EXPECT_NEAR(upper.column[0].x(), (w * w - z * z) / (w * w + z * z), 1e-6);
 }
@@ -59,7 +60,7 @@ TEST(GltfClips, SeveralChannelsMoveOneNode) {
 TEST(GltfClips, AClipLastsFromItsFirstKeyToItsLast) {
   TubeFile file;
   file.animate(2, "translation", {0.5, 2.5}, file.accessor(std::vector<float>(6, 0), "VEC3"));
-  // A single key says nothing of the length.
+  // A single key does not bear on the length.
   file.animate(3, "translation", {7}, file.accessor(std::vector<float>{1, 0, 0}, "VEC3"));
   file.root["animations"].push_back(file.root["animations"][0]);
   file.root["animations"][1]["channels"].erase(0);

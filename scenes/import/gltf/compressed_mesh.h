@@ -10,7 +10,7 @@ class Mesh;
 
 namespace cscd::scenes::gltf {
 
-// A primitive's mesh as KHR_draco_mesh_compression keeps it.
+// A primitive's mesh as the extension KHR_draco_mesh_compression stores it, decompressed.
 class CompressedMesh {
  public:
   // Decompresses a mesh. Throws InputError where the data are damaged.
@@ -18,11 +18,12 @@ class CompressedMesh {
 
   std::size_t vertices() const;
   std::size_t triangles() const;
-  std::vector<std::uint32_t> corners() const;  // three of each triangle
+  std::vector<std::uint32_t> corners() const;  // three for each triangle
 
-  // The attribute of a number that the extension gives; `accessor` says how its integers are meant. Its count
-  // is not looked at: some exporters write the count before compression. Throws InputError where there is no
-  // such attribute, or not as wide as the accessor.
+  // Returns the attribute with the number that the extension gives for it. `accessor` tells
+  // what the attribute's integers mean; its count is ignored, because some exporters write the
+  // count before compression. Throws InputError if there is no such attribute, or if its width
+  // differs from the accessor's.
   Numbers attribute(int id, const tinygltf::Accessor& accessor, const std::string& what) const;
 
  private:

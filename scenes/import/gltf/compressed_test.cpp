@@ -1,6 +1,6 @@
 #include "scenes/import/gltf/test_compressed.h"
 
-// Compressed files, compressed here by the libraries' own encoders.
+// Reads files that the libraries' own encoders have compressed.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -10,7 +10,7 @@ TEST(GltfCompressed, MeshoptAttributesAndTriangles) {
   const Character character = read(file);
   expect_same_motion(character, bending_tube());
   ASSERT_EQ(character.parts[0].triangles.size(), bending_tube().parts[0].triangles.size());
-  // The codec may turn a triangle to another first corner.
+  // The codec may list a triangle from another first corner.
   for (std::size_t t = 0; t < corners.size() / 3; ++t) {
     auto got = character.parts[0].triangles[t], wanted = bending_tube().parts[0].triangles[t];
     std::rotate(got.begin(), std::min_element(got.begin(), got.end()), got.end());
@@ -49,7 +49,7 @@ TEST(GltfCompressed, MeshoptQuaternionFilter) {
   expect_same_motion(read(file), bending_tube(), 2e-4);
 }
 
-// Octahedral directions are for normals, but a morph target may be written so.
+// The octahedral filter is meant for normals, but a morph target may be written with it.
 TEST(GltfCompressed, MeshoptOctahedralFilter) {
   TubeFile file;
   const std::size_t vertices = file.character.parts[0].positions.size();
@@ -99,7 +99,7 @@ TEST(GltfCompressed, DracoMeshes) {
   const Character got = read(with_draco()), wanted = bending_tube();
   ASSERT_EQ(got.parts[0].positions.size(), wanted.parts[0].positions.size());
   ASSERT_EQ(got.parts[0].triangles.size(), wanted.parts[0].triangles.size());
-  // Draco numbers vertices anew, so they are told by where they are at rest.
+  // Draco numbers vertices anew, so they are matched by where they are at rest.
   for (const double seconds : {0.0, 0.5, 1.0}) {
     const std::vector<Vec3> found = positions_at(got, seconds), expected = positions_at(wanted, seconds);
     for (std::size_t v = 0; v < found.size(); ++v) {

@@ -8,8 +8,8 @@ namespace {
 using Mode = CompressedView::Mode;
 using Filter = CompressedView::Filter;
 
-// One compressed byte holds no more than this many bytes: a byte of attributes stands for four groups of
-// sixteen equal bytes, a byte of triangles for three indices.
+// One compressed byte holds at most this many bytes. A byte of attributes can stand for four groups of
+// sixteen equal bytes, and a byte of triangles for three indices.
 constexpr std::size_t kDensest = 64;
 
 [[noreturn]] void refuse(const std::string& what, const std::string& why) {
@@ -18,7 +18,7 @@ constexpr std::size_t kDensest = 64;
 
 std::size_t whole(const tinygltf::Value& extension, const char* member, bool required,
                   const std::string& what) {
-  // json.cpp has seen to it that a member of this name is a whole number.
+  // json.cpp has checked that a member of this name is a whole number.
   if (extension.Has(member)) return static_cast<std::size_t>(extension.Get(member).GetNumberAsInt());
   if (required) refuse(what, std::string("has no ") + member);
   return 0;
@@ -44,7 +44,7 @@ Filter filter_of(const std::string& name, const std::string& what) {
   refuse(what, "has the unknown filter '" + name + "'");
 }
 
-// The library asserts these, and is built without assertions.
+// Checks what the decompressing library only asserts, because the library is built without assertions.
 bool consistent(const CompressedView& view) {
   const std::size_t stride = view.stride;
   if (view.mode != Mode::attributes) {

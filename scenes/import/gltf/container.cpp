@@ -21,7 +21,7 @@ std::uint32_t word(std::span<const char> bytes, std::size_t at) {
   return value;
 }
 
-// Some exporters fill the JSON chunk up with zeros instead of spaces.
+// Removes the filling at the end of the JSON chunk. Some exporters fill up with zeros instead of spaces.
 std::string_view without_filling(std::string_view text) {
   while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.remove_suffix(1);
   return text;

@@ -12,8 +12,8 @@ struct Container {
   std::optional<std::span<const char>> binary;
 };
 
-// Tells .glb from .gltf by the first four bytes, so that a wrong extension does no harm. The pieces point
-// into `file`. Throws InputError for a damaged .glb file and for glTF 1.
+// Splits a file into its pieces, which point into `file`. The first four bytes tell .glb from .gltf, so
+// that a wrong extension does no harm. Throws InputError for a damaged .glb file and for glTF 1.
 Container split(std::span<const char> file);
 
 }  // namespace cscd::scenes::gltf

@@ -5,14 +5,14 @@
 
 #include "scenes/import/gltf/test_compressed.h"
 
-// Files of every kind with a few members or bytes changed at random: each is read to finite positions, or
-// refused, in time.
+// Changes a few members or bytes in files of every kind at random. Each file must be read to finite
+// positions, or refused, within a time limit.
 namespace cscd::scenes::gltf {
 namespace {
 
 using Random = std::mt19937_64;
 
-// Sparse positions, a strip, a cubic, weights of morph targets, a matrix, two sets of joints.
+// A file with sparse positions, a strip, a cubic, weights of morph targets, a matrix and two sets of joints.
 TubeFile with_everything() {
   TubeFile file;
   const std::vector<std::uint16_t> where = {1, 5};
@@ -103,7 +103,7 @@ bool survives(const std::string& bytes) {
     }
     return true;
   } catch (const InputError&) {
-  } catch (const std::bad_alloc&) {  // which the importer reports as a lack of memory
+  } catch (const std::bad_alloc&) {  // the importer reports this as a lack of memory
   }
   return false;
 }
@@ -123,11 +123,11 @@ TEST(GltfDamage, DamagedFilesAreReadOrRefused) {
           spoil_member(file.root, random);
         else
           spoil_bytes(file.bytes, random);
-      const std::clock_t start = std::clock();  // of the processor: others may use the machine, too
+      const std::clock_t start = std::clock();  // processor time: others may use the machine too
       std::string bytes;
       try {
         bytes = file.glb();
-      } catch (const json::exception&) {  // where the buffers have become something else
+      } catch (const json::exception&) {  // the damage has turned the buffers into another kind
         bytes = file.root.dump();
       }
       accepted += survives(bytes);

@@ -10,7 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-// Writes down what tinygltf asks for although the specification does not.
+// Adds what tinygltf requires although the specification leaves it optional, and moves the indices of
+// primitives (see kIndices).
 void suit_tinygltf(json& root) {
   for (json& mesh : root["meshes"]) {
     if (!mesh.contains("primitives")) continue;
@@ -24,7 +25,7 @@ void suit_tinygltf(json& root) {
     if (!skin.contains("inverseBindMatrices")) skin["inverseBindMatrices"] = -1;
 }
 
-// Text alone reaches tinygltf: no image, no buffer and no file.
+// Lets tinygltf read the JSON text alone: no image, no buffer and no file reaches it.
 tinygltf::Model to_model(const json& root) {
   tinygltf::TinyGLTF reader;
   reader.SetFsCallbacks(
@@ -39,7 +40,7 @@ tinygltf::Model to_model(const json& root) {
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
   const bool read = reader.LoadASCIIFromString(&model, &error, &warning, text.data(),
                                                static_cast<unsigned int>(text.size()), "");
-  // It drops what it cannot read from a list and says so in `error` alone.
+  // tinygltf drops the entries of a list that it cannot read, and reports them in `error` alone.
   if (!read || !error.empty())
     throw InputError("the glTF file is damaged (" + error.substr(0, error.find('\n')) + "); export it again");
   return model;

@@ -2,7 +2,7 @@
 
 #include "scenes/import/gltf/test_files.h"
 
-// Containers, buffers and what a file says of itself.
+// Checks containers, buffers, extensions and other members that concern the file as a whole.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -16,7 +16,7 @@ std::string told(const TestFolder& folder, const std::string& name, const std::s
   }
 }
 
-// The tube with its buffer elsewhere.
+// The tube with its buffer at another place.
 std::string with_uri(const std::string& uri, std::size_t extra_length = 0) {
   TubeFile file;
   file.root["buffers"] = {{{"byteLength", file.bytes.size() + extra_length}, {"uri", uri}}};
@@ -54,7 +54,7 @@ TEST(GltfDocument, BuffersMayLieInTheTextOrBesideTheFile) {
     encoded += digits;
   }
   EXPECT_EQ(told(folder, "test.gltf", with_uri(encoded)), "");
-  // A .glb file under the other name, and the other way round.
+  // A .glb file may have the name of a .gltf file, and a .gltf file that of a .glb file.
   EXPECT_EQ(told(folder, "test.gltf", TubeFile().glb()), "");
   EXPECT_EQ(told(folder, "test.glb", with_uri("data/tube.bin")), "");
 }
@@ -139,7 +139,7 @@ TEST(GltfDocument, ChunksMustFitTheFile) {
   EXPECT_NE(spoiled(8, 4).find("says that it has 4 bytes"), std::string::npos);
   EXPECT_NE(spoiled(12, 0xfffffff0).find("longer than the file"), std::string::npos);
   EXPECT_NE(spoiled(16, 0x004E4942).find("does not begin with"), std::string::npos);
-  // Zeros instead of spaces after the JSON text are forgiven.
+  // Zeros instead of spaces after the JSON text are accepted.
   std::string zeros = whole;
   const std::size_t end = 20 + static_cast<std::size_t>(static_cast<unsigned char>(whole[12])) +
                           256 * static_cast<std::size_t>(static_cast<unsigned char>(whole[13]));
@@ -156,20 +156,20 @@ TEST(GltfDocument, TextThatIsNoGltfIsRefused) {
   EXPECT_NE(told(folder, "test.gltf", "[]").find("is no object"), std::string::npos);
   EXPECT_NE(told(folder, "test.gltf", R"({"asset":{"version":"2.0"},"scene":1e999})").find("damaged"),
             std::string::npos);
-  // A byte order mark is forgiven.
+  // A byte order mark is accepted.
   EXPECT_EQ(told(folder, "test.gltf", "\xEF\xBB\xBF" + with_uri("data:;base64," + base64(TubeFile().bytes))),
             "");
-  // Brackets within texts are not nested.
+  // Brackets within strings do not nest.
   TubeFile file;
   file.root["nodes"][0]["name"] = std::string(200, '[') + "\"" + std::string(200, '{');
   EXPECT_EQ(refusal(file), "");
 }
 
-// A list of many objects must not take a time that grows with its square.
+// The time for a list of many objects must not grow with the square of its length.
 TEST(GltfDocument, LongListsAreReadInTime) {
   TubeFile file;
   for (int i = 0; i < 200'000; ++i) file.root["materials"].push_back({{"name", "m"}});
-  const std::clock_t start = std::clock();  // of the processor: others may use the machine, too
+  const std::clock_t start = std::clock();  // processor time: others may use the machine too
   EXPECT_EQ(refusal(file), "");
   EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);
 }
@@ -187,7 +187,7 @@ TEST(GltfDocument, RequiredExtensionsAreReadHarmlessOrRefusedByName) {
 TEST(GltfDocument, OptionalExtensionsThatMayMoveVerticesAreNoted) {
   TubeFile file;
   file.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_lights_punctual", "KHR_materials_clearcoat"};
-  // One that the file does not list.
+  // An extension that the file uses without listing it.
   file.root["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = false;
   const Character character = read(file);
   EXPECT_TRUE(has_note(character, "'EXT_mesh_gpu_instancing' is not read"));
@@ -198,7 +198,7 @@ TEST(GltfDocument, OptionalExtensionsThatMayMoveVerticesAreNoted) {
   EXPECT_TRUE(has_note(read(file), "81 more optional glTF extensions"));
 }
 
-// Damaged images, huge textures and the like are nobody's business here.
+// Damaged images, huge textures and the like do not matter here.
 TEST(GltfDocument, TexturesAreNotLookedAt) {
   TubeFile file;
   file.root["images"] = {{{"uri", "../../none.png"}}, {{"bufferView", 999}, {"mimeType", "image/png"}}, 7};

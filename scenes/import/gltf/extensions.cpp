@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 19> kHarmless = {"KHR_lights_punctual",
                                                         "FB_ngon_encoding",
                                                         "GODOT_single_root",
                                                         "MSFT_packing_occlusionRoughnessMetallic"};
-// KHR_materials_unlit, KHR_materials_variants and their many relatives.
+// The prefix of KHR_materials_unlit, KHR_materials_variants and their many relatives.
 constexpr std::string_view kMaterials = "KHR_materials_";
 
 bool is_read(const std::string& name) {
@@ -55,7 +55,7 @@ std::vector<std::string> notes_on(const std::set<std::string>& used) {
   std::vector<std::string> notes;
   std::size_t more = 0;
   for (const std::string& name : used) {
-    // The channels of KHR_animation_pointer have a note each.
+    // The channels of KHR_animation_pointer get a note each.
     if (is_read(name) || is_harmless(name) || name == kPointer) continue;
     if (notes.size() < kMostNamed)
       notes.push_back("the optional glTF extension '" + name + "' is not read");

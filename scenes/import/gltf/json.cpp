@@ -16,11 +16,11 @@ using nlohmann::json;
 
 constexpr std::size_t kDeepest = 64;
 
-// What a member of this name must be, wherever it stands in the sections that are read.
+// The form that a member of a given name must have, wherever it stands in the sections that are read.
 enum class Kind { whole, wholes, wholes_by_name, by_name_list, numbers, text, flag, object, objects };
 struct Rule {
   Kind kind;
-  std::size_t length = 0;  // of numbers; 0: any
+  std::size_t length = 0;  // of a list of numbers; 0: any length
 };
 const std::map<std::string_view, Rule> kRules = {{"scene", {Kind::whole}},
                                                  {"mesh", {Kind::whole}},
@@ -66,7 +66,7 @@ const std::map<std::string_view, Rule> kRules = {{"scene", {Kind::whole}},
                                                  {"primitives", {Kind::objects}},
                                                  {"channels", {Kind::objects}},
                                                  {"samplers", {Kind::objects}}};
-// Members that are not read, and that tinygltf would only copy.
+// Members that this reader ignores and that tinygltf would only copy.
 constexpr std::array kUnread = {"extras", "min", "max", "camera", "skeleton", "material"};
 
 constexpr std::array kSections = {"accessors", "animations", "buffers", "bufferViews",
@@ -78,7 +78,7 @@ constexpr std::array kSections = {"accessors", "animations", "buffers", "bufferV
 
 void check_whole(json& value, const std::string& where) {
   constexpr auto kMost = std::numeric_limits<int>::max();
-  // 3.0 is a whole number, too.
+  // JSON numbers such as 3.0 are whole numbers too.
   if (value.is_number_float()) {
     const double number = value.get<double>();
     if (number == std::floor(number) && std::abs(number) <= kMost) value = static_cast<std::int64_t>(number);
@@ -88,7 +88,7 @@ void check_whole(json& value, const std::string& where) {
                              value.get<std::int64_t>() >= 0 && value.get<std::int64_t>() <= kMost;
   if (!unsigned_number && !signed_number)
     refuse(where, "is not a whole number from 0 to " + std::to_string(kMost));
-  // tinygltf asks for the type, too.
+  // tinygltf also requires the unsigned type.
   if (signed_number) value = static_cast<std::uint64_t>(value.get<std::int64_t>());
 }
 
@@ -112,7 +112,8 @@ class Checker {
   }
 
  private:
-  // Some names mean one thing in one place and another thing in another.
+  // Returns the kind that a member must have where it stands: some names mean different
+  // things in different places.
   static Kind kind_of(Kind usual, const std::string& name, const json& value, const std::string& where) {
     if (name == "mode" && where.find(kMeshopt) != std::string::npos) return Kind::text;
     if (name == "indices") return value.is_object() ? Kind::object : Kind::whole;
@@ -157,7 +158,8 @@ class Checker {
     }
   }
 
-  // Files forget now and then to list an extension that they use.
+  // Keeps the extensions that are read and records the names of all. Recording them here covers files that
+  // forget to list an extension that they use.
   void keep_known(json& extensions, const std::string& where) {
     if (!extensions.is_object()) refuse(where, "is not an object");
     json known = json::object();
@@ -198,7 +200,8 @@ void check_version(const json& root) {
     throw InputError("needs a reader of glTF " + least + "; export it as glTF 2.0");
 }
 
-// The specification leaves names to extras; the larger exporters agree on this place.
+// Returns the names of a mesh's morph targets. The specification leaves names to extras; the larger
+// exporters agree on this place.
 std::vector<std::string> target_names(const json& mesh) {
   std::vector<std::string> names;
   if (!mesh.is_object()) return names;
@@ -210,8 +213,8 @@ std::vector<std::string> target_names(const json& mesh) {
   return names;
 }
 
-// How deep brackets nest outside of texts. The JSON library could tell, too, but at a cost that grows with
-// the square of a list's length.
+// Returns how deep brackets nest outside of strings. The JSON library could tell this too, but at a cost
+// that grows with the square of a list's length.
 std::size_t deepest(std::string_view text) {
   std::size_t depth = 0, most = 0;
   bool within_text = false;
@@ -237,7 +240,7 @@ json parsed(std::string_view text) {
   }
 }
 
-// Takes out the channels that move no node. tinygltf drops them without telling which.
+// Removes the channels that move no node and notes them. tinygltf drops such channels without saying which.
 void take_out_channels(json& animation, std::vector<std::string>& notes) {
   constexpr std::size_t kMostNamed = 20;
   const auto channels = animation.find("channels");

@@ -8,8 +8,9 @@
 namespace cscd::scenes {
 namespace {
 
-// A surface is seen from its other side where its node mirrors it (section 3.7.4). A node says nothing about
-// a surface that follows joints.
+// Turns round the triangles of surfaces that their node mirrors, because such a surface is seen from its
+// other side (glTF 2.0, section 3.7.4). Surfaces that follow joints are left alone: their node does not
+// bear on where they are.
 void turn_mirrored(Character& character) {
   const Pose rest = rest_pose(character);
   for (Part& part : character.parts)

@@ -19,7 +19,8 @@ void require_count(std::size_t count, std::size_t limit, const char* what) {
     throw InputError("has more than " + std::to_string(limit) + " " + what + "; simplify the model");
 }
 
-// Strips and fans as the specification's section 3.7.2.1 takes them apart. The corners are in range.
+// Splits strips and fans into triangles as section 3.7.2.1 of the specification does.
+// The corners are in range.
 Triangles triangles(const Corners& corners, int mode) {
   Triangles triangles;
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
@@ -43,13 +44,13 @@ std::vector<Vec3> vectors(const Numbers& numbers) {
   return vectors;
 }
 
-// Floats, and the integers of KHR_mesh_quantization.
+// Component types of positions: floats, and the integers of KHR_mesh_quantization.
 constexpr Components kPositions = Components::floats | Components::bytes | Components::unsigned_bytes |
                                   Components::shorts | Components::unsigned_shorts;
 
 }  // namespace
 
-// A primitive's attributes, wherever they lie.
+// The attributes of a primitive, whether they are compressed or not.
 class Attributes {
  public:
   Attributes(const tinygltf::Primitive& primitive, Accessors& accessors, const std::string& what)
@@ -75,7 +76,7 @@ class Attributes {
     return mesh_->attribute(id->second, accessors_.checked(found->second, expected), expected.what);
   }
 
-  // The corners in the order of the primitive's mode; Draco always holds separate triangles.
+  // Returns the corners in the order of the primitive's mode. Draco always holds separate triangles.
   Corners corners(std::size_t vertices, std::size_t most) {
     if (mesh_) {
       require_count(3 * mesh_->triangles(), most, "corners of triangles");
@@ -98,7 +99,7 @@ class Attributes {
   Accessors& accessors_;
   std::string what_;
   std::optional<CompressedMesh> mesh_;
-  std::map<std::string, int> compressed_;  // attributes by name, to the extension's numbers
+  std::map<std::string, int> compressed_;  // names of attributes to their numbers in the extension
 };
 
 std::vector<Part> Surfaces::read(const tinygltf::Node& node, int own_place, const std::vector<int>& place) {
@@ -161,7 +162,7 @@ void Surfaces::read_skin(const tinygltf::Skin& skin, const std::vector<int>& pla
   const Expected matrices{"inverse bind matrices", TINYGLTF_TYPE_MAT4, Components::floats, false,
                           limits_.nodes};
   const int bind = skin.inverseBindMatrices;
-  // Ten times as many as nodes, because parts may share a skin.
+  // The limit is ten times that on nodes, because parts may share a skin.
   joints_ += std::max(skin.joints.size(), bind >= 0 ? accessors_.checked(bind, matrices).count : 0);
   require_count(joints_, 10 * limits_.nodes, "joints of all meshes together");
   std::optional<Numbers> offsets;
@@ -260,7 +261,7 @@ std::vector<std::string> Surfaces::notes() const {
 }
 
 Transform affine(std::span<const double> m, const std::string& what) {
-  // The last row of floats that an exporter has multiplied out may be off by a rounding.
+  // A matrix that an exporter multiplied out in floats may have roundings in its last row.
   constexpr double kRounding = 1e-4;
   const bool last_row = std::abs(m[3]) < kRounding && std::abs(m[7]) < kRounding &&
                         std::abs(m[11]) < kRounding && std::abs(m[15] - 1) < kRounding;

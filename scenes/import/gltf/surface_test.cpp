@@ -2,7 +2,7 @@
 
 #include "scenes/import/gltf/test_files.h"
 
-// What becomes of a file's meshes and skins.
+// Checks what the reader makes of a file's meshes and skins.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -16,7 +16,7 @@ std::multiset<std::array<std::int32_t, 3>> turned_to_smallest(
   return out;
 }
 
-// A square of four corners; orientation must be the same from a strip and from a fan.
+// A square of four corners, which must have the same orientation whether it is a strip or a fan.
 TestFile square(int mode, const std::vector<std::uint8_t>& corners) {
   TestFile file;
   const int positions = file.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
@@ -59,7 +59,7 @@ TEST(GltfSurfaces, FurtherSetsOfJointsAndWeightsCount) {
   TubeFile file;
   std::vector<float> first = file.numbers.weights, second(first.size(), 0);
   std::vector<std::uint8_t> joints(first.size(), 0);
-  // What the second joint holds of a vertex moves to the second set.
+  // Move the weights of the second joint to the second set.
   for (std::size_t i = 0; i < first.size(); ++i)
     if (file.numbers.joints[i] == 1) {
       second[i / 4 * 4] = std::exchange(first[i], 0.f);
@@ -87,7 +87,7 @@ TEST(GltfSurfaces, WeightsAreMadeToSumToOne) {
   EXPECT_NE(refusal(file).find("a weight is not finite"), std::string::npos);
 }
 
-// Without inverse bind matrices the vertices are in the coordinates of the joints.
+// Without inverse bind matrices, the vertices are in the coordinates of the joints.
 TEST(GltfSurfaces, SkinsWithoutBindMatricesHaveIdentities) {
   TubeFile file;
   file.root["skins"][0].erase("inverseBindMatrices");
@@ -125,7 +125,7 @@ TEST(GltfSurfaces, VerticesWithoutWeightsFollowTheirNode) {
   EXPECT_LT((positions_at(character, 1)[count] - upper(bending_tube().parts[0].positions[0])).norm(), 1e-6);
 }
 
-// Every vertex is moved by (0, 0, 1) with the whole weight of the first target, and not by the second.
+// The first target moves every vertex by (0, 0, 1) at full weight; the second target moves no vertex.
 TubeFile with_targets() {
   TubeFile file;
   std::vector<float> up;
@@ -181,12 +181,12 @@ TEST(GltfSurfaces, WeightsOfMorphTargetsMayBeAnimated) {
   TubeFile file = with_targets();
   file.animate(1, "weights", {0, 1}, file.accessor(std::vector<float>{0, 0, 1, 0}, "SCALAR"));
   EXPECT_NEAR(raised_by(read(file), 0.5), 0.5, 1e-6);
-  // Arriving tangents, values and leaving tangents of both targets, key by key.
+  // The order is arriving tangents, values and leaving tangents of both targets, key by key.
   TubeFile cubic = with_targets();
   cubic.animate(1, "weights", {0, 2},
                 cubic.accessor(std::vector<float>{0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, "SCALAR"),
                 "CUBICSPLINE");
-  // Half-way of two seconds the leaving slope of 1 adds 2 (1/8 - 2/4 + 1/2).
+  // Half-way through two seconds, the leaving slope of 1 adds 2 (1/8 - 2/4 + 1/2).
   EXPECT_NEAR(raised_by(read(cubic), 1), 0.25, 1e-6);
   // Two values for two keys are too few for two targets.
   TubeFile few = with_targets();

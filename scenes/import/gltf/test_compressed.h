@@ -6,10 +6,11 @@
 
 #include "scenes/import/gltf/test_files.h"
 
-// Files of the tube, compressed by the libraries' own encoders.
+// Files of the tube, compressed by the encoders of the libraries that read them.
 namespace cscd::scenes::gltf {
 
-// Moves the view of an accessor into a compressed one; the plain bytes go, and a buffer stands in for them.
+// Replaces the view of an accessor by a compressed view. The plain bytes are dropped, and a
+// buffer stands in for them.
 inline void compress(TubeFile& file, int accessor, const std::vector<unsigned char>& compressed,
                      std::size_t count, std::size_t stride, const char* mode, const char* filter = nullptr) {
   const auto packed = static_cast<std::size_t>(file.view(compressed));
@@ -35,7 +36,7 @@ inline std::vector<unsigned char> packed_vertices(const void* data, std::size_t 
   return out;
 }
 
-// The tube's mesh by Draco; `ids` becomes the extension's attributes.
+// Encodes the tube's mesh with Draco, and sets `ids` to the attributes of the extension.
 inline std::vector<unsigned char> packed_mesh(const TubeFile& file, json& ids) {
   const MeshNumbers& numbers = file.numbers;
   draco::TriangleSoupMeshBuilder builder;
@@ -70,13 +71,13 @@ inline TubeFile with_draco() {
   json ids;
   const int view = file.view(packed_mesh(file, ids));
   file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view}, {"attributes", ids}};
-  // As exporters write it: the accessors say what comes out, and have no bytes of their own.
+  // Exporters write accessors that describe the decompressed data and have no bytes of their own.
   for (const std::size_t a : {0u, 1u, 2u, 3u}) file.root["accessors"][a].erase("bufferView");
   file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   return file;
 }
 
-// The tube with positions and triangles by meshoptimizer.
+// The tube with positions and triangles encoded by meshoptimizer.
 inline TubeFile with_meshopt() {
   TubeFile file;
   const std::size_t vertices = file.character.parts[0].positions.size();

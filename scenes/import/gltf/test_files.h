@@ -13,7 +13,7 @@
 #include "scenes/character/test_characters.h"
 #include "scenes/import/gltf/read_gltf.h"
 
-// glTF files that a test writes by code, to change one thing of them and read what comes of it.
+// glTF files that a test builds in code, so that it can change one thing in them and read the result.
 namespace cscd::scenes::gltf {
 
 using nlohmann::json;
@@ -25,7 +25,7 @@ inline constexpr int kComponent = sizeof(Number) == 1   ? (std::is_signed_v<Numb
 template <>
 inline constexpr int kComponent<float> = 5126;
 
-// A file of one buffer. Members of `root` may be changed at will.
+// A file of one buffer. Tests change members of `root` at will.
 struct TestFile {
   json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
   std::string bytes;
@@ -81,7 +81,7 @@ struct TestFile {
   }
 };
 
-// A folder that is gone after the test.
+// A folder that is removed after the test.
 struct TestFolder {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("cscd-gltf-test-" + std::to_string(getpid()));
@@ -103,7 +103,7 @@ inline Character read(const TestFile& file, const CharacterLimits& limits = {}) 
   return read_bytes(file.glb(), limits);
 }
 
-// What a file is refused for; empty where it is accepted.
+// Returns the error that a file is refused with; empty where the file is accepted.
 inline std::string refusal(const TestFile& file, const CharacterLimits& limits = {}) {
   try {
     read(file, limits);
@@ -144,7 +144,7 @@ inline std::vector<float> flat(const std::vector<Vec3>& vectors) {
   return out;
 }
 
-// The mesh of a part with four joints and weights a vertex, as numbers.
+// The numbers of a part's mesh, with four joints and weights a vertex.
 struct MeshNumbers {
   std::vector<float> positions, weights;
   std::vector<std::uint8_t> joints;
@@ -163,8 +163,8 @@ struct MeshNumbers {
   }
 };
 
-// The tube of bending_tube(): nodes 0 to 4, skin 0, mesh 0, clip 'bend'. The accessors are numbered as they
-// are named here.
+// A file of the tube of bending_tube(): nodes 0 to 4, skin 0, mesh 0, clip 'bend'. The constants give the
+// numbers of the accessors.
 struct TubeFile : TestFile {
   const Character character = bending_tube();
   const MeshNumbers numbers{character.parts[0]};

@@ -20,7 +20,8 @@ std::vector<int> parents(const tinygltf::Model& model) {
   return parent;
 }
 
-// The topmost nodes that are shown: those of the default scene, else of the first, else all.
+// Marks the topmost nodes that are shown: those of the default scene, or else of the first
+// scene, or else all nodes.
 std::vector<bool> in_scene(const tinygltf::Model& model, const std::vector<int>& parent) {
   if (model.scenes.empty()) return std::vector<bool>(model.nodes.size(), true);
   std::vector<bool> shown(model.nodes.size(), false);
@@ -71,7 +72,7 @@ Tree make_tree(const tinygltf::Model& model, std::size_t most_nodes) {
 
   Tree tree;
   tree.place.assign(model.nodes.size(), -1);
-  // Depth first without recursion: how deep a file nests is not in our hands.
+  // Walks depth first without recursion: a file may nest deeper than the stack allows.
   struct Open {
     int node, parent;
     bool shown;

@@ -1,6 +1,6 @@
 #include "scenes/import/gltf/test_files.h"
 
-// Nodes are told by their numbers, and only what the scene names is shown.
+// Nodes are identified by their numbers, and only the nodes of the scene are shown.
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -25,7 +25,7 @@ TEST(GltfTree, TheDefaultSceneIsShownElseTheFirstElseAll) {
 
 TEST(GltfTree, JointsOutsideTheScenePose) {
   TubeFile file;
-  // The mesh's node alone is in the scene; the joints stand under the old root.
+  // Only the mesh's node is in the scene; the joints stand under the old root.
   file.root["nodes"][0]["children"] = {2};
   file.root["scenes"][0]["nodes"] = {1};
   expect_same_motion(read(file), bending_tube());
@@ -55,8 +55,8 @@ TEST(GltfTree, MatricesAreTakenAsTheyAre) {
   EXPECT_NE(refusal(file).find("a list of 16 numbers"), std::string::npos);
 }
 
-// The turned joint mirrors along x and stretches along y. Only its rotation is animated, so the scale must
-// stay as the file writes it.
+// The joint that turns mirrors along x and stretches along y. Only its rotation is animated, so its scale
+// must stay as the file writes it.
 TEST(GltfTree, MirroredAndUnevenScalesStayAsWritten) {
   TubeFile file;
   file.root["nodes"][4]["scale"] = {-1, 2, 1};
