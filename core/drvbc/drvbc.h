@@ -9,22 +9,22 @@
 
 namespace cscd {
 
-// Parameters of the paper, with its values.
+// Parameters of the paper, with the paper's values.
 struct DrvbcOptions {
   double gamma =
-      0.05;  // merge while fewer than this share of a candidate's triangles is not positive; 0: never
+      0.05;  // clusters merge while less than this share of a candidate's triangles is not positive; 0: never
   radial::BoneClusterOptions bones{};
   bool relative_boxes = true;
-  // For the ablation.
+  // The options below are for the ablation.
   std::string_view name = "drvbc";  // begins error texts
-  bool cache = true;                // of triangles that were not positive (section 5)
+  bool cache = true;                // of triangles that were not positive in the last interval (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
   radial::SignTest orientation_sign = radial::SignTest::certain;
   PairFilter filter = PairFilter::certain_sign;
 };
 
-// Dynamic radial view based culling, the paper's method. Needs a closed, consistently oriented mesh and a
-// rig.
+// Prepares the strategy `drvbc`: Dynamic Radial View Based Culling (Wong, Lin, Wang, Hung, Huang, I3D 2014).
+// Throws InputError if the mesh is not closed and consistently oriented, or if the set-up has no bones.
 Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options = {});
 
 }  // namespace cscd

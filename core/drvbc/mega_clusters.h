@@ -17,21 +17,24 @@ namespace cscd {
 // scratch into mega clusters while fewer than gamma of a candidate's triangles are not positive towards the
 // joint that the first two clusters share.
 //
-// Differences to the text. The order of seeds is a fixed shuffle instead of a random one, so that results
-// depend on the interval alone (rule fresh-detector). The cost D is computed for the seed as well when its observer moves
-// to the joint: the paper looks at the candidate only and may turn any number of the seed's triangles
-// non-positive unnoticed.
+// There are two differences to the paper's text. The order of seeds is a fixed shuffle instead of a random
+// one, so that results depend on the interval alone (rule fresh-detector, core/soundness.md). When the
+// observer of a seed moves to the joint, the cost D, the share of triangles that are not positive, is
+// computed for the seed as well as for the candidate. The paper computes it for the candidate only, so any
+// number of the seed's triangles may turn non-positive unnoticed.
 class MegaClusters {
  public:
-  // Without `cache` no suspects are kept. With gamma = 0 nothing merges and nothing is tried.
+  // `kinds` is [atomic clusters]. Without `cache` no suspects are kept. With gamma = 0 no merge is tried.
+  // Atomic clusters and rig must outlive the mega clusters.
   MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig, std::vector<radial::ObserverKind> kinds,
                double gamma, bool cache = true);
 
-  // Merges, and writes the class of every triangle towards its mega cluster's observer into the hierarchy.
+  // Merges the clusters of one interval. Writes the class of every triangle towards the observer of its mega
+  // cluster into the hierarchy. `table` must be updated to the interval.
   void regrow(const radial::OrientationTable& table, const Rig::Interval& bones,
               radial::ClusterHierarchy& hierarchy);
 
-  // The mega cluster of each atomic cluster.
+  // [atomic clusters]; the number of the mega cluster of each.
   std::span<const std::int32_t> labels() const { return label_; }
   std::size_t count() const { return count_; }
 
@@ -48,14 +51,15 @@ class MegaClusters {
   std::vector<radial::ObserverKind> kinds_;
   double gamma_;
   bool cache_;
-  std::vector<std::size_t> seeds_;
-  std::vector<std::int32_t> label_;
+  std::vector<std::size_t> seeds_;   // all atomic clusters, in the order in which they become seeds
+  std::vector<std::int32_t> label_;  // [atomic clusters]
   std::size_t count_ = 0;
-  // The paper's cache: members that were not positive in the last interval are looked at first, as they will
-  // probably decide against a merge. Saves work, never changes a decision.
+  // The paper's cache: the triangles of each atomic cluster that were not positive in the last interval. They
+  // are classified first, because they will probably decide against a merge. The cache saves work and never
+  // changes a decision.
   std::vector<std::vector<std::uint32_t>> suspects_;
   std::vector<std::size_t> members_;      // of the mega cluster that grows
-  std::vector<std::int32_t> refused_by_;  // the last mega cluster that did not take this one in
+  std::vector<std::int32_t> refused_by_;  // [atomic clusters]; the mega cluster that last refused each
 };
 
 }  // namespace cscd

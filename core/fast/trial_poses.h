@@ -10,12 +10,14 @@
 
 namespace cscd::fast {
 
-// Positions at both ends of an interval.
+// The positions of one interval: [end of the interval][vertices].
 using Trial = std::array<std::vector<Vec3>, 2>;
 
-// What the surface might do: every bone turned about its joint by some 30 degrees about an axis drawn at
-// random, and 5 more by the end of the interval. The surface follows the bone of each triangle, smoothed over
-// the seams. Poses to count work in; they may meet themselves.
+// Makes `count` intervals as an animation might have them, in which the trial counts the work of its
+// candidates (trial.h). At the start every bone is turned by 30 degrees about an axis through its joint,
+// drawn at random; by the end it has turned by 5 degrees more. Each triangle follows its bone, `bone_of`
+// [triangles], and the shifts of the vertices are smoothed over the seams between bones. A surface may cross
+// itself in these poses.
 std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> reference, const Rig& rig,
                                std::span<const BoneId> bone_of, std::size_t count);
 

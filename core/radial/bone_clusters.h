@@ -8,17 +8,20 @@
 
 namespace cscd::radial {
 
-// How the 2014 paper gives triangles to bones (section 4.1), with its values where it gives any.
+// How the 2014 paper assigns triangles to bones (section 4.1), with the paper's values where it gives any.
 struct BoneClusterOptions {
-  double theta_degrees = 10;  // rotation trial of the choice of observers
-  int coarsening = 4;         // cells of the distance field, in mean edges (the paper gives none)
-  int smoothing_passes = 5;   // over the mesh, before the field (the paper gives none)
-  bool refinement = true;     // by orientation
+  double theta_degrees = 10;  // angle of the rotation trial that chooses observers (observer.h)
+  int coarsening = 4;         // length of a cell of the distance field, in mean edges (the paper gives none)
+  int smoothing_passes = 5;   // over the mesh, before the distance field is made (the paper gives none)
+  bool refinement = true;     // by orientation (refinement.h)
 
-  double theta() const;  // in radians
+  double theta() const;  // `theta_degrees` in radians
 };
 
-// The bone of each triangle: by heat, then refined. Leaves the clock in the stage `decomposition`.
+// Returns the bone of each triangle, [triangles]: the bone that heats the triangle most, refined by
+// orientation. Charges the clock's stage `distance_and_heat`, then `decomposition`, and leaves the clock in
+// the latter. Throws InputError if the set-up's rig has no bones, or if its positions are not finite or are
+// too far apart.
 std::vector<BoneId> bones_of_triangles(const Setup& setup, const BoneClusterOptions& options,
                                        StageClock& clock);
 

@@ -11,24 +11,28 @@
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/orientation.h"
 
-// Intra- and inter-cluster checks (section 3.1 and 6 of the paper) over local trees, one a cluster, under a
-// global one.
+// Intra- and inter-cluster checks (sections 3.1 and 6 of the 2014 paper) over local trees, one a cluster,
+// under one global tree.
 //
-// Inside a cluster, a pair is needed unless both triangles are positive or both negative towards its
-// observer. Every node carries the mask of classes below it, so the descent drops two nodes at once when
-// their masks are one and the same sign: H- against H+ and Hu against all remain. Between clusters the bounds
-// alone decide.
+// Inside a cluster, a pair is needed unless both triangles are positive towards the cluster's observer, or
+// both are negative. Every node carries the mask of the classes below it, so the descent drops two nodes at
+// once when both masks are one and the same sign. In the paper's letters, H- against H+ and Hu against all
+// remain. Between clusters the bounds alone decide.
 //
-// Soundness: the theorem asks that a dropped feature pair has all its incident triangles certified by one
-// field. A feature pair is tested as soon as one triangle pair carrying it is passed on, and all triangle
-// pairs of a dropped one were either apart in their bounds (no contact) or in one cluster with one sign.
-// Clusters never span two connected components (rule component).
+// Soundness. One field has to certify all triangles incident to a dropped feature pair (rule one-field,
+// core/soundness.md). A feature pair is tested as soon as one triangle pair that carries it is passed on
+// (rule any-carrier). So if a feature pair is dropped, each triangle pair that carries it is either apart in
+// its bounds, which excludes a contact, or lies in one cluster with one sign. Clusters never span two
+// connected components (rule component).
 namespace cscd::radial {
 
+// The trees over all clusters, the bounds of their nodes, and the classes of all triangles in one interval.
 class ClusterHierarchy {
  public:
+  // `reference`, [vertices], is the pose in which the trees are built. The mesh must outlive the hierarchy.
   ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference, const AtomicClusters& clusters);
 
+  // Makes the bounds of one interval.
   void refit(const Motion& motion) { bounds_.refit(motion); }
 
   // The triangles of each atomic cluster in the order in which its classes are kept.
@@ -37,23 +41,25 @@ class ClusterHierarchy {
   std::span<Orientation> classes(std::size_t cluster) {
     return std::span(class_of_leaf_).subspan(first_leaf_[cluster], groups_[cluster].size());
   }
-  // To be called when all classes of the interval stand.
+  // Makes the masks of all nodes. Call when all classes of the interval have been written. Returns how many
+  // triangles have each class.
   RadialCounts finish_classes();
 
-  // Pairs to look at when atomic clusters with the same label act as one. Returns the overlap tests.
+  // Passes on the triangle pairs that neither bounds nor classes drop. Atomic clusters with the same label in
+  // `merged`, [atomic clusters], act as one cluster. Returns the number of overlap tests.
   CullCounts cull(std::span<const std::int32_t> merged, TrianglePairSink& sink) const;
-  // The same clusters and the classes, by triangle.
+  // Returns the label of each triangle's cluster, and which triangles are positive.
   RadialView view(std::span<const std::int32_t> merged) const;
 
  private:
   const TriangleMesh& mesh_;
   Tree tree_;
   SweptBounds bounds_;
-  std::vector<std::int32_t> cluster_at_;  // of a node: the cluster whose root it is, or -1
+  std::vector<std::int32_t> cluster_at_;  // [nodes]; the cluster whose root the node is, or -1
   std::vector<std::vector<TriangleId>> groups_;
-  std::vector<std::size_t> first_leaf_;  // of each cluster, in tree order
-  std::vector<Orientation> class_of_leaf_;
-  std::vector<std::uint8_t> mask_;  // of each node: which classes occur below
+  std::vector<std::size_t> first_leaf_;     // [clusters]; index of the first leaf, in tree order
+  std::vector<Orientation> class_of_leaf_;  // [leaves], in tree order
+  std::vector<std::uint8_t> mask_;          // [nodes]; the classes that occur below
 };
 
 }  // namespace cscd::radial

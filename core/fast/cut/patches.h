@@ -12,15 +12,17 @@
 
 namespace cscd::fast {
 
-// Up to sixteen neighbouring triangles with up to sixteen vertices, so that all of them lie in few registers.
-// All belong to one cluster in each cover, or to none.
+// A patch is a group of at most sixteen neighbouring triangles with at most sixteen vertices. The positions
+// of its vertices, and whatever is computed of its triangles side by side, fit into a few vector registers.
+// In each cover, all triangles of a patch belong to one cluster or all to none. Lane l of a register stands
+// for the patch's triangle l, or for its vertex l; a *place* is an index into the vertices of a patch.
 struct alignas(64) Patch {
-  std::array<std::int32_t, kLanes16> vertex;  // a short one repeats its last
-  std::array<Places16, 3> corner;             // of each triangle: places in `vertex`
-  std::array<std::int32_t, kCovers> cluster;  // in each cover
-  Mask16 lanes;                               // those that are triangles
+  std::array<std::int32_t, kLanes16> vertex;  // a patch with fewer vertices repeats its last
+  std::array<Places16, 3> corner;             // [corner][triangle]; places in `vertex`
+  std::array<std::int32_t, kCovers> cluster;  // [covers]; kNone for no cluster
+  Mask16 lanes;                               // the lanes that hold a triangle
 
-  // Places of the corners of some of its triangles.
+  // Returns the places of the corners of these triangles.
   Mask16 corners_of(unsigned triangles) const {
     unsigned places = 0;
     for_each_lane(triangles, [&](std::size_t lane) {
@@ -31,20 +33,20 @@ struct alignas(64) Patch {
 };
 static_assert(sizeof(Patch) == 2 * 64);
 
-// Which triangles of another patch have each vertex of this one.
+// The vertices that a patch ("this patch") has in common with another patch, or with itself.
 struct Common {
-  std::array<Mask16, kLanes16> at;
+  std::array<Mask16, kLanes16> at;  // [places of this patch]; triangles of the other patch at that vertex
 
-  // Triangles that have a corner of one triangle of this patch.
+  // Returns the triangles of the other patch that share a vertex with triangle `lane` of this patch.
   Mask16 beside(const Patch& patch, std::size_t lane) const {
     return static_cast<Mask16>(at[patch.corner[0][lane]] | at[patch.corner[1][lane]] |
                                at[patch.corner[2][lane]]);
   }
 
-  // Triangles that have one of the vertices at some places. All places at once: which of them are asked for
-  // no processor foresees.
+  // Returns the triangles of the other patch that have a vertex at one of these places of this patch. Tests
+  // all sixteen places at once, because no processor predicts the branches of a loop over a mask.
   Mask16 lanes(Mask16 places) const { return any_of(((Rows{} + places) & kPlace) != 0 ? rows() : Rows{}); }
-  // Places of the vertices that some of the triangles have.
+  // Returns the places of this patch whose vertices belong to one of these triangles of the other patch.
   Mask16 places(Mask16 lanes) const { return any_of((rows() & lanes) != 0 ? kPlace : Rows{}); }
 
  private:
@@ -65,37 +67,40 @@ struct Common {
   }
 };
 
-// The surface cut into patches, and a binary tree over them, built once in the reference pose. The children
-// of a node stand side by side and after it.
+// The surface cut into patches, and a binary tree over the patches, built once in the reference pose. Node 0
+// is the root. The two children of a node stand side by side, after their parent.
 struct PatchTree {
   struct Node {
-    std::int32_t child;  // inner node: its left child, before the right one; leaf: ~patch
+    std::int32_t child;  // inner node: index of its left child; leaf: ~patch
     bool is_leaf() const { return child < 0; }
     std::size_t patch() const { return static_cast<std::size_t>(~child); }
     std::size_t left() const { return static_cast<std::size_t>(child); }
     std::size_t right() const { return left() + 1; }
   };
   std::vector<Node> nodes;
-  std::vector<std::int32_t> leaf;   // node of each patch
-  std::vector<std::int32_t> inner;  // the other nodes, ascending: children after their parents
+  std::vector<std::int32_t> leaf;   // [patches]; the node of each patch
+  std::vector<std::int32_t> inner;  // the nodes that are no leaves, ascending
   std::vector<Patch> patches;
-  // Of each patch; a short one repeats its last. Apart, as few patches are asked for them in an interval.
+  // [patches]; a patch with fewer triangles repeats its last. Stored apart from `patches`, because an
+  // interval asks for the triangles of few patches.
   std::vector<std::array<TriangleId, kLanes16>> triangles;
   std::span<const TriangleId> triangles_of(std::size_t patch) const {
     return std::span(triangles[patch]).first(static_cast<std::size_t>(std::bit_width(patches[patch].lanes)));
   }
 
-  // Children before their parents. (Not by way of all nodes: which of them are leaves no processor foresees.)
+  // Hands on every inner node, children before their parents. Goes through the list of inner nodes, because
+  // no processor predicts which of all nodes are leaves.
   template <class Take>  // (node, its entry)
   void for_each_inner_upwards(const Take& take) const {
     for (std::size_t i = inner.size(); i-- > 0;)
       take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
   }
 
-  // Of each patch and cover: triangles whose corners' triangles all belong to the patch's cluster.
+  // [patches][covers]; the triangles of a patch that lie inside its cluster (inside() in covers.h).
   std::vector<std::array<Mask16, kCovers>> inside;
 
-  // The patches that touch a patch, itself among them, in compressed rows.
+  // For each patch, the patches that share a vertex with it, the patch itself among them, and what the two
+  // have in common. In compressed rows: the row of patch p is [adjacent_offset[p], adjacent_offset[p + 1]).
   std::vector<std::int32_t> adjacent_offset, adjacent;
   std::vector<Common> common;
   template <class Take>  // (patch, common)
@@ -104,7 +109,7 @@ struct PatchTree {
     for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
       take(static_cast<std::size_t>(adjacent[i]), common[i]);
   }
-  // Null where the two do not touch.
+  // Returns what patches p and q have in common, with p as "this patch". Null if they share no vertex.
   const Common* common_of(std::size_t p, std::size_t q) const {
     const auto end = static_cast<std::size_t>(adjacent_offset[p + 1]);
     for (auto i = static_cast<std::size_t>(adjacent_offset[p]); i < end; ++i)
@@ -113,15 +118,21 @@ struct PatchTree {
   }
 };
 
-// The clusters of the first two covers, as the surface is cut along their seams: [triangles] each.
+// The cluster of each triangle in the first two covers, [triangles] each. The surface is cut along the seams
+// of both.
 struct CuttingClusters {
   std::span<const std::int32_t> first, second;
 };
 
-// Cuts the surface into patches and builds the tree over them. No patch crosses a seam of the first clusters.
-// A patch crosses a seam of the second clusters only where that seam would cut fewer than `least_cell`
-// triangles out of a first cluster. The patches belong to no cluster yet, and no triangle is marked as inside
-// one: cut_surface.h enters both.
+// Cuts the surface into patches and builds the tree over them.
+//
+// The surface is first cut into cells, and each cell into patches. A *cell* is a set of triangles that the
+// certificates treat alike: the triangles of one first cluster and one second cluster that all lie inside the
+// second cluster, or all do not. A set of fewer than `least_cell` triangles is no cell of its own: all such
+// sets of a first cluster form one cell together. So no patch crosses a seam of the first clusters, and a
+// patch crosses a seam of the second clusters only where that seam would make too small a cell.
+//
+// The patches that are returned belong to no cluster, and `inside` is empty: cut_surface.h enters both.
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
                        const CuttingClusters& clusters, std::size_t least_cell);
 

@@ -6,7 +6,8 @@
 
 namespace cscd::fast {
 
-// The edges between triangles of different clusters; `cluster_of` each triangle.
+// A seam is the set of edges between two neighbouring clusters. Hands on each edge of the mesh whose two
+// triangles belong to different clusters; `cluster_of` is [triangles].
 template <class Take>  // (triangle on one side, triangle on the other)
 void for_each_seam_edge(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of,
                         const Take& take) {

@@ -8,9 +8,11 @@
 
 namespace cscd::fast {
 
-// The cluster of each triangle, for a mesh without bones: from the surface in the reference pose alone. A
-// cluster belongs to one component (rule component) and is about as large as one point sees from behind and not too
-// flat, so that it goes on seeing it while the surface bends. How many there are follows from the shape.
+// Returns the cluster of each triangle, [triangles], found from the surface in the reference pose alone, for
+// meshes without bones. A cluster belongs to one connected component (rule component, core/soundness.md). A
+// cluster is about as large as one point can see well from behind: most of its triangles face away from that
+// point steeply enough to keep facing away while the surface bends. The number of clusters follows from the
+// shape.
 std::vector<std::int32_t> surface_clusters(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
 }  // namespace cscd::fast

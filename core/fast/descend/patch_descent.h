@@ -16,24 +16,26 @@
 
 namespace cscd::fast {
 
-// Two nodes of a tree over patches: all pairs of triangles, one below each; the same twice: pairs below it.
+// Two nodes of a tree over patches. They stand for all pairs that have one triangle below each node. The same
+// node twice stands for all pairs of two triangles below that node.
 struct NodePair {
   std::size_t a, b;
 };
 
-// What descents of one interval read, several at a time.
+// The data that all descents of one interval read. Several threads read them at the same time.
 struct DescentInput {
   const PatchTree& tree;
   const LocalPositions& positions;
   const Certificates& certificates;
-  const Stars* stars;  // null: none
-  bool time_linear;
-  bool planes;  // whether pairs are parted by them
+  const Stars* stars;  // null: stars prove nothing
+  bool time_linear;    // bounds of triangles at both ends; false: swept bounds
+  bool planes;         // whether planes may part pairs
 };
 
-// What an interval makes of few patches, when it is asked for: of the last of them, as a descent stays near
-// where it is. What it meets again later is made anew, which takes less time than to write and read memory
-// that others have driven from the caches.
+// Cache of per-patch results that are computed on demand, because an interval needs them for few patches.
+// Holds the results of the last 64 patches, because a descent stays near where it is. A result that is needed
+// again later is computed again, which takes less time than to write and read memory that other work has
+// driven from the caches.
 template <class T>
 class OnDemand {
   static_assert(std::is_trivially_destructible_v<T>);
@@ -43,7 +45,8 @@ class OnDemand {
   void start_interval() {
     for (std::int32_t& patch : patch_) forget(patch);
   }
-  // The next that is made may take the place of the reference.
+  // Returns the result for a patch, computed by `make` if the cache does not hold it. The reference is valid
+  // until the next call that computes a result, which may evict this one.
   template <class Make>
   const T& of(std::size_t patch, const Make& make) {
     std::int32_t& at = at_[patch];
@@ -58,35 +61,37 @@ class OnDemand {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;  // fit the second cache, and so many are seldom made anew
+  static constexpr std::size_t kMost = 64;  // fit the second-level cache; few results are computed twice
 
   void forget(std::int32_t& patch) {
     if (patch != kNone) at_[static_cast<std::size_t>(patch)] = kNone;
     patch = kNone;
   }
 
-  std::vector<std::int32_t> at_;  // of each patch: where among those made
-  std::vector<T> made_;
-  std::vector<std::int32_t> patch_;  // of which each is
-  std::size_t next_ = 0;
+  std::vector<std::int32_t> at_;     // [patches]; index of the patch's result in `made_`, or kNone
+  std::vector<T> made_;              // [kMost]
+  std::vector<std::int32_t> patch_;  // [kMost]; the patch of each result, or kNone
+  std::size_t next_ = 0;             // index in `made_` for the next result
 };
 
-// The descent over the nodes of a tree of patches, and what it makes on demand in an interval: bounds of
-// triangles, and which stars are flat. It meets what no cover certifies.
-class alignas(64) PatchDescent {  // no cache line with another thread's
+// The descent over a tree of patches: finds the pairs of triangles that nothing proves apart. Drops pairs by
+// certificates and bounds of nodes, then by bounds of triangles, by stars and by planes. Bounds of triangles
+// and flatness of stars are computed when the descent first asks for them in an interval.
+class alignas(64) PatchDescent {  // shares no cache line with the descent of another thread
  public:
-  // What `input` names must outlive the descent.
+  // Everything that `input` refers to must outlive the descent.
   explicit PatchDescent(const DescentInput& input);
 
-  // `bounds`, of each node in steps of `grid`, must stay until the last descent of the interval.
+  // `bounds`, [nodes], in steps of `grid`, must stay in place until the last descent of the interval.
   void start_interval(std::span<const NodeBounds> bounds, const Grid& grid);
-  // Passes on what is not proven apart.
+  // Passes on those pairs of triangles, of all that the two nodes stand for, that are not proven apart.
   void descend(NodePair at, TrianglePairSink& sink);
-  // Whether there are nodes below one of the two.
+  // True if one of the two nodes is no leaf.
   bool can_open(NodePair at) const { return !(nodes_[at.a].is_leaf() && nodes_[at.b].is_leaf()); }
-  // Appends the pairs of nodes into which a descent from two that can be opened falls apart, in its order.
+  // Takes the first step of a descent from two nodes that can be opened. Appends the pairs of nodes from
+  // which the descent would go on, in the order in which it would visit them.
   void open(NodePair at, std::vector<NodePair>& below);
-  // Overlap tests in this interval.
+  // The number of overlap tests of bounds in this interval so far.
   std::uint64_t tests() const { return tests_; }
 
  private:
@@ -118,10 +123,11 @@ class alignas(64) PatchDescent {  // no cache line with another thread's
   const std::span<const Patch> patches_;
   std::span<const NodeBounds> bounds_;
   Grid grid_{1};
-  std::vector<Star> star_;  // of each vertex
+  std::vector<Star> star_;  // [vertices]
   OnDemand<TriangleBounds> triangle_bounds_;
   TrianglePairSink* sink_ = nullptr;
-  // Pairs that wait until planes are asked about sixteen. Behind them stand those of before.
+  // Pairs that wait until there are sixteen, to be held against the planes of their triangles all at once.
+  // The entries from `waiting_count_` on are left over from earlier pairs.
   std::array<TrianglePair, kLanes16> waiting_{};
   PairLanes waiting_vertices_;
   std::size_t waiting_count_ = 0;

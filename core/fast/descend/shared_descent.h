@@ -7,19 +7,22 @@
 
 namespace cscd::fast {
 
-// The descent of one interval by a team: opened to pairs of nodes, in the order of the descent, ranges of
-// which are shared out. Each thread has its own scratch, each range its own list of pairs; the lists are
-// joined in order, so the sink sees the same pairs in the same order, and the counters are the same, however
-// many threads there are.
+// The descent of one interval by a team of threads. With more than one thread, the descent is first opened
+// level by level into a list of pairs of nodes, in the order of the descent. Ranges of that list are shared
+// out among the threads. Each thread has a PatchDescent of its own, and each range a list of triangle pairs
+// of its own. These lists are joined in order. So the sink sees the same pairs in the same order, and the
+// counters are the same, on any number of threads.
 class SharedDescent {
  public:
-  // What `input` names, and the team, must outlive the descent.
+  // Everything that `input` refers to, and the team, must outlive the descent.
   SharedDescent(const DescentInput& input, const Team& team);
 
-  // Returns the number of overlap tests. `bounds`, of each node, are in steps of `grid`.
+  // Passes on all pairs of triangles that are not proven apart. Returns the number of overlap tests.
+  // `bounds`, [nodes], are in steps of `grid`.
   std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink);
 
  private:
+  // The triangle pairs of one range.
   class Kept : public TrianglePairSink {
    public:
     Kept() : TrianglePairSink(1 << 9) {}
@@ -37,9 +40,9 @@ class SharedDescent {
   const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
-  std::deque<Kept> kept_;  // of each range
-  std::vector<NodePair> opened_, next_;
-  std::uint64_t tests_ = 0;  // of the last interval
+  std::deque<Kept> kept_;                // [ranges]; empty for one thread
+  std::vector<NodePair> opened_, next_;  // the pairs of nodes of this level, and of the next
+  std::uint64_t tests_ = 0;              // of the last interval
 };
 
 }  // namespace cscd::fast

@@ -12,13 +12,12 @@
 namespace cscd::fast {
 
 // The contour test of a cover: which of its triangles touch no other triangle of their cluster at any t,
-// whatever the start. Signs alone keep the first contact of a mesh that starts embedded; this keeps all
-// contacts of any motion.
+// whatever the start. Signs alone keep the first contact of a mesh that starts embedded; the contour test
+// keeps all contacts of any motion.
 //
-// Every loop of a cluster's contour is capped by a fan about a point that follows it, so that cluster and
-// caps together are a closed surface S, as a chain. Let S never meet the observer; let it cross one ray
-// from the observer once at t = 0, counted with signs; and let U be those of its triangles that are not
-// certainly positive.
+// Every loop of a cluster's contour is closed by a cap (caps.h), so that cluster and caps together are a
+// closed surface S, as a chain. Let S never meet the observer; let S cross one ray from the observer once at
+// t = 0, counted with signs; and let U be those triangles of S that are not certainly positive.
 //
 // Theorem. If triangles A and B of S meet in x at time t, and no triangle of U is seen in the direction of
 // x, then x lies on a vertex or edge that A and B share.
@@ -31,30 +30,34 @@ namespace cscd::fast {
 //
 // (Triangles are counted as the mesh lists them: two with the same corners are two.)
 //
-// So a pair of triangles of one cluster carries no contact if one of both is clear: nothing of U is seen in
-// any direction of its own. Observers of clusters, covers and caps may be any.
+// A positive triangle is *clear* if nothing of U is seen in any direction in which the triangle is seen. So a
+// pair of triangles of one cluster carries no contact if one of the two is clear. This holds for any
+// observers, covers and caps.
 class CappedClusters {
  public:
-  // Of cover `number`, in the pose in which observers were placed.
+  // For cover number `number`. `reference`, [vertices], is the pose in which its observers were placed.
   CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover,
                  std::size_t number);
 
-  // One interval: `start`; then `take` patches that may matter, in any order; then ask.
+  // One interval: call `start`; then `take` for the patches that may matter, in any order; then `clear`. The
+  // `viewpoints`, [clusters], are those of the cover's observers. They and the positions must stay in place
+  // until the last call of the interval.
   void start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints);
-  // Where false and all triangles of the patch are positive, the patch need not be taken.
+  // False is a proof that no triangle of the patch crosses its cluster's ray. Such a patch need not be taken
+  // if all its triangles are positive.
   bool may_cross_ray(std::size_t cluster, const PatchLanes& lanes) const {
     return state_[cluster].ray->may_cross(lanes);
   }
   void take(const Patch& patch, Mask16 positive);
-  // Of the positive triangles of a patch those that are clear.
+  // Returns the clear triangles among the positive triangles of a patch.
   Mask16 clear(const Patch& patch, Mask16 positive) const;
 
  private:
   struct State {  // of a cluster in this interval
     std::optional<Ray> ray;
-    int crossings;
-    bool known;  // false: nothing is certain
-    std::vector<Cone> uncertain;
+    int crossings;                // of the ray with positive triangles
+    bool known;                   // false: no triangle of the cluster is certainly clear
+    std::vector<Cone> uncertain;  // cones that hold all directions of U
 
     void add(const Cone& cone) {
       uncertain.push_back(cone);
@@ -66,10 +69,10 @@ class CappedClusters {
 
   std::size_t number_;
   std::vector<Cap> caps_;
-  std::vector<Triangle> target_;  // of each cluster: what its ray goes through
-  std::vector<State> state_;
-  std::vector<PatchLanes> loop_;  // of a cap
-  std::vector<Mask16> positive_;  // triangles of it
+  std::vector<Triangle> target_;  // [clusters]; the triangle that the cluster's ray goes through
+  std::vector<State> state_;      // [clusters]
+  std::vector<PatchLanes> loop_;  // [fans of a cap]; scratch
+  std::vector<Mask16> positive_;  // [fans of a cap]; scratch
   const LocalPositions* positions_ = nullptr;
   std::span<const Viewpoint> viewpoints_;
 };

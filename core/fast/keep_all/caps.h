@@ -8,17 +8,20 @@
 
 namespace cscd::fast {
 
-// Closes one loop of a cluster's contour: a fan of triangles about a point.
+// A *cap* closes one loop of a cluster's contour: a fan of triangles about a point, the apex, that follows
+// the surface. The triangles of a cap belong to no mesh and no cover.
 struct Cap {
   std::size_t cluster;
-  FollowingPoint towards;  // the apex: this point, or one as far on the other side of the observer
-  bool opposite;
-  // Corners of at most sixteen triangles each; the last vertex stands for the apex. No triangles of the
-  // mesh, no cover.
+  FollowingPoint towards;  // the apex, or its mirror image
+  bool opposite;           // the apex is the mirror image of `towards` in the observer
+  // The triangles, in patches that belong to no cluster. The last place of a patch stands for the apex,
+  // whatever vertex it names.
   std::vector<Patch> fans;
 };
 
-// Cluster and caps together have no boundary: every edge is passed as often in one direction as in the other.
+// Returns the caps of all clusters of a cover. A cluster and its caps together have no boundary: their
+// triangles pass every edge as often in one direction as in the other. `reference`, [vertices], is the pose
+// in which the apexes are chosen.
 std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover);
 
 }  // namespace cscd::fast

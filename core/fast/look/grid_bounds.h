@@ -3,64 +3,79 @@
 #include "core/fast/look/patch_lanes.h"
 #include "core/geometry/shorts32.h"
 
-// Bounds of moving points that are valid at every t when interpolated between both ends ("time-linear"): of
-// the nodes of the tree, which is what a descent reads most, and of triangles. Hence in whole steps of a
-// grid, of which a node's fit one cache line, and a comparison takes both ends of sixteen triangles.
+// Bounds of moving points at both ends of an interval. Interpolated linearly between the ends, they hold at
+// every t ("time-linear"), because every vertex moves in a straight line. A bound is the range of projections
+// along each of eight directions. There are bounds of the nodes of the tree and bounds of triangles.
 //
-// Rounding, in steps. A coordinate, of at most 16000, is off by 0.002 with its product, a sum of two in float
-// by 0.006. A node's coordinates are rounded to the nearest before they are summed, which makes 1.004, and
-// give way by one. A triangle's sums are rounded, which makes 0.506, and the greatest give way by one. Of
-// integers, what lies beyond another does so by one: two nodes that are apart are so by 1 - 2 * 0.004, a
-// triangle and a node by 1 - 0.004 - 0.506 or more, two triangles by 2 - 2 * 0.506.
+// A descent reads the bounds of nodes more than anything else, so bounds are 16-bit integers, in steps of a
+// grid: the bounds of a node fit one cache line, and one comparison takes both ends of sixteen triangles.
+//
+// Rounding (rule outward-rounding, core/soundness.md). All numbers here are in steps of the grid. A
+// coordinate is at most 16000. Its own error and the rounding of its product with the steps put it off by at
+// most 0.002. A sum of two such coordinates in float is off by at most 0.006.
+//
+// Nodes: coordinates are rounded to the nearest integer before they are summed, so a projection is off by at
+// most 1.004. The bounds are widened by 1, which leaves at most 0.004.
+//
+// Triangles: the sums are rounded, so a projection is off by at most 0.506. The greatest projections are
+// widened by 1, the least are not.
+//
+// An integer that is greater than another is greater by at least 1. So two nodes that are found apart are at
+// least 1 - 2 * 0.004 apart, a triangle and a node at least 1 - 0.004 - 0.506, two triangles at least
+// 2 - 2 * 0.506.
 namespace cscd::fast {
 
-// Directions: x, y, z, x+y, x+z, y+z, x-y, x-z, those of Kdop16.
+// The directions are x, y, z, x+y, x+z, y+z, x-y, x-z, as in Kdop16.
 inline constexpr std::size_t kDirections = 8;
 
-// Pair k holds for each end the least projection along direction k, pair kDirections + k the least along its
-// negative.
+// Bounds of all points below a node. Pair k holds, for the start and for the end, the least projection along
+// direction k. Pair kDirections + k holds the least projections along the negative of that direction.
 struct NodeBounds {
   Short32 at;
 };
 
-// Of the triangles of a patch: pair l of direction k holds for each end the least projection of triangle l,
-// or the greatest, and one step more.
+// Bounds of the triangles of a patch. For direction k, pair l of `low` holds, for the start and for the end,
+// the least projection of triangle l; pair l of `high` holds the greatest projections, plus one step.
 struct TriangleBounds {
   Short32 low[kDirections], high[kDirections];
 };
 
+// Returns the bounds of all points of both.
 inline NodeBounds united(const NodeBounds& a, const NodeBounds& b) {
   return {smaller(a.at, b.at)};
 }
 
-// Bounds of the whole paths.
+// Returns bounds of the whole paths of the points: at both ends, the union of both ends.
 inline NodeBounds swept(const NodeBounds& b) {
   return {smaller(b.at, turned_pairs(b.at))};
 }
 TriangleBounds swept(const TriangleBounds& bounds);
 
-// True is a proof: along one direction one lies on the same side of the other at both ends, therefore always.
+// True is a proof that the points of a and b are apart at every t: along one direction, all points of a lie
+// on the same side of all points of b at both ends, and therefore at every t.
 inline bool apart(const NodeBounds& a, const NodeBounds& b) {
   const Mask32 over = above(a.at, -swapped(b.at));
   return (over & over >> 1 & 0x55555555U) != 0;
 }
 
-// Which of the triangles in `mask` are not proven apart from the bounds, or from triangle `lane` of another
-// patch.
+// Returns the triangles in `mask` that may come near: those not proven apart from the node's bounds, or from
+// triangle `lane` of another patch.
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const TriangleBounds& others, std::size_t lane);
 
-// Overlaps everything.
+// Returns bounds that are proven apart from no others.
 inline NodeBounds unbounded() {
   return {Short32{} - std::int16_t{32767}};
 }
 
+// The grid of one interval, in whose steps bounds are counted.
 class Grid {
  public:
-  // Of local positions whose coordinates are off by `error`, at least 2^-24 of the largest.
+  // For local positions whose coordinates are off by at most `error`. The error must be at least 2^-24 of the
+  // largest coordinate: that keeps every coordinate within 16000 steps.
   explicit Grid(float error) : steps_(kSteps * 0x1p-24F / error) {}
 
-  float steps() const { return steps_; }  // of a local unit
+  float steps() const { return steps_; }  // in one unit of local length
   NodeBounds bounds_of(const PatchLanes& lanes) const;
   TriangleBounds bounds_of_triangles(const PatchLanes& lanes, const Patch& patch) const;
 

@@ -11,24 +11,28 @@
 
 namespace cscd::fast {
 
-// The positions of one interval in float: shifted by the first vertex, scaled by a power of two that makes
-// the reference pose about one unit large. So coordinates far from the origin lose nothing, and neither very
-// small nor very large units underflow or overflow.
+// The positions of one interval in local coordinates: floats, relative to the first vertex at the start of
+// the interval, and scaled by a power of two that makes the reference pose about one unit large. So a surface
+// far from the origin loses no precision, and a scene in very small or very large units neither underflows
+// nor overflows.
 class LocalPositions {
  public:
-  // One vertex: x, y, z at the start, nothing, x, y, z at the end, nothing.
+  // One vertex: x, y, z at the start, a number without meaning, x, y, z at the end, a number without meaning.
   struct alignas(32) Record {
     float at[8];
   };
 
+  // `reference`, [vertices], sets the scale and the number of vertices.
   explicit LocalPositions(std::span<const Vec3> reference);
 
+  // Converts the positions of an interval, and finds their error.
   void update(const Motion& motion, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
-  // Every coordinate is off by at most this much.
+  // No coordinate is off by more than this, in local units.
   float error() const { return error_; }
-  // False where the motion leaves the range in which errors are known: nothing may be concluded then.
+  // False if the motion leaves the range in which errors are known. Nothing may be concluded from the
+  // positions then.
   bool known() const { return known_; }
 
  private:
@@ -36,7 +40,7 @@ class LocalPositions {
 
   double scale_;
   std::vector<Record> records_;
-  std::vector<std::int32_t> largest_;  // of each range
+  std::vector<std::int32_t> largest_;  // [ranges of vertices]; as returned by convert()
   float error_ = 0;
   bool known_ = false;
 };

@@ -11,63 +11,86 @@
 
 namespace cscd::fast {
 
-// What radial views certify in one interval: of every triangle, whether it is positive, or negative, towards
-// the observer of its cluster in the first cover; and of every other cover, whether all triangles at its
-// corners belong to its cluster there and all are positive, or all negative.
+// The certificates of one interval: for every triangle and every cover, whether the radial view from that
+// cover certifies the triangle, and with which sign.
 //
-// Two triangles that one cover certifies with one sign need not be looked at. The theorem (soundness
-// contract) asks that one field certifies everything incident to a feature pair that is dropped. A feature
-// is here the least vertex, edge or triangle that holds the point where the two touch, so that a vertex may
-// meet a vertex. A pair of features that touches is dropped only if all pairs of triangles at one and at the
-// other are, and those by covers alone, as bounds, stars and planes drop none that carries a contact. If
-// another cover than the first drops one of them, it certifies all around the corners of both, and so all
-// that is at either feature. If none does, the first drops all of them: any triangle at one feature lies in
-// one cluster with any at the other, and has its sign. (One triangle at both has no area when they touch:
-// it has no sign, so its pairs with the others are not dropped.) Between two covers neither of which looks at
-// what surrounds a triangle that would not hold: each might drop some of the pairs (rule one-field). With capped
-// clusters none of this is needed (capped_clusters.h).
+// A *look* classifies the triangles of one patch towards the observer of the patch's cluster in one cover:
+// each triangle is positive at every t, negative at every t, or neither for certain.
+//
+// - The first cover certifies a triangle with a sign if the triangle itself has that sign.
+// - Any other cover certifies a triangle with a sign if all triangles round its corners, itself among them,
+//   belong to its cluster there and have that sign.
+//
+// A pair of triangles is dropped if both lie in one cluster of one cover, and that cover certifies both with
+// the same sign.
+//
+// Why the first contact is kept (rule one-field, core/soundness.md): a feature pair may be dropped only if
+// one field certifies all triangles at both of its features. Here a feature is the smallest vertex, edge or
+// triangle that holds the point of contact, so a vertex may touch a vertex. Let two features touch, and let
+// every pair of triangles be dropped that has one triangle at the first feature and one at the second.
+// Bounds, stars and planes drop no pair that carries a contact, so the covers have dropped all of these
+// pairs.
+//
+// If a cover other than the first drops one of the pairs, that cover certifies all triangles round the
+// corners of both triangles, and so all triangles at either feature. That is one field for all of them.
+//
+// Otherwise the first cover drops all of the pairs. Then every triangle at the first feature lies in one
+// cluster with every triangle at the second feature, and has the same sign. That again is one field for all.
+// (A triangle that is at both features has no area when they touch. It has no sign, so the pairs that contain
+// it are not dropped.)
+//
+// Only one cover may certify triangles by themselves. If two covers did, each of them might drop some of the
+// pairs, and no field would certify all triangles.
+//
+// With capped clusters none of this is needed: there a triangle is certified if it is clear
+// (keep_all/capped_clusters.h), and a pair of triangles of one cluster is dropped if one of them is
+// certified.
 class Certificates {
  public:
-  // With `capped`, one of each cover, no contact is lost whatever the start; without, the first of an
-  // embedded start is kept.
+  // With `capped`, one entry a cover, every contact is kept from any start. Without, the first contact is
+  // kept from an embedded start (rule embedded-start, core/soundness.md). Tree and covers must outlive the
+  // certificates. The first cover must hold every triangle.
   Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped = {});
 
-  // From the next interval on looks at the first `count` covers alone, at least one.
+  // From the next interval on, looks from the first `count` covers alone, at least one.
   void use_covers(std::size_t count);
-  // How often a patch is looked at in an interval, from one cover each.
+  // The number of looks in an interval. A patch has one look from each cover in which it belongs to a
+  // cluster.
   std::size_t looks_per_interval() const;
 
-  // One interval: `start`, then `look` at every patch, in any order and from any thread, then `finish`.
+  // One interval: call `start`, then `look` for every patch, in any order and from any thread, then `finish`.
+  // `look` takes all looks at the patch; `lanes` are its positions.
   void start(const LocalPositions& positions);
   void look(std::size_t patch, const PatchLanes& lanes);
   void finish();
 
-  // Whether no pair of triangles, one below each node, has to be looked at; a == b: no pair below the node.
+  // True if all pairs are dropped that have one triangle below each of two nodes. With a == b: all pairs of
+  // two triangles below the node.
   bool skip(std::size_t a, std::size_t b) const {
     const Label both = (label_[a] == label_[b]) & (label_[a] != kNone);
     const auto any = reinterpret_cast<Halves>(both);
     return (any[0] | any[1]) != 0;
   }
-  // What certifies triangles of two patches: no triangle of p in one of these sets has to be held against one
-  // of q in the same set.
+  // The certificates that two patches p and q share, as sets of their triangles. A pair of a triangle in p[s]
+  // and a triangle in q[s] is dropped, for every s.
   struct Shared {
     std::array<Mask16, 2 * kCovers> p, q;
-    Mask16 lanes_q;
+    Mask16 lanes_q;  // all triangles of q
 
-    // Triangles of patch q that have to be held against triangle `lane` of patch p.
+    // Returns the triangles of q whose pairs with triangle `lane` of p are not dropped.
     Mask16 needed(std::size_t lane) const {
       unsigned dropped = 0;
       for (std::size_t s = 0; s < p.size(); ++s) dropped |= p[s] >> lane & 1 ? q[s] : 0U;
       return static_cast<Mask16>(lanes_q & ~dropped);
     }
-    // The same of the patches in turn; `lanes_p`: all triangles of p.
+    // Returns the same sets with p and q exchanged. `lanes_p` are all triangles of p.
     Shared turned(Mask16 lanes_p) const { return {q, p, lanes_p}; }
   };
   Shared shared(std::size_t p, std::size_t q) const {
     Shared sets{{}, {}, cell_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
       if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && !capped_.empty()) {
-        // One of both is enough.
+        // One clear triangle of a pair is enough.
         sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = cell_[q].lanes;
         sets.p[2 * c + 1] = cell_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
       } else if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
@@ -77,13 +100,15 @@ class Certificates {
       }
     return sets;
   }
-  // Triangles certified by the first cover, and those that no cover certifies.
+  // The numbers of triangles that the first cover certifies as positive and as negative, and the number of
+  // triangles that no cover certifies.
   const RadialCounts& counts() const { return counts_; }
-  // The first cover.
+  // The clusters of the first cover, and the triangles that it certifies as positive.
   RadialView view() const;
 
  private:
-  // Cluster and sign of all below a node in each cover, or kNone. All covers in one register.
+  // For each cover, the cluster and sign with which it certifies all triangles below a node, as one number;
+  // kNone if it does not certify all of them alike. The labels of all covers fit one register.
   using Label = std::int32_t __attribute__((vector_size(16)));
   using Halves = std::int64_t __attribute__((vector_size(16)));
   static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
@@ -96,23 +121,25 @@ class Certificates {
   void certify_clear();
   void label_nodes();
 
-  // Most patches are all positive in every cover, from one interval to the next. What is known of them stays.
+  // A patch is *usual* if all its looks find all its triangles positive, and no triangle of a patch round it
+  // takes a certificate from it. Most patches are usual from one interval to the next, so their certificates
+  // and labels are left as they are.
   enum class State : std::uint8_t {
-    usual,
-    unlabelled,  // is usual again
-    spoiled,     // by what is around it
-    seen         // by itself it is not all positive
+    usual,       // its certificates and its label stand
+    unlabelled,  // usual again in this interval: its label is still that of the last interval
+    spoiled,     // its certificates are not those of a usual patch, because of a patch beside it or forget()
+    seen         // a look found a triangle that is not positive; or there are capped clusters
   };
   template <class Take>  // (patch)
   void for_each_unusual(const Take& take) const;
 
-  struct Cell {  // of a patch: what is needed of all of them, together
+  struct Cell {  // a copy of the few facts about a patch that are needed of all patches, close together
     std::array<std::int32_t, kCovers> cluster;
     std::array<Mask16, kCovers> inside;
     Mask16 lanes;
   };
 
-  struct Own {  // of triangles by themselves; none where the patch was not seen otherwise
+  struct Own {  // classes of single triangles, whatever is round them; empty for a patch that is not `seen`
     Mask16 not_positive, negative;
   };
 
@@ -122,12 +149,12 @@ class Certificates {
   const LocalPositions* positions_ = nullptr;
   std::vector<Cell> cell_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
-  std::vector<std::array<Signs, kCovers>> certified_;  // of each patch
-  std::vector<std::array<Own, kCovers>> own_;          // of each patch
-  std::vector<State> state_;                           // of each patch; then usual ones up to a whole word
-  std::vector<Label> label_;                           // of each node
-  std::vector<CappedClusters> capped_;
-  std::vector<std::array<bool, kCovers>> crosses_ray_;  // of each patch: whether it may
+  std::vector<std::array<Signs, kCovers>> certified_;   // [patches][covers]
+  std::vector<std::array<Own, kCovers>> own_;           // [patches][covers]
+  std::vector<State> state_;                            // [patches], filled up with `usual` to whole words
+  std::vector<Label> label_;                            // [nodes]
+  std::vector<CappedClusters> capped_;                  // [covers] or empty
+  std::vector<std::array<bool, kCovers>> crosses_ray_;  // [patches][covers]; whether it may cross
   RadialCounts counts_;
 };
 

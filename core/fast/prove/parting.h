@@ -7,21 +7,24 @@
 #include "core/fast/look/local_positions.h"
 #include "core/geometry/lanes16.h"
 
-// Pairs that the plane of one of the two triangles parts.
+// Parting: a proof that two triangles do not touch, by the moving plane of one of them.
 //
-// If at every t the corners of a triangle A that B does not have lie strictly on one side of B's plane, and
-// there are any, no feature of A touches one of B that has no vertex in common with it, whatever the start.
-// For a point of a feature of A that lies in that plane lies in what its shared corners span; and B, which
-// has a plane, is no degenerate triangle, so a feature of B meets that only where it has one of these
-// corners, too.
+// The plane of a triangle B *parts* B from a triangle A if, at every t, all corners of A that are not corners
+// of B lie strictly on one side of the plane, and A has at least one such corner. Then no feature of A
+// touches a feature of B with which it shares no vertex, whatever the start.
+//
+// Proof. Let a point of a feature of A lie in the plane. Then it lies in the hull of those corners of the
+// feature that B has too. B has a plane, so B is not degenerate. Therefore a feature of B contains that point
+// only if it has one of these corners, too.
 namespace cscd::fast {
 
-// Sixteen pairs of triangles by their vertices: [corner][lane].
+// Sixteen pairs of triangles, given by the vertices of the first and of the second triangle of each pair.
 struct PairLanes {
-  using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;
+  using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;  // [corner][pair]
   Vertices first{}, second{};
 };
-// Pairs of two different triangles that neither plane parts. `error`: of every coordinate.
+// Returns the pairs that the plane of neither triangle parts. The triangles of a pair must differ. `error` is
+// the error of every coordinate (look/local_positions.h).
 Mask16 not_parted(std::span<const LocalPositions::Record> records, const PairLanes& pairs, float error);
 
 }  // namespace cscd::fast

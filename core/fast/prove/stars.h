@@ -8,26 +8,30 @@
 
 namespace cscd::fast {
 
-// Vertices whose star, the triangles at them, is the graph of a function over some plane at every t. Two
-// triangles of such a star touch nowhere but in what they share, whatever the start: a proof for pairs of
-// adjacent triangles that needs no cluster.
+// Proofs for pairs of adjacent triangles, by the star of a vertex that they share.
 //
-// Why: the star is one closed fan (of others nothing is said). Seen along the plane's normal all its
-// triangles have positive area, so the angles under which they are seen at the vertex sum to a multiple of a
-// full turn, which cannot change as long as they stay positive. At t = 0 some direction lies in one of them
-// alone, hence one turn: their sectors never overlap.
+// The *star* of a vertex is the set of the triangles at that vertex. A star is *flat* if it is the graph of a
+// function over one plane at every t. Two triangles of a flat star touch nowhere but in what they share,
+// whatever the start. The proof needs no cluster.
+//
+// How flatness is proven. Only a star that is one closed fan is considered. Seen along the plane's normal,
+// all its triangles have positive area at every t. So the angles under which the triangles are seen from the
+// vertex sum to a whole number of full turns, and that number cannot change while the areas stay positive. At
+// t = 0 some direction lies in the sector of one triangle alone, so the number is one. Therefore the sectors
+// never overlap.
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
 
-  // At the vertex, in the interval of these positions. False is no statement.
+  // True is a proof that the star of the vertex is flat in the interval of these positions. False says
+  // nothing.
   bool flat(VertexId vertex, const LocalPositions& positions) const;
-  // For who is going to ask about most vertices.
+  // Reads the stars into the cache, for a caller who is going to ask about most vertices.
   void bring_near() const;
 
  private:
-  std::vector<std::int32_t> offset_;  // of each vertex, in `ring_`
-  std::vector<std::int32_t> ring_;  // the vertices round it, in the triangles' order; none where it is no fan
+  std::vector<std::int32_t> offset_;  // [vertices + 1]; where the ring of each vertex begins in `ring_`
+  std::vector<std::int32_t> ring_;    // the vertices round a vertex, in order; none if its star is no fan
 };
 
 }  // namespace cscd::fast
