@@ -7,7 +7,7 @@
 
 namespace cscd::radial {
 
-// The point of the segment that is nearest to p; a segment of length zero is its one point.
+// Returns the point of the segment from a to b that is nearest to p. For a segment of length zero, returns a.
 inline Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 way = b - a;
   const double squared = way.squaredNorm();
@@ -15,8 +15,9 @@ inline Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return a + std::clamp((p - a).dot(way) / squared, 0.0, 1.0) * way;
 }
 
-// The point of the triangle that is nearest to p: the foot of the perpendicular if it falls inside, else a
-// point of an edge. The edges are looked at either way, as a sliver's foot is not to be trusted.
+// Returns the point of the triangle a, b, c that is nearest to p: the foot of the perpendicular if that falls
+// inside the triangle, else a point of an edge. The edges are considered in either case, because rounding
+// makes the foot on a sliver unreliable.
 inline Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   Vec3 nearest = nearest_on_segment(p, a, b);
   double least = (p - nearest).squaredNorm();

@@ -6,8 +6,8 @@
 
 namespace cscd::radial {
 
-// Throws InputError, naming what lacks, unless the mesh is closed and consistently oriented and there are
-// bones.
+// Throws InputError, saying what is missing, unless the mesh is closed and consistently oriented and the rig
+// has bones. `strategy` is the name to begin the error text with.
 void require_radial_setup(const Setup& setup, const std::string& strategy);
 
 }  // namespace cscd::radial

@@ -8,7 +8,7 @@
 
 namespace cscd::radial {
 
-// The box of the triangles; vertices that no triangle uses do not count.
+// Returns the bounding box of the triangles. Vertices that no triangle uses do not count.
 inline Eigen::AlignedBox3d surface_box(const TriangleMesh& mesh, std::span<const Vec3> positions) {
   Eigen::AlignedBox3d box;
   for (const Triangle& t : mesh.triangles())

@@ -13,12 +13,13 @@
 
 namespace cscd::radial {
 
-// For each vertex the bones that heat it and their common distance. Compressed rows: those of vertex v are
-// bones[offset[v] .. offset[v + 1]), in ascending order; none for a vertex that sees no bone.
+// For each vertex, the bones that heat it and the distance that they have in common. In compressed rows: the
+// bones of vertex v are bones[offset[v] .. offset[v + 1]), in ascending order. A vertex that sees no bone has
+// an empty row.
 struct VisibleBones {
-  std::vector<std::int32_t> offset;
+  std::vector<std::int32_t> offset;  // [vertices + 1]
   std::vector<BoneId> bones;
-  std::vector<double> distance;  // one a vertex; meaningless where the row is empty
+  std::vector<double> distance;  // [vertices]; without meaning for a vertex with an empty row
 
   std::span<const BoneId> of(std::size_t vertex) const {
     const auto first = static_cast<std::size_t>(offset[vertex]);
@@ -26,11 +27,12 @@ struct VisibleBones {
   }
 };
 
-// The distance from a point to a bone; the largest double where it cannot be computed.
+// Returns the distance from a point to a bone, or the largest double if the distance cannot be computed.
 double distance_to(const Bone& bone, const Vec3& point);
 
-// The nearest bone that a straight line inside the body reaches from the vertex, and those equally near. In a
-// component of the mesh without any such line, every vertex takes its nearest bones unseen.
+// Returns for each vertex the nearest bone that a straight line inside the body reaches from the vertex, and
+// all bones that are equally near and reached too. In a connected component of the mesh without any such
+// line, every vertex takes its nearest bones, seen or not.
 VisibleBones find_visible_bones(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                 std::span<const Bone> bones, const DistanceField& field);
 

@@ -5,8 +5,10 @@
 #include <cassert>
 #include <cstring>
 
-// Positive is the rule: a triangle that is not takes the certificate from all around it. Negative is the
-// exception: a triangle that is looks whether all around it are. In the first cover each goes by itself.
+// Covers other than the first certify a triangle if all triangles round its corners have one sign. Nearly all
+// triangles are positive, so positive certificates are granted at first, and a triangle that is not positive
+// takes them from all triangles round it. Negative triangles are rare, so each of them is certified only
+// after a check that all triangles round it are negative. The first cover certifies each triangle by itself.
 namespace cscd::fast {
 namespace {
 
@@ -14,7 +16,7 @@ std::uint64_t count(unsigned mask) {
   return static_cast<std::uint64_t>(std::popcount(mask));
 }
 
-constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states looked at
+constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states that are compared at once
 
 }  // namespace
 
@@ -45,7 +47,7 @@ void Certificates::use_covers(std::size_t count) {
   forget();
 }
 
-// Nothing is certain of any patch until it is looked at.
+// Withdraws all certificates: nothing is certified of a patch until a look at it.
 void Certificates::forget() {
   std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   std::fill_n(state_.begin(), cell_.size(), State::spoiled);
@@ -102,7 +104,8 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (from[c] != nullptr)
       own_[p][c] = {static_cast<Mask16>(patch.lanes & ~static_cast<unsigned>(seen[c].positive)),
                     static_cast<Mask16>(patch.lanes & seen[c].negative)};
-  // The first cover holds every triangle. The others are certified unless `finish` finds something around.
+  // In the first cover the triangles' own signs are the certificates. In the others, every triangle inside
+  // its cluster is certified as positive until `finish` finds a triangle round it that is not.
   certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive), own_[p][0].negative};
   for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
 }
@@ -133,8 +136,10 @@ void Certificates::certify_all_round() {
   });
 }
 
-// Of a patch that by itself is not all positive, in all covers but the first, whose triangles go by
-// themselves.
+// Certificates of the covers other than the first, for a patch p that contains a triangle that is not
+// positive. Takes the positive certificates from all triangles, of p and of the patches that touch it, that
+// share a vertex with such a triangle. Certifies as negative the triangles of p round whose corners all
+// triangles are negative.
 void Certificates::look_round(std::size_t p) {
   const Patch& patch = tree_.patches[p];
   Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
@@ -192,7 +197,8 @@ void Certificates::label_nodes() {
     counts_.uncertain += count(patch.lanes & ~some);
     if (state_[p] == State::unlabelled) state_[p] = State::usual;
   });
-  // Of all inner nodes, though few differ from the last interval's: the descent soon asks for many.
+  // Recompute the labels of all inner nodes, although few have changed: the descent reads most of them soon,
+  // and this pass brings them into the cache.
   tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = left == right ? left : Label{} + kNone;
