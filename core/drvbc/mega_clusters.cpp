@@ -49,7 +49,7 @@ void MegaClusters::regrow(const OrientationTable& table, const Rig::Interval& bo
       table.classify(seed, observer, hierarchy.classes(seed));
       continue;
     }
-    // From now on the observer is fixed; the cluster grows over its neighbours, breadth first.
+    // The observer stays at the joint while the cluster grows over its neighbours, breadth first.
     for (std::size_t next = 0; next < members_.size(); ++next)
       for (const std::int32_t candidate : atomic_.neighbours[members_[next]]) {
         const auto c = static_cast<std::size_t>(candidate);
@@ -89,7 +89,8 @@ bool MegaClusters::merge_first_neighbour(std::size_t seed, Observer& observer, c
   return false;
 }
 
-// Is the share of triangles that are not positive below gamma? Leaves the classes in the hierarchy.
+// Returns whether the share of a cluster's triangles that are not positive is below gamma. If so, the classes
+// of its triangles stand in the hierarchy.
 bool MegaClusters::fits(std::size_t cluster, const Observer& observer, const OrientationTable& table,
                         ClusterHierarchy& hierarchy) {
   const std::span<Orientation> classes = hierarchy.classes(cluster);
@@ -107,7 +108,8 @@ bool MegaClusters::fits(std::size_t cluster, const Observer& observer, const Ori
   return !too_many(not_positive);
 }
 
-// The joint that the bones of two clusters share: the head of the child, or of either if they are siblings.
+// Returns the joint that the bones of two clusters share, or nothing. The joint of a parent and its child is
+// the head of the child. The joint of two siblings is the head of either.
 std::optional<MovingPoint> MegaClusters::shared_joint(std::size_t a, std::size_t b,
                                                       const Rig::Interval& bones) const {
   const BoneId bone_a = atomic_.clusters[a].bone, bone_b = atomic_.clusters[b].bone;

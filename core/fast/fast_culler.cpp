@@ -5,8 +5,8 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kRange = 32;  // patches worth another thread
-constexpr std::size_t kAhead = 2;   // patches by which positions are fetched before they are looked at
+constexpr std::size_t kRange = 32;  // patches that are worth another thread
+constexpr std::size_t kAhead = 2;   // positions are fetched this many patches ahead of the looks
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
                                    const DrvbcFastOptions& options) {

@@ -11,11 +11,11 @@ namespace cscd::fast {
 namespace {
 
 constexpr double kTurned = std::numbers::pi / 6, kFurther = std::numbers::pi / 36;
-constexpr int kSmoothed = 8;  // times
+constexpr int kSmoothed = 8;  // times that the shifts of vertices are smoothed
 
 using Transforms = std::vector<Eigen::Isometry3d>;
 
-// Of every bone, its parent's turns included.
+// Returns the transform of every bone, [bones]: a turn about its own joint, followed by those of its parents.
 Transforms turned(const Rig& rig, std::span<const Vec3> axes, double angle) {
   const std::size_t count = rig.parent.size();
   Transforms transforms(count);
@@ -44,7 +44,7 @@ std::vector<Vec3> moved(const TriangleMesh& mesh, std::span<const Vec3> referenc
       shift[v] +=
           (transforms[+bone_of[+t]] * reference[v] - reference[v]) / static_cast<double>(around.size());
   }
-  std::vector<Vec3> sum(mesh.triangle_count());  // of a triangle's corners
+  std::vector<Vec3> sum(mesh.triangle_count());  // [triangles]; of the shifts of its corners
   for (int i = 0; i < kSmoothed; ++i) {
     for (std::size_t t = 0; t < sum.size(); ++t) {
       const Triangle& c = mesh.triangles()[t];

@@ -12,7 +12,7 @@ namespace cscd::radial {
 // [triangles]. Triangles that are not positive towards their cluster's observer in the reference pose leave
 // their cluster. Clusters then grow again over edges, among triangles that are positive towards them. Each
 // triangle that is left after that goes to the cluster that reaches it first. Clusters grow breadth first,
-// all at once, in the order of their indices; O(triangles).
+// all at once, from their triangles in index order. Takes time O(triangles).
 std::vector<BoneId> refine_by_orientation(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                           const Rig& rig, const AtomicClusters& clusters,
                                           std::span<const ObserverKind> kinds);

@@ -11,12 +11,14 @@ namespace {
 
 constexpr int kDescentSteps = 400;
 
-// What eight faces lack: at the middle, and more by their normals' way to the point. Unused lanes lack
-// nothing.
+// How far a point is from lying behind eight faces with room to spare: what each face *lacks*. That is a
+// linear function of the point, with the face's normal as its slope and `at_middle` as its value at the
+// middle. Unused lanes lack nothing.
 struct Lacks {
   Lane8 normal[3] = {}, at_middle = {};
 
-  // Adds what they lack at the point, and the normals of those that lack.
+  // Adds what the faces lack at the point to `lack`, and the normals of the faces that lack something to
+  // `away`.
   void add(const Vec3& point, Lane8& lack, Lane8 (&away)[3]) const {
     const Lane8 here = at_middle + normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
     const Sign8 lacking = here > 0;
@@ -41,15 +43,15 @@ Face face_of(const TriangleMesh& mesh, std::span<const Vec3> positions, Triangle
           length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
 }
 
-// How far each face lacks from what is wanted, summed, is convex in the point: subgradient descent, from a
-// point inside.
+// Minimises the sum of what the faces lack. That sum is convex in the point, so subgradient descent finds the
+// minimum. The descent begins at the mean of the faces' centres.
 Vec3 best_viewpoint(std::span<const Face> faces) {
   Vec3 middle = Vec3::Zero();
   for (const Face& f : faces) middle += f.centre / static_cast<double>(faces.size());
   double size = 0;
   for (const Face& f : faces) size += (f.centre - middle).norm() / static_cast<double>(faces.size());
 
-  // A point is measured from the middle.
+  // Points below are relative to the middle.
   std::vector<Lacks> rows((faces.size() + kLanes - 1) / kLanes);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     Lacks& row = rows[i / kLanes];

@@ -5,7 +5,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::int32_t kCornerRings = 2;  // of patches about those that the cutting covers miss
+constexpr std::int32_t kCornerRings = 2;  // of patches round those that the first two covers miss
 
 }  // namespace
 

@@ -14,12 +14,14 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::int32_t kReach = 6;  // rings of triangles about a seam that belong to its cluster
-constexpr std::int32_t kThin = 4;   // clusters without a triangle so many rings from its seams are merged
+constexpr std::int32_t kReach = 6;  // rings of triangles round a seam that belong to the seam's cluster
+constexpr std::int32_t kThin = 4;   // a cluster is thin if no triangle is this many rings from its seams
 
 // ---- Observers
 
-// Vertices of the triangles, few, with weights that make them the wanted point in the reference pose.
+// Returns a point that follows a few vertices of the triangles and lies near `wanted` in the reference pose.
+// Draws vertices at random, several times, and takes the draw with the smallest weights and the nearest
+// point.
 FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
                          std::span<const TriangleId> triangles, const Vec3& wanted) {
   std::vector<VertexId> vertices;
@@ -56,7 +58,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
       got += weight * positions[+vertices[i]];
       largest = std::max(largest, n * std::abs(weight));
     }
-    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // it is far from these vertices
+    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // the point is far from these vertices
     const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
     if (!(cost < least)) continue;
     least = cost;
@@ -66,7 +68,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
   return best;
 }
 
-// Numbers clusters from 0 and returns how many there are.
+// Numbers the clusters from 0 in the order of their first triangles, and returns how many there are.
 std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
   std::map<std::int32_t, std::int32_t> number;
   for (std::int32_t& c : cluster_of)
@@ -103,10 +105,13 @@ void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Tak
       if (other != triangle) take(other);
 }
 
-// Rings from the seeds, breadth first, and the seed that came first. kNone where none came.
+// For each triangle, the set of seeds that reaches it first and the number of rings between them, both
+// [triangles]. kNone for a triangle that no seed reaches.
 struct Rings {
   std::vector<std::int32_t> seed, distance;
 };
+// Grows rings of triangles from several sets of seeds at once, breadth first. A ring has the triangles that
+// share a vertex with the ring before.
 Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds) {
   Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
               std::vector<std::int32_t>(mesh.triangle_count(), kNone)};
@@ -130,7 +135,7 @@ Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<Triangl
   return rings;
 }
 
-// Triangles on either side of the seam between each two clusters.
+// The triangles on both sides of each seam, by the two clusters of the seam.
 using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
 Seams seams_of(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
   Seams seams;

@@ -8,7 +8,7 @@
 namespace cscd::fast {
 namespace {
 
-// Gives all triangles of a patch the cluster that most of them have.
+// Gives all triangles of a patch the cluster that most of its triangles have.
 std::vector<std::int32_t> rounded_to_patches(const PatchTree& tree, std::vector<std::int32_t> cluster_of) {
   for (std::size_t p = 0; p < tree.patches.size(); ++p) {
     std::map<std::int32_t, int> times;

@@ -4,13 +4,13 @@
 #include <limits>
 #include <utility>
 
-// Patches grow one beside the other; what is left over between them is joined; then small ones are emptied
-// into those beside them.
+// A cell is cut in three steps. Patches grow one beside the other. Small patches that are left over between
+// them are joined. Then the patches that are still small are emptied into the patches beside them.
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kMostSeeking = 300;  // triangles that are asked to move for one; more find little
-constexpr std::size_t kMostBeside = 8;     // patches that are asked for room; at edges of two there are three
+constexpr std::size_t kMostSeeking = 300;  // triangles asked to make room for one triangle; more find little
+constexpr std::size_t kMostBeside = 8;     // patches asked for room; three where edges have two triangles
 
 std::size_t index(std::int32_t patch) {
   return static_cast<std::size_t>(patch);
@@ -58,7 +58,8 @@ int PatchCutter::free_beside(TriangleId triangle) const {
   return count;
 }
 
-// Each begins beside those before it, at the triangle with the fewest free neighbours.
+// Grows patches until no triangle of the cell is free. Each patch begins beside the patches before it, at the
+// triangle with the fewest free neighbours.
 PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   for (const TriangleId t : cell) set_free(t, true);
   Patches patches;
@@ -92,8 +93,9 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   }
 }
 
-// Next the triangle that needs the fewest new vertices and lies nearest to the others. One vertex in common
-// is enough: what hangs at a zigzag seam by its corners would else be patches of one triangle.
+// Grows one patch from a seed. The next triangle is always the one that needs the fewest new vertices, and
+// among those the one nearest to the middle of the patch. One vertex in common with the patch is enough,
+// because triangles that hang on a zigzag seam by one corner would otherwise become patches of one triangle.
 std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   std::vector<TriangleId> patch;
   Vec3 sum = Vec3::Zero();
@@ -115,7 +117,7 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   while (patch.size() < most_) {
     const Vec3 middle = sum / static_cast<double>(patch.size());
     TriangleId best{-1};
-    std::pair<int, double> least{3, 0};  // all need fewer
+    std::pair<int, double> least{3, 0};  // every triangle in `touched_` needs fewer than 3
     for (const TriangleId t : touched_) {
       const int needed = 3 - corners_taken_[+t];
       if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > most_)
@@ -134,7 +136,8 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   return patch;
 }
 
-// The smallest with the largest that it touches and fits.
+// Joins each patch, the smallest first, with the largest patch that shares a vertex with it and has room for
+// it.
 void PatchCutter::join(Patches& patches) const {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
@@ -157,8 +160,8 @@ void PatchCutter::join(Patches& patches) const {
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
-// Triangles of small patches, of the smallest first, move into patches beside them, as long as they find
-// room.
+// Moves the triangles of small patches, the smallest patches first, into patches beside them, as long as the
+// triangles find room.
 void PatchCutter::empty_small(Patches& patches) {
   for (std::size_t p = 0; p < patches.size(); ++p)
     for (const TriangleId t : patches[p]) patch_of_[+t] = static_cast<std::int32_t>(p);
@@ -174,8 +177,9 @@ void PatchCutter::empty_small(Patches& patches) {
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
-// Into a patch that has room, or in place of a triangle that moves on in the same way: the fewest that have
-// to move. False if none of those asked finds room.
+// Moves a triangle into a patch that has room, or in place of another triangle that moves on in the same way.
+// Searches breadth first, so as few triangles as possible move. Returns false if none of the triangles that
+// were asked finds room.
 bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   const auto seek = [&](TriangleId t, std::size_t for_whom) {
     seeking_.push_back({t, for_whom});
@@ -200,7 +204,8 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   return found;
 }
 
-// Those of the cell on the other side of its edges, some of them where there are many.
+// Returns the patches of the cell that hold a triangle at one of the triangle's edges: at most kMostBeside of
+// them, and maybe the triangle's own.
 std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
   std::vector<std::int32_t> found;
   for (const EdgeId e : mesh_.edges_of(triangle))
@@ -234,7 +239,7 @@ PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const Tri
   return room;
 }
 
-// Whether the triangle of a patch is among those that move if this one does.
+// Returns whether some triangle leaves this patch if the triangle at index `at` of `seeking_` moves.
 bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
   while (patch_of_[+seeking_[at].triangle] != patch) {
     if (at == 0) return false;
@@ -243,7 +248,8 @@ bool PatchCutter::is_left(std::int32_t patch, std::size_t at) const {
   return true;
 }
 
-// That one into a patch, the one for whom it makes room into the patch that it leaves, and so on.
+// Moves the triangle at index `at` of `seeking_` into the patch `to`, the triangle for which it makes room
+// into the patch that it leaves, and so on.
 void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
   while (true) {
     const auto [triangle, for_whom] = seeking_[at];

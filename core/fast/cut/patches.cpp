@@ -10,8 +10,8 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles that certificates treat alike are kept together: those of one cluster of the first cover and,
-// where that leaves enough of them, of one of the second, inside which all around them is or is not.
+// Returns the cells of the surface (patches.h), each with at least `least` triangles but for at most one of
+// each first cluster.
 std::vector<std::vector<TriangleId>> cells_of(const TriangleMesh& mesh, const CuttingClusters& clusters,
                                               std::size_t least) {
   const std::vector<bool> all = inside(mesh, clusters.second);
@@ -59,7 +59,8 @@ Patch make_patch(const TriangleMesh& mesh, const Triangles& triangles, std::size
   return patch;
 }
 
-// The patches of one or several cells with their centre.
+// Something that a level of the tree divides: a cluster, a cell or a single patch, as its patches and their
+// mean centre.
 struct Item {
   std::vector<std::size_t> patches;
   Vec3 centre = Vec3::Zero();
@@ -71,7 +72,8 @@ class TreeBuilder {
               const std::vector<Vec3>& centre, PatchTree& tree)
       : patches_(patches), triangles_(triangles), centre_(centre), tree_(tree) {}
 
-  // Over clusters of the first cover, below over the cells of each, below over patches.
+  // Builds the tree in three levels: over the clusters of the first cover, below each cluster over its cells,
+  // and below each cell over its patches. `cluster` and `cell` are [patches].
   void build(std::size_t count, const std::vector<std::int32_t>& cluster,
              const std::vector<std::int32_t>& cell) {
     std::vector<std::size_t> all(count);
@@ -107,7 +109,7 @@ class TreeBuilder {
     return items;
   }
 
-  // Halves items at the median along the longest axis of the box of their centres.
+  // Halves the items at the median along the longest axis of the box of their centres, down to single items.
   using Leaf = std::function<void(const Item&, std::size_t node)>;
   void split(std::span<Item> items, std::size_t node, const Leaf& leaf) {
     if (items.size() == 1) return leaf(items[0], node);

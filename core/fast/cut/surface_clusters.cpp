@@ -14,17 +14,23 @@
 namespace cscd::fast {
 namespace {
 
-constexpr double kShare = 0.8;        // of a piece's triangles that have to be seen well from one point:
-constexpr double kHalvedUntil = 0.5;  // cosines between ray and normal that are well enough not to halve,
-constexpr double kMergedUntil = 0.3;  // and to merge
-constexpr std::size_t kSmall = 100;   // triangles of a piece, and
-constexpr std::size_t kMany = 500;    // pieces at most by which a surface is judged too large for that
-constexpr std::size_t kSample = 512;  // triangles of a piece at most that are looked at
-constexpr int kStraightened = 3;      // times
+// A triangle is seen well from a point if the cosine between its normal and the ray from the point exceeds a
+// limit. A piece is seen well if this share of its triangles is.
+constexpr double kShare = 0.8;
+constexpr double kHalvedUntil = 0.5;  // limit of the cosine for a piece that is not halved
+constexpr double kMergedUntil = 0.3;  // limit of the cosine for two pieces that are merged
+// A piece is small, and not halved, if it has less than twice kSmall triangles, or on a large surface less
+// than twice a kMany-th of all triangles.
+constexpr std::size_t kSmall = 100;
+constexpr std::size_t kMany = 500;
+constexpr std::size_t kSample = 512;  // at most this many triangles of a piece are viewed
+constexpr int kStraightened = 3;      // times that seams are straightened
 
 using Triangles = std::vector<TriangleId>;
 using Pair = std::pair<std::int32_t, std::int32_t>;
 
+// Pieces of the surface that are halved, merged and straightened until they are the clusters. At first each
+// connected component is a piece.
 class Pieces {
  public:
   Pieces(const TriangleMesh& mesh, std::span<const Vec3> positions)
@@ -36,7 +42,7 @@ class Pieces {
     }
   }
 
-  // Halves along the length, until enough of each piece is seen well or it is small.
+  // Halves pieces along their length, until each piece is seen well from one point or is small.
   void halve() {
     std::vector<Triangles> open = members();
     auto count = static_cast<std::int32_t>(open.size());
@@ -52,15 +58,16 @@ class Pieces {
       std::array<Triangles, 2> halves;
       for (std::size_t i = 0; i < piece.size(); ++i)
         halves[path_[+piece[i]] < to_one[i] ? 1 : 0].push_back(piece[i]);
-      if (halves[0].empty() || halves[1].empty()) continue;  // of no extent
+      if (halves[0].empty() || halves[1].empty()) continue;  // the piece has no extent
       for (const TriangleId t : halves[1]) piece_[+t] = count;
       ++count;
       for (Triangles& half : halves) open.push_back(std::move(half));
     }
   }
 
-  // Merges neighbours while enough of both is seen well from one point: first those with the longest seam
-  // for their size. Halves of a limb become rings again, and a hub with stumps of many limbs one piece.
+  // Merges neighbouring pieces while the two together are seen well from one point. The pair whose seam is
+  // the largest share of the smaller border comes first. The two halves of a limb become a ring again, and a
+  // hub with the stumps of many limbs becomes one piece.
   void merge() {
     std::vector<Triangles> members = this->members();
     std::map<Pair, std::size_t> seams;  // in edges
@@ -106,8 +113,8 @@ class Pieces {
     }
   }
 
-  // Lets the pieces grow anew from their middles, so that seams run halfway between them: round a limb, not
-  // up and down.
+  // Lets the pieces grow again from their middles. Seams then run halfway between the middles: straight round
+  // a limb, not up and down.
   void straighten() {
     Triangles seam, middle;
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
@@ -156,8 +163,9 @@ class Pieces {
                              [&](TriangleId a, TriangleId b) { return path_[+a] < path_[+b]; });
   }
 
-  // Lengths of shortest paths from the seeds, over neighbours in the same piece; or over all, which then
-  // belong to the piece of their seed. Takes the triangles that can be reached.
+  // Writes to `path_` the lengths of the shortest paths from the seeds to the triangles in `reached`. Without
+  // `take`, paths stay within a piece. With `take`, paths run over all triangles, and each triangle joins the
+  // piece of the nearest seed. `reached` must name all triangles that paths can reach.
   void flood(const Triangles& reached, const Triangles& seeds, bool take) {
     for (const TriangleId t : reached) path_[+t] = std::numeric_limits<double>::infinity();
     using Step = std::pair<double, TriangleId>;
@@ -185,8 +193,8 @@ class Pieces {
   const TriangleMesh& mesh_;
   Triangles all_;
   std::vector<Face> faces_;
-  std::vector<std::int32_t> piece_;  // of each triangle
-  std::vector<double> path_;         // length of the shortest path to each triangle, of the last flood
+  std::vector<std::int32_t> piece_;  // [triangles]
+  std::vector<double> path_;         // [triangles]; lengths of the shortest paths of the last flood
 };
 
 }  // namespace

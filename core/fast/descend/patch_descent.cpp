@@ -32,7 +32,7 @@ void PatchDescent::open(NodePair at, std::vector<NodePair>& below) {
   visit<Depth::one>(at);
 }
 
-// Two different nodes have been tested against each other.
+// Goes on from two nodes. If they differ, their bounds have been tested against each other.
 template <PatchDescent::Depth kDepth>
 void PatchDescent::visit(NodePair at) {
   const auto [a, b] = at;
@@ -54,7 +54,8 @@ void PatchDescent::visit_self(std::size_t n) {
   step<kDepth, 1, 1>(node.left(), node.right());
 }
 
-// One node or two siblings against one or two. All are tested before any is descended into.
+// Tests kA sibling nodes from a on against kB sibling nodes from b on, and goes on from the pairs that are
+// not proven apart. All pairs are tested before the descent goes into any of them.
 template <PatchDescent::Depth kDepth, std::size_t kA, std::size_t kB>
 void PatchDescent::step(std::size_t a, std::size_t b) {
   unsigned open = 0;
@@ -75,7 +76,7 @@ void PatchDescent::found(NodePair below) {
     opened_->push_back(below);
 }
 
-// Pairs inside one patch.
+// Tests the pairs of two triangles of one patch.
 inline void PatchDescent::inside(std::size_t p) {
   const Certificates::Shared shared = input_.certificates.shared(p, p);
   const Common* common = input_.tree.common_of(p, p);
@@ -84,21 +85,23 @@ inline void PatchDescent::inside(std::size_t p) {
     row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), common);
 }
 
-// Pairs between the patches of two leaves: those triangles of each that meet the other's bounds.
+// Tests the pairs between the patches of two leaves.
 inline void PatchDescent::between(std::size_t a, std::size_t b) {
   std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
   Certificates::Shared shared = input_.certificates.shared(p, q);
   Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;
-  for (std::size_t s = 0; s < shared.p.size(); ++s) {  // what all of the other patch drops
+  // Drop the triangles whose pairs with all triangles of the other patch are dropped by certificates.
+  for (std::size_t s = 0; s < shared.p.size(); ++s) {
     if (shared.q[s] == patches_[q].lanes) rows &= static_cast<Mask16>(~shared.p[s]);
     if (shared.p[s] == patches_[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
   }
   if (rows == 0 || columns == 0) return;
+  // Drop the triangles that lie apart from the bounds of the other patch.
   rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
   if (rows == 0) return;
   columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);
   if (columns == 0) return;
-  if (std::popcount(columns) < std::popcount(rows)) {  // the fewer, the less work
+  if (std::popcount(columns) < std::popcount(rows)) {  // fewer rows, less work
     std::swap(p, q), std::swap(rows, columns);
     shared = shared.turned(patches_[q].lanes);
   }
@@ -108,14 +111,15 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
   });
 }
 
-// One triangle of patch p against some of patch q.
+// Tests triangle `lane` of patch p against the triangles of patch q in `wanted`. `common` is what the patches
+// have in common, or null.
 inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
                               const Common* common) {
   if (wanted == 0) return;
   Mask16 left = 0;
   if (common != nullptr) {
     wanted = not_flat(p, lane, wanted, *common);
-    left = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));  // they always overlap
+    left = static_cast<Mask16>(wanted & common->beside(patches_[p], lane));  // adjacent: they always overlap
     wanted &= static_cast<Mask16>(~left);
   }
   if (wanted != 0) {
@@ -125,7 +129,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
   if (left != 0) pass_on(p, lane, q, left);
 }
 
-// Without the pairs that the star of a common corner proves apart.
+// Returns `wanted` without the triangles that the star of a vertex shared with triangle `lane` proves apart.
 inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common) {
   if (input_.stars == nullptr) return wanted;
   const Patch& patch = patches_[p];
@@ -137,7 +141,8 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
   return wanted;
 }
 
-// One triangle of patch p and some of patch q. Rare, hence not in the caller.
+// Makes the pairs of triangle `lane` of patch p and the triangles of patch q in `lanes` wait for planes. Not
+// inlined into the caller, because such pairs are rare.
 [[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
   const Patch &first = patches_[p], &second = patches_[q];
   for_each_lane(lanes, [&](std::size_t other) {
@@ -150,7 +155,7 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
   });
 }
 
-// Those that no plane parts, in the order in which they were found.
+// Passes on those waiting pairs that no plane parts, in the order in which they were found.
 void PatchDescent::pass_on_waiting() {
   if (waiting_count_ == 0) return;
   unsigned left = (1U << waiting_count_) - 1;
@@ -167,11 +172,12 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
   return near(triangles, mask, other);
 }
 
-// Which of some triangles of patch q are not proven apart from triangle `lane` of patch p.
+// Returns the triangles of patch q in `wanted` that are not proven apart from triangle `lane` of patch p.
 inline Mask16 PatchDescent::near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane) {
   if (!input_.positions.known()) return wanted;
-  // Of p first: made after those of q they might take their place. Where those of q take theirs, they are
-  // made once more, elsewhere.
+  // Build p's bounds before q's. The cache holds the bounds of 64 patches, so building p's second could evict
+  // q's while a reference to them is in use. If building q's evicts p's, p's are built again, in another
+  // place.
   bounds_of_triangles(p);
   const TriangleBounds& triangles = bounds_of_triangles(q);
   return near(triangles, wanted, bounds_of_triangles(p), lane);

@@ -7,11 +7,12 @@
 namespace cscd::fast {
 namespace {
 
-// What lies below a pair of nodes differs widely: enough of them that the ranges even out, and enough ranges
-// that the last to end is not waited for long.
+// The work below a pair of nodes differs widely from pair to pair. So each range holds enough pairs that the
+// ranges even out, and there are enough ranges that the others do not wait long for the last one.
 constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
 
-// A descent that made so many tests a patch has met nearly all patches, and so will the next.
+// A descent that made more than this many tests per patch has met nearly all patches, and so will the next
+// descent.
 constexpr std::size_t kTestsWhereAllAreMet = 32;
 
 }  // namespace
@@ -43,7 +44,7 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
   return tests_;
 }
 
-// What a descent asks of pairs of patches that touch.
+// Reads into the cache all that a descent asks of patches that touch.
 void SharedDescent::bring_near() const {
   cscd::bring_near(std::span(input_.tree.adjacent_offset));
   cscd::bring_near(std::span(input_.tree.adjacent));
@@ -51,7 +52,7 @@ void SharedDescent::bring_near() const {
   if (input_.stars != nullptr) input_.stars->bring_near();
 }
 
-// Level by level.
+// Opens the pairs of nodes level by level, until there are enough for all ranges or none can be opened.
 void SharedDescent::open() {
   bool any = true;
   while (any && opened_.size() < kPairsARange * kept_.size()) {

@@ -6,7 +6,8 @@
 namespace cscd::fast {
 namespace {
 
-constexpr int kFewUncertain = 4;  // triangles of a cap
+// If more triangles of a patch or of a cap are not positive, one cone stands for all of them.
+constexpr int kFewUncertain = 4;
 
 }  // namespace
 
@@ -16,7 +17,8 @@ CappedClusters::CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> r
       caps_(caps_of(mesh, reference, cover)),
       target_(cover.observers.size()),
       state_(target_.size()) {
-  // The triangle that is seen largest: its neighbours are far from the middle of it.
+  // A ray goes through the triangle that is seen largest from the observer, because the neighbours of that
+  // triangle are far from its middle.
   std::vector<Vec3> from;
   for (const FollowingPoint& observer : cover.observers) from.push_back(observer.at(reference));
   std::vector<double> largest(target_.size(), -std::numeric_limits<double>::infinity());
@@ -51,7 +53,8 @@ void CappedClusters::start(const LocalPositions& positions, std::span<const View
   for (const Cap& cap : caps_) take(cap);
 }
 
-// Where many triangles of a cap are not positive, one cone about its loop says it better.
+// Takes the triangles of a cap. If many of them are not positive, one cone round the whole cap takes their
+// place.
 void CappedClusters::take(const Cap& cap) {
   const Viewpoint &from = viewpoints_[cap.cluster], towards = placed(cap.towards, positions_->records());
   State& state = state_[cap.cluster];

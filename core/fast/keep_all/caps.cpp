@@ -10,10 +10,11 @@ namespace {
 
 constexpr std::size_t kFollowed = 8;  // vertices at most that an apex follows
 
-using Loop = std::vector<VertexId>;  // each before the next, the last before the first
+using Loop = std::vector<VertexId>;  // in order; the first vertex follows the last
 
-// The edges of a cluster's contour as its triangles go along them, chained to loops. Where several pass
-// through one vertex, which of them are chained to which does not matter.
+// Chains the edges of a cluster's contour into loops. An edge goes from its key to its value, as the
+// cluster's triangles go along it. Where several edges leave one vertex, it does not matter which of them a
+// loop follows.
 std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
   std::vector<Loop> loops;
   while (!edges.empty()) {
@@ -30,6 +31,7 @@ std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
   return loops;
 }
 
+// Returns a point that follows a few vertices of the loop and lies at their mean.
 FollowingPoint middle(const Loop& loop) {
   const std::size_t count = std::min(kFollowed, loop.size());
   FollowingPoint point;
@@ -38,9 +40,10 @@ FollowingPoint middle(const Loop& loop) {
   return point;
 }
 
-// A fan over a loop about an apex, and below it triangles that cut off vertices which would make the fan
-// turn back. Of two that are seen in the wrong order the one farther from the apex is cut off, as then the
-// triangle that does so mostly fills a notch of the cluster and is positive.
+// A fan about an apex over a loop, with further triangles at its rim. These cut off vertices of the loop that
+// would make the fan turn back. Of two neighbouring vertices that are seen in the wrong order, the vertex
+// farther from the apex is cut off, because the triangle that cuts it off then mostly fills a notch of the
+// cluster and is positive.
 class Fan {
  public:
   Fan(const Loop& loop, std::span<const Vec3> positions, const Vec3& from, const Vec3& apex) : loop_(loop) {
@@ -70,10 +73,11 @@ class Fan {
   static constexpr VertexId kApex{-1};
 
  private:
-  // The loop goes round the axis clockwise.
+  // Returns whether vertex i and the next are seen in the right order: clockwise round the axis, and at least
+  // a quarter of the mean angle apart.
   bool in_order(std::size_t i) const {
     const auto &a = seen_[next_[i]], &b = seen_[i];
-    const double wanted = std::numbers::pi / 2 / static_cast<double>(loop_.size());  // a quarter of the mean
+    const double wanted = std::numbers::pi / 2 / static_cast<double>(loop_.size());
     return a.x() * b.y() - a.y() * b.x() > wanted * a.norm() * b.norm();
   }
   void cut_off() {
@@ -105,7 +109,8 @@ class Fan {
   std::vector<Triangle> cut_;
 };
 
-// Sixteen triangles or vertices, with the apex, in each.
+// Packs triangles into patches of at most sixteen triangles and sixteen vertices, the apex among the
+// vertices.
 std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
   constexpr std::uint8_t kApexPlace = kLanes16 - 1;
   std::vector<Patch> patches;
@@ -131,7 +136,7 @@ std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
         place = kApexPlace;
       else if (place == vertices.size())
         vertices.push_back(t[k]);
-      // What follows repeats the last.
+      // The lanes after the last triangle repeat it.
       for (std::size_t l = lane; l < kLanes16; ++l) patch.corner[k][l] = static_cast<std::uint8_t>(place);
     }
     for (std::size_t i = 0; i < kLanes16; ++i)
@@ -142,7 +147,7 @@ std::vector<Patch> packed(const std::vector<Triangle>& triangles) {
   return patches;
 }
 
-// How many triangles of a fan about that apex are seen from behind.
+// Returns how many triangles of a fan over the loop about this apex are positive, that is, seen from behind.
 std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const Vec3& from,
                         const Vec3& apex) {
   std::ptrdiff_t count = 0;
@@ -153,7 +158,8 @@ std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const
   return count;
 }
 
-// `all`: vertices of the cluster.
+// Returns the cap of one loop of a cluster. `all` are vertices of the cluster. Tries three apexes and takes
+// the one with the most positive triangles.
 Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const Vec3> reference,
         const Vec3& from) {
   Cap best{};
@@ -175,8 +181,9 @@ Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const 
 }  // namespace
 
 std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover) {
-  // Of each cluster: how much more often its triangles go along an edge from its first end than from its
-  // second. That is 0 inside, and whatever is left is a sum of loops, on any surface.
+  // For each cluster and edge, how much more often the cluster's triangles go along the edge from its first
+  // end than from its second. That is 0 for an edge inside the cluster. The other edges form loops, on any
+  // surface.
   std::map<std::int32_t, std::map<std::pair<VertexId, VertexId>, int>> passed;
   std::map<std::int32_t, Loop> vertices;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {

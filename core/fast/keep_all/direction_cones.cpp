@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-// Rounding. u = 2^-24, d = `error`. A vector r from the viewpoint is off by d + u |r| in each component, its
-// direction by less than 4 d / |r| + 4 u, and the cosine of its angle with the axis by that and a few u.
-// What of lengths near one is computed of cosines and sines below is off by less than kRounding.
+// Rounding (rule error-bound). Let u = 2^-24 and d = `error`. A vector r from the viewpoint is off by d + u
+// |r| in each component. Its direction is off by less than 4 d / |r| + 4 u, and the cosine of its angle with
+// the axis by that and a few u. The results below that are computed from cosines, sines and vectors of length
+// about one are off by less than kRounding.
 namespace cscd::fast {
 namespace {
 
 constexpr float kRounding = 4e-6F;
 constexpr float kLeastCosine = 0.1F;
-constexpr float kLeastLength = 100;  // in errors
+constexpr float kLeastLength = 100;  // of a vector from the viewpoint, in errors; a shorter one gives no cone
 
 Float16 dot(const Float16 (&a)[3], const Float16 (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -59,7 +60,7 @@ Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& vie
     }
   }
   cones.sine = square_root((1 - cones.cosine) * (1 + cones.cosine));
-  // Not a number where an axis vanishes: that compares as false.
+  // Where an axis vanishes the cosine is NaN, and the comparison is false.
   cones.known &= above(cones.cosine, all_lanes(kLeastCosine));
   return cones;
 }
@@ -76,7 +77,7 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
     for (std::size_t l = 0; l < kLanes16; ++l) cone.axis[i] += sum[i][l];
     square += cone.axis[i] * cone.axis[i];
   }
-  if (!(square > 0)) return std::nullopt;  // nor where it is not a number
+  if (!(square > 0)) return std::nullopt;  // also where `square` is NaN
   for (float& component : cone.axis) component /= std::sqrt(square);
   cone.cosine = 1;
   for (const PatchLanes& some : lanes) {
@@ -97,7 +98,8 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
 Mask16 apart(const Cones& cones, const Cone& other) {
   const Float16 between =
       cones.axis[0] * other.axis[0] + cones.axis[1] * other.axis[1] + cones.axis[2] * other.axis[2];
-  // Angles below a right one each, so that the sum of both is one that a cosine tells.
+  // Both half-angles are less than a right angle, so their sum is less than two right angles, where the
+  // cosine decreases: two cones are apart if the cosine between the axes is less than the cosine of that sum.
   const Float16 together = cones.cosine * other.cosine - cones.sine * other.sine;
   return above(together - kRounding, between) & cones.known;
 }

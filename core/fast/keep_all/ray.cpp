@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-// Rounding. u = 2^-24, d = `error`, at least u M where M is the largest coordinate, Q the viewpoint's
-// largest. A vector r from the viewpoint is off by d + u |r| in each component, and u |r| <= 1.01 (d + u Q).
-// Its product with a vector of components up to one is off by 3 (d + u |r|) and three roundings of at most
-// 3.03 u |r| each: less than E = 20 d + 16 u Q. What u takes of such a product is less than E / 5.
-// A difference of two products a b - a' b' of them is off by at most
+// Rounding (rule error-bound). Let u = 2^-24, M the largest coordinate of the vertices, Q the largest
+// coordinate of the viewpoint, and d = `error`, which is at least u M. A vector r from the viewpoint is off
+// by d + u |r| in each component, and u |r| <= 1.01 (d + u Q). The product of r with a vector of components
+// up to one is off by 3 (d + u |r|) and by three roundings of at most 3.03 u |r| each: less than E = 20 d +
+// 16 u Q. Such a product times u is less than E / 5. A difference a b - a' b' of two products of such numbers
+// is off by at most
 //   E (|a| + |b| + |a'| + |b'|) + 2 E^2 + 3 u (|a b| + |a' b'|) <= 2 E (|a| + |b| + |a'| + |b'| + E).
 //
-// A ray along p x q has the sign of (p x q) . (v x w) = (p.v)(q.w) - (p.w)(q.v) towards an edge v w. A
-// triangle whose corners go round the viewpoint positively is crossed where all three are positive.
+// The side on which a ray along p x q passes an edge v w is the sign of
+//   (p x q) . (v x w) = (p.v)(q.w) - (p.w)(q.v).
+// The ray crosses a triangle that is positive towards the viewpoint if the signs of all three edges are
+// positive.
 namespace cscd::fast {
 namespace {
 
-constexpr float kLeastError = 1e-15F;  // whose square does not underflow
+constexpr float kLeastError = 1e-15F;  // the square of this does not underflow
 
 Float16 product(const float (&a)[3], const Float16 (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -25,7 +28,8 @@ void cross(const float (&a)[3], const float (&b)[3], float (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-// Zero where squares underflow: such a ray certainly crosses nothing and lies outside of no cone.
+// Scales a vector to unit length. Makes it zero if squares underflow: a ray with such a vector certainly
+// crosses nothing and lies outside of no cone.
 void normalize(float (&a)[3]) {
   const float length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   for (float& x : a) x = length > kLeastError ? std::clamp(x / length, -1.0F, 1.0F) : 0;
@@ -80,7 +84,7 @@ Ray::Crossed Ray::crossed(const PatchLanes& lanes, const Patch& patch) const {
   return out;
 }
 
-// The ray is off its direction `along_` by a few roundings.
+// `along_` differs from the exact direction of the ray by a few roundings, which 1e-5 pays for.
 bool Ray::outside(const Cone& cone) const {
   const float between = along_[0] * cone.axis[0] + along_[1] * cone.axis[1] + along_[2] * cone.axis[2];
   const bool has_direction = along_[0] != 0 || along_[1] != 0 || along_[2] != 0;

@@ -3,7 +3,7 @@
 namespace cscd::fast {
 namespace {
 
-// How far points lie along the directions.
+// Projects points onto the directions.
 template <class Lanes>
 void along_directions(const Lanes (&p)[3], Lanes (&out)[kDirections]) {
   out[0] = p[0], out[1] = p[1], out[2] = p[2];
@@ -11,8 +11,9 @@ void along_directions(const Lanes (&p)[3], Lanes (&out)[kDirections]) {
   out[6] = p[0] - p[1], out[7] = p[0] - p[2];
 }
 
-// Without those that lie on one side of [low, high] at both ends. In two steps, axes first: to ask after
-// every direction whether any are left takes longer than the directions that it saves.
+// Returns the triangles in `mask` without those that, along some direction k, lie on the same side of the
+// range [low(k), high(k)] at both ends. Tests the three axes first and stops if no triangle is left. Asking
+// that after every direction would take longer than the directions that it would save.
 template <class Low, class High>
 [[gnu::always_inline]] inline Mask16 near_range(const TriangleBounds& triangles, Mask16 mask, const Low& low,
                                                 const High& high) {

@@ -9,14 +9,14 @@
 #include "core/geometry/lanes.h"
 #include "core/geometry/lanes16.h"
 
-// A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
-// is exact (or far below 1e-37), the conversion rounds by 2^-24 of itself: with M the largest result the
-// error is below 2^-24 (1 + 2^-20) M + 1e-37.
+// Error bound (rule error-bound). A coordinate x becomes float((x - origin) * scale). The difference rounds
+// by 2^-53 of itself, the product is exact (or far below 1e-37), and the conversion rounds by 2^-24 of
+// itself. With M the largest result, the error is below 2^-24 (1 + 2^-20) M + 1e-37.
 namespace cscd::fast {
 namespace {
 
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
-constexpr std::size_t kRange = 1024;  // vertices worth another thread
+constexpr std::size_t kRange = 1024;  // vertices that are worth another thread
 
 }  // namespace
 
@@ -38,8 +38,9 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
   error_ = 0x1.00002p-24F * largest + 1e-37F;
 }
 
-// Those of a range of vertices; returns the bits of the largest coordinate's size. Bits order as sizes do,
-// what is no number above all, and have a maximum of one cycle.
+// Converts the vertices [first, last). Returns the largest absolute value of a coordinate, as the bits of
+// that float. The bits of positive floats are ordered as the floats are, with NaN above all numbers, and the
+// maximum of integers takes one cycle.
 std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
   const Vec3 o = motion.start()[0];
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
@@ -59,7 +60,7 @@ std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, st
   Record* const records = records_.data();
   const std::size_t whole = std::min(last, records_.size() - 1);
   for (std::size_t v = first; v < whole; ++v) convert(start + 3 * v, end + 3 * v, records[v].at);
-  // The fourth number behind the last vertex is not ours to read.
+  // A load of four numbers at the last vertex of the mesh would read past the end of the positions.
   for (std::size_t v = whole; v < last; ++v) {
     double points[2][4] = {};
     std::memcpy(points[0], start + 3 * v, 3 * sizeof(double));

@@ -3,8 +3,8 @@
 namespace cscd::fast {
 namespace {
 
-// Written in place, register by register: gcc copies a struct of lanes by halves, and a load of a whole
-// register waits long for the stores of two.
+// These two functions fill a struct of registers in place, register by register. gcc copies such a struct by
+// halves of registers, and loading a whole register then waits long for the stores of its two halves.
 [[gnu::always_inline]] inline void corner_of(const PatchLanes& lanes, const Places16& place,
                                              PatchLanes& out) {
   for (int end = 0; end < 2; ++end)
@@ -20,8 +20,9 @@ namespace {
 
 PatchLanes load(std::span<const LocalPositions::Record> records,
                 const std::array<std::int32_t, kLanes16>& vertex) {
-  // Two records a row: eight numbers of one vertex, eight of the fourth behind it. Four rows are transposed
-  // within their quarters, after which quarters of starts and of ends alternate.
+  // A row holds two records: the eight numbers of one vertex, and those of the vertex four places later. Four
+  // rows are transposed within their quarters. After that, quarters with starts and quarters with ends
+  // alternate.
   Float16 half[2][3];
   for (std::size_t h = 0; h < 2; ++h) {
     Float16 row[4];
@@ -60,12 +61,12 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
 
 namespace {
 
-// Control vectors of the normals, and what bounds their rounding.
+// The normals of the triangles of a patch as quadratics in t.
 struct PatchNormals {
-  Float16 control[3][3];
-  Float16 longest[2];  // largest component of the two edges
+  Float16 control[3][3];  // control vectors
+  Float16 longest[2];     // the largest component of each of the two edges, which bounds the rounding
 };
-// Of the triangles of a patch; `corner` is one of each.
+// Also returns the first corner of each triangle in `corner`.
 [[gnu::always_inline]] inline void make_normals(const PatchLanes& lanes, const Patch& patch,
                                                 PatchNormals& out, PatchLanes& corner) {
   PatchLanes a, b;
@@ -87,7 +88,7 @@ struct PatchNormals {
     for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
   Float16 coefficient[4];
   coefficients(normals.control, c, coefficient);
-  if (all_positive(coefficient, rounding, viewpoint.reach)) return {0xffff, 0};  // as nearly always
+  if (all_positive(coefficient, rounding, viewpoint.reach)) return {0xffff, 0};  // nearly always
   const TripleProducts16 products = bounded(coefficient, c, rounding, error);
   return {products.positive(), products.negative()};
 }

@@ -12,7 +12,7 @@ float reach_of(const Viewpoint& viewpoint, float error) {
   float largest = 0;
   for (const auto& end : viewpoint.at)
     for (const float coordinate : end) largest = std::max(largest, std::abs(coordinate));
-  return 1.0001F * (0x1p24F * error + largest);  // the rest pays for roundings and for twice the error
+  return 1.0001F * (0x1p24F * error + largest);  // 1.0001 pays for roundings and twice the error
 }
 
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {

@@ -5,10 +5,10 @@
 namespace cscd::fast {
 namespace {
 
-// Triangles, one a lane.
+// One triangle of each of sixteen pairs.
 struct TriangleLanes {
   VectorLanes16 corner[3];
-  Mask16 shared[3];  // where the other one has this corner, too
+  Mask16 shared[3];  // the pairs whose other triangle has this corner too
 };
 
 TriangleLanes load(std::span<const LocalPositions::Record> records, const PairLanes::Vertices& own,
@@ -21,7 +21,7 @@ TriangleLanes load(std::span<const LocalPositions::Record> records, const PairLa
   return triangles;
 }
 
-// Where the plane of one triangle has all of the other on one side.
+// Returns the pairs in which the plane of the triangle in `of` parts it from the triangle in `other`.
 Mask16 parted_by_plane(const TriangleLanes& of, const TriangleLanes& other, float error) {
   const VectorLanes16 a = of.corner[1] - of.corner[0], b = of.corner[2] - of.corner[0];
   Float16 normal[3][3];
@@ -34,7 +34,7 @@ Mask16 parted_by_plane(const TriangleLanes& of, const TriangleLanes& other, floa
     const unsigned positive = products.positive(), negative = products.negative();
     above &= positive | other.shared[k];
     below &= negative | other.shared[k];
-    any |= positive | negative;  // of corners that are not shared: the others lie in the plane
+    any |= positive | negative;  // a shared corner lies in the plane and has no certain sign
   }
   return static_cast<Mask16>((above | below) & any);
 }

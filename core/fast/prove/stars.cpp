@@ -8,14 +8,18 @@
 #include "core/base/bring_near.h"
 #include "core/fast/look/patch_lanes.h"
 
-// Rounding, as in triple_product16.h: edges are off by 2 d + u of themselves. A component of a control vector
-// is a sum of two products (four for the middle one, which is twice the control vector) of edges not longer
-// than A and B, hence off by 4 d (A' + B') + 10.5 u A' B'; its dot product with the direction, which is exact
-// by definition and has components up to D, by D (12 d (A' + B') + 49.5 u A' B'). 12.2 and 50 also pay for
-// the bound's own roundings. A component of `side`, of a direction with components up to D and a sum of edges
-// up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by at most 12
-// u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge with
-// components up to A is then off by less than 120 sqrt(3) u A of that, by roundings and by 2 d: kOffSide.
+// Rounding (rule error-bound), in the notation of triple_product16.h. Edges are off by 2 d + u of themselves.
+// A component of a control vector is a sum of two products of edges whose components are at most A and B
+// (four products for the middle control vector, which is computed as twice that vector). Therefore the
+// component is off by 4 d (A' + B') + 10.5 u A' B'. The direction is exact by definition and has components
+// up to D. Therefore the dot product of a control vector with the direction is off by D (12 d (A' + B') +
+// 49.5 u A' B'). The constants 12.2 and 50 below also pay for the roundings of the bound itself.
+//
+// A component of `side` is computed from a direction with components up to D and a sum of edges up to L, and
+// rounds by 4 u D L. So the product of `side` with the direction of unit length, which should be zero, is at
+// most 12 u D L. That is 120 u of the length of `side`, if that length is at least kLeastSide D L. The
+// distance of an edge with components up to A from the plane, in units of that length, is then off by less
+// than 120 sqrt(3) u A, by its own roundings and by 2 d. kOffSide bounds the sum of the first two.
 namespace cscd::fast {
 namespace {
 
@@ -26,7 +30,7 @@ float sum(Float16 v) {
   return folded(v, [](auto a, auto b) { return a + b; });
 }
 
-// Of rings that are repeated over all lanes: the lane of the vertex after each, by length of the ring.
+// [length of the ring][lane]: the lane of the next vertex on a ring that is repeated over all lanes.
 constexpr std::array<Places16, kLanes16 + 1> kNext = [] {
   std::array<Places16, kLanes16 + 1> next{};
   for (std::size_t count = 1; count <= kLanes16; ++count)
@@ -35,12 +39,13 @@ constexpr std::array<Places16, kLanes16 + 1> kNext = [] {
   return next;
 }();
 
-// The other corners of a triangle at a vertex, in the triangle's order.
+// The two corners of a triangle other than the star's vertex, in the triangle's order.
 struct Ends {
   VertexId second, third;
 };
 
-// The second corners, each triangle's third being the next one's second; empty if not all are one closed fan.
+// Returns the ring of a star: the second corners of its triangles, ordered so that the third corner of each
+// triangle is the second corner of the next. Returns an empty ring if the triangles are not one closed fan.
 std::vector<std::int32_t> ring_of(std::span<const Ends> ends) {
   std::vector<std::int32_t> ring;
   if (ends.empty()) return ring;
@@ -96,7 +101,7 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
     }
   Float16 control[3][3];
   cross(a, b, control);
-  // The direction: the mean of the normals about the middle of the interval.
+  // The direction is the mean of the normals at about the middle of the interval.
   Float16 middle[3], squared = {};
   for (std::size_t i = 0; i < 3; ++i) {
     middle[i] = control[0][i] + control[1][i] + control[2][i];
@@ -119,16 +124,17 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
                             above(area, all_lanes(kTiny));
   if (!(largest > 1e-6F) || positive != 0xffffU) return false;
 
-  // The direction in the middle of the first triangle at t = 0. A triangle contains it only if it has a
-  // corner on either side of it.
-  float side[3], steepness = 0;  // the plane through it and `direction`
+  // At t = 0, take the direction from the vertex through the middle of the first triangle's far edge. The
+  // sector of a triangle contains that direction only if the triangle has a corner on either side of it. The
+  // star is flat if the sector of one triangle alone may contain it.
+  float side[3], steepness = 0;  // normal of the plane through that direction and `direction`, and its size
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     side[i] = direction[j] * (a.at[0][k][0] + b.at[0][k][0]) - direction[k] * (a.at[0][j][0] + b.at[0][j][0]);
     steepness += std::abs(side[i]);
   }
   if (!(steepness > kLeastSide * largest * (longest_a[0] + longest_b[0])))
-    return false;  // it is mostly rounding
+    return false;  // `side` is mostly rounding
   const auto from_side = [&](const PatchLanes& edge) {
     return edge.at[0][0] * side[0] + edge.at[0][1] * side[1] + edge.at[0][2] * side[2];
   };
