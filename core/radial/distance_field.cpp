@@ -74,8 +74,7 @@ void lower_about(const Patch& patch, const Cell& low, const Cell& high, Distance
       static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
   if (extent[longest] > 4) {
     const Vec3 middle = (field.centre(low[0], low[1], low[2]) + field.centre(high[0], high[1], high[2])) / 2;
-    const double radius =
-        (field.centre(high[0], high[1], high[2]) - middle).norm();  // of a ball round the centres
+    const double radius = (field.centre(high[0], high[1], high[2]) - middle).norm();  // of the centres
     if (patch.distance(middle) > radius + field.cell) return;
     Cell left_high = high, right_low = low;
     left_high[longest] = low[longest] + extent[longest] / 2 - 1;
@@ -182,8 +181,7 @@ int crossing(const Vec3& a, const Vec3& b, double y, double z) {
 
 void apply_sign(const TriangleMesh& mesh, std::span<const Vec3> positions, DistanceField& field) {
   const auto nx = static_cast<std::size_t>(field.size[0]);
-  std::vector<std::int32_t> winding(field.distance.size(),
-                                    0);  // the steps of the winding number along each row
+  std::vector<std::int32_t> winding(field.distance.size(), 0);  // its steps along each row
   for (const Triangle& t : mesh.triangles()) {
     const Vec3 &a = positions[+t[0]], &b = positions[+t[1]], &c = positions[+t[2]];
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
