@@ -13,9 +13,10 @@
 
 namespace cscd {
 
-// Dynamic cluster assembling (section 5 of the paper): at every interval, atomic clusters are merged from
-// scratch into mega clusters while fewer than gamma of a candidate's triangles are not positive towards the
-// joint that the first two clusters share.
+// Dynamic cluster assembling (section 5 of the 2014 paper). At every interval, atomic clusters are merged
+// from scratch into mega clusters. The observer of a mega cluster is the joint that its first two clusters
+// share. A candidate joins while the share of its triangles that are not positive towards that joint is below
+// gamma.
 //
 // There are two differences to the paper's text. The order of seeds is a fixed shuffle instead of a random
 // one, so that results depend on the interval alone (rule fresh-detector, core/soundness.md). When the

@@ -35,9 +35,9 @@ class ClusterHierarchy {
   // Makes the bounds of one interval.
   void refit(const Motion& motion) { bounds_.refit(motion); }
 
-  // The triangles of each atomic cluster in the order in which its classes are kept.
+  // [atomic clusters]; the triangles of each, in the order of its classes.
   std::span<const std::vector<TriangleId>> groups() const { return groups_; }
-  // Where the caller writes the orientation classes of one atomic cluster.
+  // Returns the classes of one atomic cluster, for the caller to write, in the order of its group.
   std::span<Orientation> classes(std::size_t cluster) {
     return std::span(class_of_leaf_).subspan(first_leaf_[cluster], groups_[cluster].size());
   }

@@ -213,7 +213,7 @@ TEST(RunsInside, TellsTheTubeOfATorusFromItsHole) {
 }
 
 TEST(RunsInside, NeverHidesALineOfAConvexBody) {
-  // Every chord of a convex body is inside; the tolerance must carry this through any grid.
+  // Every chord of a convex body lies inside. The tolerance must preserve that on any grid.
   const Shape shape = test::icosphere(1);
   std::mt19937 random(5);
   for (const int resolution : {1, 3, 11, 40}) {

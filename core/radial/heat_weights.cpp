@@ -10,8 +10,8 @@
 // Bone heat (Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section
 // 4). The surface conducts heat, and each vertex is pulled to the temperature of the bones that it sees. The
 // weight of bone i is the temperature in equilibrium when bone i is at 1 and all other bones are at 0:
-//   (-Laplacian + H) w_i = H p_i,   H_jj = c / d_j^2,   p_ij = 1 / k if bone i is one of the k bones of
-//   vertex j.
+//   (-Laplacian + H) w_i = H p_i,   H_jj = c / d_j^2,
+// where p_ij = 1 / k if bone i is one of the k bones of vertex j, at distance d_j, and 0 otherwise.
 //
 // In the paper, k equally near bones pull k times as hard. Here H does not depend on k, so that the rounding
 // that decides a tie cannot change the matrix. Both sides are multiplied by the vertex areas A, which makes

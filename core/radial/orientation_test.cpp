@@ -229,7 +229,7 @@ TEST(SegmentObserver, ASignHoldsAtEveryPointAndInstant) {
 }
 
 TEST(SegmentObserver, IsNoStricterThanItsTwoEndsWhereTheseSeeTheTriangle) {
-  // One sign towards both ends of the segment is one sign from everywhere on it.
+  // A triangle that has one sign towards both ends of a segment has that sign from everywhere on the segment.
   Dice dice(7);
   int both = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -39,7 +39,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
     const double n = static_cast<double>(count);
     Vec3 mean = Vec3::Zero();
     for (std::size_t i = 0; i < count; ++i) mean += positions[+vertices[i]] / n;
-    // The smallest change of equal weights that moves their mean to the wanted point.
+    // Change equal weights as little as possible so that the weighted mean is the wanted point.
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 x = positions[+vertices[i]] - mean;

@@ -33,7 +33,7 @@ TEST(Patches, EveryTriangleLiesInOneLane) {
   EXPECT_LT(cut.tree.patches.size(), cut.mesh.triangle_count() / 7) << "patches are filled";
 }
 
-// Mutation: `inside` looks at neighbours over edges only.
+// Mutation: inside() considers neighbours over edges only.
 TEST(Patches, InsideMeansAllAroundEveryCorner) {
   const Cut cut;
   std::size_t not_inside = 0;

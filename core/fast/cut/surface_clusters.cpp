@@ -70,7 +70,7 @@ class Pieces {
   // hub with the stumps of many limbs becomes one piece.
   void merge() {
     std::vector<Triangles> members = this->members();
-    std::map<Pair, std::size_t> seams;  // in edges
+    std::map<Pair, std::size_t> seams;  // length in edges
     std::vector<std::size_t> border(members.size());
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) {
       ++seams[std::minmax(piece_[+a], piece_[+b])];

@@ -54,7 +54,7 @@ class OnDemand {
       forget(patch_[next_]);
       patch_[next_] = static_cast<std::int32_t>(patch);
       at = static_cast<std::int32_t>(next_);
-      ::new (&made_[next_]) T(make());  // in place: they are large
+      ::new (&made_[next_]) T(make());  // in place, because results are large
       next_ = (next_ + 1) % kMost;
     }
     return made_[static_cast<std::size_t>(at)];

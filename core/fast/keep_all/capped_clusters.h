@@ -21,14 +21,16 @@ namespace cscd::fast {
 //
 // Theorem. If triangles A and B of S meet in x at time t, and no triangle of U is seen in the direction of
 // x, then x lies on a vertex or edge that A and B share.
-// Proof. How often S goes round the observer is the same in every direction and at every time: once. Let a
-// and b be the faces (vertex, edge or triangle) of A and B that hold x inside. The triangles at a are seen
-// in the direction of x, hence positive. As S is closed, those at an edge lie on both sides of it equally
-// often, and those at a vertex go round it, all one way: so they cover every direction close to that of x at
-// least once. So do those at b. If a is not b no triangle is at both, as it would hold x inside two of its
-// faces. Then those directions are covered twice, and nothing negative takes from that. So a is b.
+// Proof. S goes round the observer equally often in every direction and at every time: once. Let a and b be
+// the faces (vertex, edge or triangle) of A and B that hold x in their interior. All triangles at a are seen
+// in the direction of x, so they are positive. As S is closed, the triangles at an edge lie on both sides of
+// the edge equally often, and the triangles at a vertex go round the vertex, all one way. So the triangles at
+// a cover every direction close to that of x at least once, and so do the triangles at b. Suppose that a is
+// not b. Then no triangle is at both a and b, because that triangle would hold x in the interior of two of
+// its faces. So those directions are covered at least twice, and no negative triangle takes from that count.
+// But S covers them once. So a is b.
 //
-// (Triangles are counted as the mesh lists them: two with the same corners are two.)
+// (Triangles are counted as the mesh lists them: two triangles with the same corners count as two.)
 //
 // A positive triangle is *clear* if nothing of U is seen in any direction in which the triangle is seen. So a
 // pair of triangles of one cluster carries no contact if one of the two is clear. This holds for any

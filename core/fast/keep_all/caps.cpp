@@ -8,7 +8,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kFollowed = 8;  // vertices at most that an apex follows
+constexpr std::size_t kFollowed = 8;  // at most this many vertices are followed by an apex
 
 using Loop = std::vector<VertexId>;  // in order; the first vertex follows the last
 

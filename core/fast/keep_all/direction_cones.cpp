@@ -19,8 +19,8 @@ Float16 dot(const Float16 (&a)[3], const Float16 (&b)[3]) {
 }
 
 struct Directions {
-  PatchLanes to;     // each vertex, of unit length
-  Float16 nearness;  // the reciprocal of the shorter distance
+  PatchLanes to;     // directions from the viewpoint to the vertices, of unit length
+  Float16 nearness;  // [vertices]; reciprocal of the shorter of the distances at both ends
 };
 Directions directions(const PatchLanes& lanes, const Viewpoint& viewpoint) {
   Directions out;

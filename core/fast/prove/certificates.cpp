@@ -29,7 +29,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       label_(tree.nodes.size(), Label{} + kNone),
       capped_(std::move(capped)),
       crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
-  // The first cover holds every triangle: `look` takes that for granted.
+  // `look` relies on the first cover to hold every triangle.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
@@ -142,7 +142,7 @@ void Certificates::certify_all_round() {
 // triangles are negative.
 void Certificates::look_round(std::size_t p) {
   const Patch& patch = tree_.patches[p];
-  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places
+  Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places in p
   unsigned any = 0;
   for (std::size_t c = 1; c < covers_used_; ++c)
     any |= corners[c] = patch.corners_of(own_[p][c].not_positive);
