@@ -9,12 +9,15 @@
 // Dynamic Radial View Based Culling for Continuous Self-Collision Detection (Wong, Lin, Wang, Hung, Huang,
 // I3D 2014).
 //
-// Preparation: triangles to bones by heat diffusion on a smoothed mesh and a coarse distance field; clusters
-// refined by orientation; an observer point or segment for each (section 4). Every interval: clusters merged
-// into mega clusters (section 5), then intra- and inter-cluster checks over local and global hierarchies and
-// relative boxes for non-adjacent pairs (section 6). What differs is said where it stands: certified
-// orientation classes (orientation.h), three vertices instead of one for segments, a fixed order of seeds and
-// the seed's own cost (mega_clusters.h).
+// Preparation assigns triangles to bones by heat diffusion on a smoothed mesh and a coarse distance field,
+// refines the clusters of bones by orientation, and gives each cluster a point or a segment as its observer
+// (section 4). Every interval merges clusters into mega clusters (section 5), then checks pairs within
+// clusters and between clusters over local and global hierarchies, and holds relative boxes against
+// non-adjacent pairs (section 6).
+//
+// The differences to the paper are described where they are made: certified orientation classes, and three
+// vertices instead of one for segments (orientation.h); a fixed order of seeds, and the seed's own cost
+// (mega_clusters.h).
 namespace cscd {
 namespace {
 

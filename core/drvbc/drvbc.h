@@ -23,8 +23,8 @@ struct DrvbcOptions {
   PairFilter filter = PairFilter::certain_sign;
 };
 
-// Dynamic radial view based culling, the paper's method. Needs a closed, consistently oriented mesh and a
-// rig.
+// Prepares the strategy `drvbc`: Dynamic Radial View Based Culling (Wong, Lin, Wang, Hung, Huang, I3D 2014).
+// Throws InputError if the mesh is not closed and consistently oriented, or if the set-up has no bones.
 Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options = {});
 
 }  // namespace cscd

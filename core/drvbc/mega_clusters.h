@@ -13,9 +13,10 @@
 
 namespace cscd {
 
-// Dynamic cluster assembling (section 5 of the paper): at every interval, atomic clusters are merged from
-// scratch into mega clusters while fewer than gamma of a candidate's triangles are not positive towards the
-// joint that the first two clusters share.
+// Dynamic cluster assembling (section 5 of the 2014 paper). At every interval, atomic clusters are merged
+// from scratch into mega clusters. The observer of a mega cluster is the joint that its first two clusters
+// share. A candidate joins while the share of its triangles that are not positive towards that joint is below
+// gamma.
 //
 // Differences to the text. The order of seeds is a fixed shuffle instead of a random one, so that results
 // depend on the interval alone (rule fresh-detector). The cost D is computed for the seed as well when its
@@ -50,8 +51,8 @@ class MegaClusters {
   std::vector<radial::ObserverKind> kinds_;
   double gamma_;
   bool cache_;
-  std::vector<std::size_t> seeds_;
-  std::vector<std::int32_t> label_;
+  std::vector<std::size_t> seeds_;   // all atomic clusters, in the order in which they become seeds
+  std::vector<std::int32_t> label_;  // [atomic clusters]
   std::size_t count_ = 0;
   // The paper's cache. Members that were not positive in the last interval are looked at first, because they
   // will probably decide against a merge. The cache saves work and never changes a decision (rule

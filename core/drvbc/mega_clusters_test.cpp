@@ -37,7 +37,7 @@ struct Body {
       : shape(test::uneven_tube(7, 30, 15, [&](double x) { return 0.8 + bumps * std::sin(3 * x); })),
         mesh(shape.mesh()) {
     if (branching) {
-      // Bones 0 and 3 are siblings under 6, a root in the middle of the tube.
+      // Bones 0 and 3 are siblings under bone 6, a root in the middle of the tube.
       for (int i = 0; i < 3; ++i) {
         rig.parent.push_back(BoneId{i == 0 ? 6 : i - 1});
         rig.reference.push_back({{7.5 - 2.3 * i, 0, 0}, {7.5 - 2.3 * (i + 1), 0, 0}});
@@ -68,7 +68,8 @@ struct Body {
       kinds.push_back(c % 3 == 0 ? ObserverKind::bone_centre : ObserverKind::bone_segment);
   }
 
-  // Bends the whole in the xy plane: straight for 0, a quarter circle for pi / 2, and shakes it.
+  // Bends the tube and its bones in the xy plane, straight for 0 and a quarter circle for pi / 2, and shakes
+  // them.
   void pose(double bend, double shake, std::mt19937& random, std::vector<Vec3>& x,
             std::vector<Bone>& bones) const {
     const auto warp = [&](const Vec3& p) -> Vec3 {
@@ -154,9 +155,10 @@ TEST(MegaClusters, LabelsAreAPartitionNumberedFromZero) {
   }
 }
 
-// The classes that culling will use are those towards one observer: the cluster's own for a cluster that
-// stays alone, the joint of two of its members for all that merged; and then each has fewer than gamma
-// non-positive triangles. (The paper tests the candidate only; mutation: `fits(seed, ...)` left out.)
+// Culling uses classes towards one observer: the cluster's own observer for a cluster that stays alone, and
+// the joint of two members for all members of a mega cluster. Each of these members has a share of
+// non-positive triangles below gamma. Mutation: `fits(seed, ...)` is left out, as in the paper, which tests
+// the candidate only.
 TEST(MegaClusters, EveryMemberIsClassifiedTowardsTheOneObserverAndBelowGamma) {
   int merged = 0, alone = 0;
   for (const double gamma : {0.05, 0.2, 0.6})
@@ -240,7 +242,7 @@ TEST(MegaClusters, NothingMergesWithoutToleranceAndAStraightTubeMergesWithAll) {
   EXPECT_LT(Machine(body, 0.6).run(rest).count, body.clusters.clusters.size() / 2 + 1);
 }
 
-// Mutations: suspects_ decide alone; label_ is not reset.
+// Rule fresh-detector. Mutations: `suspects_` decide alone; `label_` is not reset.
 TEST(MegaClusters, RuleFreshDetectorTheCacheChangesNothingInAnyOrderOfIntervals) {
   for (const bool branching : {false, true}) {
     const Body body(branching, 0.3);

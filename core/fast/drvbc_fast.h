@@ -5,9 +5,11 @@
 
 namespace cscd {
 
-// Radial view based culling with overlapping covers. Needs a closed, consistently oriented mesh unless it is
-// `complete`. Without bones the covers are made from clusters of the surface. With bones, a trial chooses
-// between those and the clusters of bones, and how many covers are looked from.
+// Prepares the strategies `drvbc_fast` and `drvbc_fast_complete`: radial view based culling with overlapping
+// covers. Without bones the covers are made from clusters of the surface. With bones, a trial chooses between
+// the clusters of the surface and the clusters of the bones, and chooses the number of covers to look from.
+// Throws InputError if the set-up asks for no thread, or if the mesh is not closed and consistently oriented
+// and the options do not say `complete`.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
 }  // namespace cscd

@@ -10,7 +10,7 @@
 namespace cscd {
 namespace {
 
-// A long tube, and itself bent with so much noise that neighbours may run into each other.
+// A long tube, and the same tube bent, with so much noise that neighbours may run into each other.
 struct Scene {
   test::Shape shape = test::uneven_tube(12, 400, 90, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); });
   TriangleMesh mesh = shape.mesh();
@@ -28,8 +28,9 @@ struct Scene {
   Motion motion() const { return Motion(shape.positions, end); }
 };
 
-// Mutations: lists of pairs joined from the last; tests counted of one thread alone; a pair of nodes that
-// can be opened passed on twice; the last range of nodes not looked at; the largest of one range alone.
+// Mutations: the lists of pairs are joined from the last; the tests of one thread alone are counted; a pair
+// of nodes that can be opened is passed on twice; the last range of nodes is left out; the largest coordinate
+// is that of one range alone.
 TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
   for (const auto& [noise, complete] : {std::pair(0.0, false), {0.1, false}, {0.3, false}, {0.1, true}}) {
     const Scene scene(noise);
@@ -47,7 +48,7 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
         EXPECT_EQ(now.cull.radial->uncertain, report.cull.radial->uncertain);
         EXPECT_EQ(now.pairs.feature_pairs, report.pairs.feature_pairs);
         EXPECT_EQ(now.pairs.elementary_tests, report.pairs.elementary_tests);
-        // In the order of the descent.
+        // Contacts come in the order of the descent.
         ASSERT_EQ(found.contacts.size(), alone.contacts.size());
         for (std::size_t i = 0; i < found.contacts.size(); ++i) {
           ASSERT_EQ(found.contacts[i].pair, alone.contacts[i].pair) << threads << " threads, contact " << i;

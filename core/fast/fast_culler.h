@@ -20,7 +20,8 @@ namespace cscd::fast {
 // apart (cull), all three on as many threads as the set-up asks for.
 class FastCuller : public Culler {
  public:
-  // `cluster_of`, [triangles], is what the surface is cut along (cut/cut_surface.h).
+  // Cuts the surface along the seams of `cluster_of`, [triangles], into cells of at least `least_cell`
+  // triangles (cut/cut_surface.h). The mesh of the set-up must outlive the culler.
   FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, std::size_t least_cell,
              const DrvbcFastOptions& options);
 
@@ -28,13 +29,14 @@ class FastCuller : public Culler {
   void use_covers(std::size_t count) { certificates_.use_covers(count); }
 
   void refit(const Motion& motion) override;
-  // Makes bounds too, because a patch is loaded once for its bounds and its orientations.
+  // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded
+  // once for its bounds and its orientations. Returns true.
   bool classify(const Motion& motion, const Rig::Interval* bones) override;
   CullCounts cull(TrianglePairSink& sink) override;
   RadialView radial_view() const override { return certificates_.view(); }
 
   std::size_t patch_count() const { return cut_.tree.patches.size(); }
-  // How often a patch is looked at in an interval, from one cover each.
+  // The number of looks (prove/certificates.h) that one interval takes.
   std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
 
  private:

@@ -19,14 +19,15 @@ class CountingSink : public TrianglePairSink {
   void take(const std::vector<TrianglePair>&) override {}
 };
 
-// Work is counted in overlap tests of bounding volumes. These are about how many of them cost as much as one
-// patch in an interval, one look at a patch from one cover, one observer that is placed, and one pair that is
-// left.
+// Work is counted in overlap tests of bounding volumes. These constants say how many overlap tests cost about
+// as much as one patch in an interval, one look, one observer that is placed, and one pair of triangles that
+// is left for the elementary test.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
-constexpr std::size_t kLeastCoarseCell = 96;  // cuts short limbs into fewer patches
+constexpr std::size_t kLeastCoarseCell = 96;  // `least_cell` that cuts short limbs into fewer patches
 
-// Returns the work of all trials. Stops early, with a sum above `most`, once it is more than that.
+// Returns the work of all trials. Stops early, and returns a sum above `most`, once the work is more than
+// `most`.
 std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint64_t most) {
   std::uint64_t tests = 0;
   for (const Trial& trial : trials) {
@@ -84,8 +85,8 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
   std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
   if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
 
-  // A row that leaves one idea out takes the candidate that the whole would take, so that nothing else
-  // differs.
+  // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
+  // rows differ in nothing but the idea that is left out.
   const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
   Choice choice(trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials));
   choice.consider(made(setup, std::move(of_bones), whole));

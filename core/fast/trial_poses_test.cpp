@@ -14,7 +14,8 @@ std::vector<BoneId> bones_of(const test::Body& body) {
   return bone_of;
 }
 
-// Mutation: a bone turns without its parent.
+// Bones turn with their parents, and the surface keeps its lengths. Mutation: a bone turns without its
+// parent.
 TEST(TrialPoses, ALimbFollowsItsParentsAndKeepsItsLength) {
   const test::Body body(0, 0);
   const std::vector<BoneId> bone_of = bones_of(body);

@@ -9,8 +9,8 @@
 namespace cscd::fast {
 namespace {
 
-// A bone as long as the tube sees little of it; fifteen see it well. Mutation: the trial takes always the
-// one or the other.
+// One bone as long as the tube sees little of it, fifteen bones see it well. Mutations: the trial always
+// takes the clusters of bones; it always takes those of the surface.
 TEST(Trial, DecidesWhichClustersAreTaken) {
   using Clusters = DrvbcFastOptions::Clusters;
   const test::Body tube(0, 0);
@@ -27,7 +27,7 @@ TEST(Trial, DecidesWhichClustersAreTaken) {
   }
 }
 
-// A spike on each face of a sphere, with a bone.
+// A sphere with a spike on each face, and a bone in each spike.
 struct Spikes {
   test::Shape shape;
   Rig rig;
@@ -63,8 +63,8 @@ struct Spikes {
   }
 };
 
-// Where clusters are a few patches, seams are everywhere, and other covers cost more than they save.
-// Mutation: all of them are used always.
+// Where clusters are only a few patches, seams are everywhere, and covers beside the first cost more than
+// they save. Mutation: all covers are always used.
 TEST(Trial, DecidesHowManyCoversAreUsed) {
   const auto observers = [](const test::Shape& shape, const Rig& rig, DrvbcFastOptions options) {
     const TriangleMesh mesh = shape.mesh();
@@ -82,8 +82,8 @@ TEST(Trial, DecidesHowManyCoversAreUsed) {
   EXPECT_GT(observers(tube.shape, tube.rig, {}), observers(tube.shape, tube.rig, {.covers = 1}));
 }
 
-// Where limbs are short, seams of the second cover cut them into too many patches. Mutations: they always cut
-// as much; no trial of less.
+// Where limbs are short, seams of the second cover cut them into too many patches. Mutations: all candidates
+// have the same least cell; the candidate with the larger least cell is not tried.
 TEST(Trial, DecidesHowMuchSeamsCut) {
   const Spikes spikes(12);
   const TriangleMesh mesh = spikes.shape.mesh();

@@ -5,8 +5,9 @@
 #include <cstddef>
 #include <utility>
 
-// Wong et al., I3D 2014, section 4.1: the triangles of one bone form an atomic cluster. Here also split by
-// the components of the mesh, which the paper takes to be one. Cost: n log n, for grouping the triangles.
+// The triangles of one bone form an atomic cluster (Wong et al., I3D 2014, section 4.1). Here the triangles
+// of a bone are also split by the connected components of the mesh, because the paper assumes a single
+// component. Grouping n triangles takes time n log n.
 
 namespace cscd::radial {
 

@@ -9,16 +9,17 @@
 
 namespace cscd::radial {
 
-// A partition of the triangles. No cluster spans two components of the mesh: along a ray the orientations
-// alternate for one connected surface only (rule component).
+// A partition of the triangles into atomic clusters, the smallest groups that share an observer. No cluster
+// spans two connected components of the mesh: along a ray the orientations alternate for one connected
+// surface only (rule component, core/soundness.md).
 struct AtomicClusters {
   struct Cluster {
     BoneId bone;
     std::vector<TriangleId> triangles;  // ascending; never empty
   };
-  std::vector<std::int32_t> of_triangle;              // index into clusters
+  std::vector<std::int32_t> of_triangle;              // [triangles]; index into `clusters`
   std::vector<Cluster> clusters;                      // ascending by bone, then component
-  std::vector<std::vector<std::int32_t>> neighbours;  // clusters that share a mesh edge, ascending; symmetric
+  std::vector<std::vector<std::int32_t>> neighbours;  // [clusters]; those that share a mesh edge, ascending
 };
 
 // Makes one cluster for every bone and component that have triangles in common. `bone_of` gives one valid

@@ -13,7 +13,7 @@ namespace {
 
 using test::Shape;
 
-// Everything the type promises, against the mesh and the bones.
+// Checks everything that AtomicClusters promises against the mesh and the bones.
 void expect_consistent(const TriangleMesh& mesh, const std::vector<BoneId>& bone,
                        const AtomicClusters& atomic) {
   ASSERT_EQ(atomic.of_triangle.size(), mesh.triangle_count());

@@ -15,7 +15,7 @@ struct BoneClusterOptions {
   int smoothing_passes = 5;  // passes over the mesh before the field (the paper gives no value)
   bool refinement = true;    // refine clusters by orientation (refinement.h)
 
-  double theta() const;  // in radians
+  double theta() const;  // `theta_degrees` in radians
 };
 
 // Returns the bone of each triangle, [triangles], by heat and then refined. Leaves the clock in the stage

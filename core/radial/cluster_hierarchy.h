@@ -11,27 +11,31 @@
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/orientation.h"
 
-// Intra- and inter-cluster checks (section 3.1 and 6 of the paper) over local trees, one a cluster, under a
-// global one.
+// Intra- and inter-cluster checks (sections 3.1 and 6 of the 2014 paper) over local trees, one a cluster,
+// under one global tree.
 //
-// Inside a cluster, a pair is needed unless both triangles are positive or both negative towards its
-// observer. Every node carries the mask of classes below it, so the descent drops two nodes at once when
-// their masks are one and the same sign: H- against H+ and Hu against all remain. Between clusters the bounds
-// alone decide.
+// Inside a cluster, a pair is needed unless both triangles are positive towards the cluster's observer, or
+// both are negative. Every node carries the mask of the classes below it, so the descent drops two nodes at
+// once when both masks are one and the same sign. In the paper's letters, H- against H+ and Hu against all
+// remain. Between clusters the bounds alone decide.
 //
-// Soundness: the theorem asks that a dropped feature pair has all its incident triangles certified by one
-// field. A feature pair is tested as soon as one triangle pair carrying it is passed on, and all triangle
-// pairs of a dropped one were either apart in their bounds (no contact) or in one cluster with one sign.
-// Clusters never span two connected components (rule component).
+// Soundness. One field has to certify all triangles incident to a dropped feature pair (rule one-field,
+// core/soundness.md). A feature pair is tested as soon as one triangle pair that carries it is passed on
+// (rule any-carrier). So if a feature pair is dropped, each triangle pair that carries it is either apart in
+// its bounds, which excludes a contact, or lies in one cluster with one sign. Clusters never span two
+// connected components (rule component).
 namespace cscd::radial {
 
+// The trees over all clusters, the bounds of their nodes, and the classes of all triangles in one interval.
 class ClusterHierarchy {
  public:
+  // `reference`, [vertices], is the pose in which the trees are built. The mesh must outlive the hierarchy.
   ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference, const AtomicClusters& clusters);
 
+  // Makes the bounds of one interval.
   void refit(const Motion& motion) { bounds_.refit(motion); }
 
-  // The triangles of each atomic cluster in the order in which its classes are kept.
+  // [atomic clusters]; the triangles of each, in the order of its classes.
   std::span<const std::vector<TriangleId>> groups() const { return groups_; }
   // Where the caller writes the orientation classes of one atomic cluster, in the order of its triangles.
   std::span<Orientation> classes(std::size_t cluster) {

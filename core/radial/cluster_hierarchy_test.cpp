@@ -27,14 +27,14 @@ class Collector : public TrianglePairSink {
   Pairs pairs_;
 };
 
-// A surface in noisy motion with random clusters and random classes: whatever they are, the cull is exact.
+// A surface in noisy motion with random clusters and random classes. The cull is exact whatever these are.
 struct Scene {
   std::mt19937 random;
   std::vector<Vec3> start, end;
   TriangleMesh mesh;
   AtomicClusters clusters;
   ClusterHierarchy hierarchy;
-  std::vector<Orientation> class_of;  // of each triangle
+  std::vector<Orientation> class_of;  // [triangles]
 
   Scene(const test::Shape& shape, unsigned seed, int cluster_count)
       : random(seed),
@@ -58,7 +58,7 @@ struct Scene {
     for (std::int32_t& label : labels) label = static_cast<std::int32_t>(random() % count);
     return labels;
   }
-  // `uncertain` in 100.
+  // Draws classes at random, `uncertain` and `negative` in 100 triangles.
   void set_classes(unsigned uncertain, unsigned negative) {
     for (std::size_t c = 0; c < hierarchy.groups().size(); ++c) {
       const std::span<Orientation> classes = hierarchy.classes(c);
@@ -143,8 +143,9 @@ TEST(ClusterHierarchy, CullsExactlyTheSameSignPairsOfOneLabelAndNoOther) {
     }
 }
 
-// Two covers of the surface may each drop a pair; one pair of triangles may not be dropped because each is
-// positive for a field of its own. Mutation: cluster_pair compares signs whatever the labels.
+// Rule one-field. A pair of triangles may be dropped if one field certifies both. It may not be dropped
+// because each triangle is positive for a field of its own. Mutation: cluster_pair compares signs whatever
+// the labels.
 TEST(ClusterHierarchy, RuleOneFieldSignsTowardsDifferentObserversDropNothing) {
   Scene scene(test::icosphere(2), 3, 6);
   scene.hierarchy.refit(Motion(scene.start, scene.end));
@@ -175,7 +176,7 @@ TEST(ClusterHierarchy, RuleOneFieldSignsTowardsDifferentObserversDropNothing) {
   EXPECT_EQ(fewer, expected) << "nothing but the pairs between clusters 0 and 1 may go";
 }
 
-// Mutation: refit or finish_classes left out for the second interval.
+// Rule fresh-detector. Mutation: refit or finish_classes is left out for the second interval.
 TEST(ClusterHierarchy, RuleFreshDetectorAnIntervalLeavesNothingBehind) {
   Scene used(test::icosphere(2), 4, 4), fresh(test::icosphere(2), 4, 4);
   const std::vector<std::int32_t> labels(used.clusters.clusters.size(), 0);
@@ -192,7 +193,7 @@ TEST(ClusterHierarchy, RuleFreshDetectorAnIntervalLeavesNothingBehind) {
   std::uint64_t tests[2];
   int which = 0;
   for (const auto& [scene, sink] : {std::pair{&used, &a}, {&fresh, &b}}) {
-    scene->set_classes(20, 20);  // the same dice in both
+    scene->set_classes(20, 20);  // both draw the same classes
     scene->hierarchy.refit(Motion(scene->start, scene->end));
     scene->hierarchy.finish_classes();
     tests[which++] = scene->hierarchy.cull(labels, *sink).bvot.value();

@@ -9,19 +9,23 @@
 #include "core/radial/nearest_point.h"
 #include "core/radial/surface_box.h"
 
-// Discrete signed distance field of a closed surface, in three steps:
-// 1. Near the surface (up to one cell) the exact distance to the nearest triangle: each triangle visits the
-// cells
-//    about it, found by splitting its box of cells and dropping the parts that are too far.
-// 2. Elsewhere the distance to the nearest cell centre near the surface, by the separable lower envelope of
-//    parabolas (Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions", Theory of
-//    Computing 8, 2012, section 2). It is off by half a diagonal at most, which its users allow for.
-// 3. The sign from the winding number along the rows of the grid: each triangle adds +-1 behind the point
-// where
-//    the row meets it. Which rows meet it is decided edge by edge, antisymmetrically, so that along every row
-//    of a closed surface the additions cancel whatever rounding does.
-// Cost: linear in the cells, plus the triangles times the cells in their vicinity. Memory: a float and an
-// int32 a cell.
+// Makes the discrete signed distance field of a closed surface in three steps.
+//
+// Step 1. Up to one cell away from the surface, a cell gets the exact distance to the nearest triangle. Each
+// triangle visits the cells round it, which are found by splitting its box of cells and dropping the parts
+// that are too far away.
+//
+// Step 2. Elsewhere, a cell gets the distance to the nearest cell centre near the surface, by the separable
+// lower envelope of parabolas (Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions",
+// Theory of Computing 8, 2012, section 2). The distance is off by half a diagonal at most, which its users
+// allow for.
+//
+// Step 3. The sign comes from the winding number along the rows of the grid: each triangle adds +-1 behind
+// the point where a row meets it. Whether a row meets a triangle is decided edge by edge, antisymmetrically,
+// so that along every row of a closed surface the additions cancel, whatever rounding does.
+//
+// Takes time linear in the cells, plus the triangles times the cells in their vicinity. Takes memory of a
+// float and an int32 a cell.
 
 namespace cscd::radial {
 namespace {
@@ -31,7 +35,8 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 
 using Cell = std::array<int, 3>;
 
-// The cell whose slab along the axis holds the coordinate, not clamped to the grid.
+// Returns the index, along one axis, of the cells that hold the coordinate. The index is not clamped to the
+// grid.
 int slab(const DistanceField& field, int axis, double coordinate) {
   return static_cast<int>(std::floor((coordinate - field.corner[axis]) / field.cell));
 }
@@ -49,7 +54,7 @@ DistanceField make_grid(const Eigen::AlignedBox3d& box, int resolution) {
   return field;
 }
 
-// A triangle with a ball about it, which is cheap to ask first.
+// A triangle with a ball round it, which is cheaper to test than the triangle.
 struct Patch {
   Vec3 a, b, c, middle;
   double radius;
@@ -61,15 +66,15 @@ struct Patch {
   double distance(const Vec3& p) const { return (p - nearest_on_triangle(p, a, b, c)).norm(); }
 };
 
-// Lowers the distances of the cells low..high (both included) to that of the triangle where it is within a
-// cell.
+// Lowers the distances of the cells from `low` to `high`, both included, to their distance from the triangle,
+// where that is at most the length of a cell.
 void lower_about(const Patch& patch, const Cell& low, const Cell& high, DistanceField& field) {
   const Cell extent{high[0] - low[0] + 1, high[1] - low[1] + 1, high[2] - low[2] + 1};
   const auto longest =
       static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
   if (extent[longest] > 4) {
     const Vec3 middle = (field.centre(low[0], low[1], low[2]) + field.centre(high[0], high[1], high[2])) / 2;
-    const double radius = (field.centre(high[0], high[1], high[2]) - middle).norm();  // about the centres
+    const double radius = (field.centre(high[0], high[1], high[2]) - middle).norm();  // of the centres
     if (patch.distance(middle) > radius + field.cell) return;
     Cell left_high = high, right_low = low;
     left_high[longest] = low[longest] + extent[longest] / 2 - 1;
@@ -105,10 +110,10 @@ void fill_near(const TriangleMesh& mesh, std::span<const Vec3> positions, Distan
   }
 }
 
-// One line of the transform: squared[i] becomes the least squared[j] + (i - j)^2, in cells.
+// Transforms one line of cells: squared[i] becomes the least squared[j] + (i - j)^2 over all j, in cells.
 struct LowerEnvelope {
   std::vector<float> value;
-  std::vector<int> site;
+  std::vector<int> site;     // the cells whose parabolas make up the envelope, in order
   std::vector<double> from;  // where the parabola of site k begins to be the lowest
 
   void transform(float* squared, std::size_t count, std::size_t stride) {
@@ -146,8 +151,9 @@ struct LowerEnvelope {
 };
 
 void fill_far(DistanceField& field) {
-  // Every point of the surface has the centre of its cell within half a diagonal, so the centres that near
-  // the surface are the sites. Squared distances in cells are integers below 2^24 or lose a relative 2^-24.
+  // Every point of the surface lies within half a diagonal of the centre of its cell. So the sites are the
+  // centres that are so near to the surface. Squared distances in cells are integers below 2^24, or lose a
+  // relative 2^-24.
   const auto near = static_cast<float>(field.half_diagonal());
   std::vector<float> squared(field.distance.size());
   for (std::size_t i = 0; i < squared.size(); ++i) squared[i] = field.distance[i] <= near ? 0 : kFar;
@@ -164,8 +170,8 @@ void fill_far(DistanceField& field) {
     if (field.distance[i] == kFar) field.distance[i] = static_cast<float>(field.cell) * std::sqrt(squared[i]);
 }
 
-// Does the edge from a to b cross the half-line from (y, z) towards greater y, upward (+1) or downward (-1)?
-// Antisymmetric in a and b.
+// Returns whether the edge from a to b, projected along x, crosses the half-line from (y, z) towards greater
+// y: +1 if it crosses upward, -1 if downward, 0 if not at all. Antisymmetric in a and b.
 int crossing(const Vec3& a, const Vec3& b, double y, double z) {
   if ((a.z() > z) == (b.z() > z)) return 0;
   const double side = (a.y() - y) * (b.z() - z) - (b.y() - y) * (a.z() - z);
@@ -175,7 +181,7 @@ int crossing(const Vec3& a, const Vec3& b, double y, double z) {
 
 void apply_sign(const TriangleMesh& mesh, std::span<const Vec3> positions, DistanceField& field) {
   const auto nx = static_cast<std::size_t>(field.size[0]);
-  std::vector<std::int32_t> winding(field.distance.size(), 0);  // at first only the steps along each row
+  std::vector<std::int32_t> winding(field.distance.size(), 0);  // its steps along each row
   for (const Triangle& t : mesh.triangles()) {
     const Vec3 &a = positions[+t[0]], &b = positions[+t[1]], &c = positions[+t[2]];
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
@@ -188,8 +194,8 @@ void apply_sign(const TriangleMesh& mesh, std::span<const Vec3> positions, Dista
         const int turns =
             crossing(a, b, p.y(), p.z()) + crossing(b, c, p.y(), p.z()) + crossing(c, a, p.y(), p.z());
         if (turns == 0) continue;
-        // Where the row meets the triangle's plane; a plane along the row may give anything, the box bounds
-        // it.
+        // The x at which the row meets the triangle's plane. If the plane is parallel to the row, the
+        // quotient may be anything, so x is kept within the triangle's box.
         const double depth =
             a.x() - (normal.y() * (p.y() - a.y()) + normal.z() * (p.z() - a.z())) / normal.x();
         const double x = depth >= low.x() && depth <= high.x() ? depth : (low.x() + high.x()) / 2;
@@ -230,7 +236,7 @@ int resolution_of_mean_edge(const TriangleMesh& mesh, std::span<const Vec3> posi
   for (const Edge& e : mesh.edges()) total += (positions[+e[1]] - positions[+e[0]]).norm();
   const double cells =
       surface_box(mesh, positions).sizes().maxCoeff() * static_cast<double>(mesh.edge_count()) / total;
-  constexpr double most = 1 << 15;  // far beyond what the bound on the number of cells allows
+  constexpr double most = 1 << 15;  // far more than the bound on the number of cells allows
   return cells >= 1 ? static_cast<int>(std::min(std::ceil(cells), most)) : 1;
 }
 
@@ -238,14 +244,16 @@ bool runs_inside(const DistanceField& field, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double length = way.norm();
   if (!std::isfinite(length)) return false;
-  // A point is certainly outside if the centre of its cell is further outside than it is from the point.
+  // A point is certainly outside if the centre of its cell lies farther outside than that centre is from the
+  // point.
   const double slack = field.half_diagonal();
   const Vec3 direction = length > 0 ? Vec3(way / length) : Vec3::Zero();
   for (double done = 0;;) {
     const double distance = field.at(from + done * direction);
     if (distance > slack) return false;
     if (done >= length) return true;
-    // Deep inside, nothing within the distance less two slacks (of the point, of the field) can be outside.
+    // Deep inside, no point within the distance less two slacks can be outside: one slack for the point's
+    // distance from the centre of its cell, one for the error of the field.
     done = std::min(length, done + std::max(field.cell / 2, -distance - 2 * slack));
   }
 }

@@ -13,9 +13,9 @@ namespace cscd::radial {
 // Signed distance to a surface at the centres of the cells of a regular grid; negative inside.
 struct DistanceField {
   Vec3 corner;  // lowest corner of the grid; the surface keeps one cell away from the grid's sides
-  double cell;  // side of a cell
-  std::array<int, 3> size;      // cells along x, y, z
-  std::vector<float> distance;  // x runs fastest
+  double cell;  // length of a cell's side
+  std::array<int, 3> size;      // number of cells along x, y, z
+  std::vector<float> distance;  // [z][y][x]; x runs fastest
 
   std::size_t index(int x, int y, int z) const {
     const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y),
@@ -30,16 +30,21 @@ struct DistanceField {
   double at(const Vec3& point) const;
 };
 
-// Grid with cubic cells, `cells_along_longest_side` of them along the longest side of the surface's box, and
-// a margin. A grid of more than 2^25 cells is made coarser until it has no more. Within one cell of the
-// surface distances are exact but for rounding to float, elsewhere within half the diagonal of a cell. Inside
-// is where the surface winds round a point, in whatever sense and however often; for an open surface the sign
-// means little. Expects finite positions in an order of magnitude that can be squared (segmentation brings
-// them to size 1).
+// Makes the distance field of a surface whose positions are [vertices]. The grid has cubic cells,
+// `cells_along_longest_side` of them along the longest side of the surface's box, and a margin. A grid of
+// more than 2^25 cells is made coarser until it has at most that many.
+//
+// Within one cell of the surface, distances are exact but for rounding to float. Elsewhere they are off by at
+// most half the diagonal of a cell. A point is inside if the surface winds round it, in whatever sense and
+// however often. For an open surface the sign means little.
+//
+// Positions must be finite and of an order of magnitude that can be squared (segmentation.cpp scales them to
+// size 1).
 DistanceField make_distance_field(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                   int cells_along_longest_side);
 
-// The resolution at which a cell is as long as the mean edge, at least 1: "full resolution".
+// Returns the number of cells along the longest side of the surface's box, at least 1, at which a cell is
+// about as long as the mean edge. The papers call that "full resolution".
 int resolution_of_mean_edge(const TriangleMesh& mesh, std::span<const Vec3> positions);
 
 // Whether the segment stays inside as far as the grid can tell: no point of it is certainly outside.

@@ -17,7 +17,7 @@ namespace {
 
 using test::Shape;
 
-// Rounding of a float in [0, 8), the range of the distances below.
+// The rounding of a float in [0, 8), the range of the distances below.
 constexpr double kFloat = 8.0 * std::numeric_limits<float>::epsilon();
 
 double brute_distance(const Shape& shape, const Vec3& p) {
@@ -29,7 +29,7 @@ double brute_distance(const Shape& shape, const Vec3& p) {
   return least;
 }
 
-// The winding number from the solid angles of the triangles (van Oosterom and Strackee 1983).
+// Returns the winding number, from the solid angles of the triangles (van Oosterom and Strackee 1983).
 int winding(const Shape& shape, const Vec3& p) {
   double sum = 0;
   for (const Triangle& t : shape.triangles) {
@@ -66,9 +66,9 @@ TEST(NearestPoint, ObeysTheConditionOfAProjectionOntoAConvexSet) {
     if (i % 4 == 2) c = a + 1e-9 * point();        // a needle
     if (i % 400 == 3) c = a;
     const Vec3 q = nearest_on_triangle(p, a, b, c);
-    // No corner lies beyond the plane through q across the way from q to p, and q lies in the triangle: from
-    // a point q beside it some plane would have all corners on the far side, so that q cannot be nearest to
-    // itself.
+    // Two conditions make q the nearest point. No corner lies beyond the plane through q that is
+    // perpendicular to the way from q to p. And q lies in the triangle: if q lay beside the triangle, the
+    // nearest point to q would be another point.
     for (const Vec3& v : {a, b, c}) EXPECT_LE((p - q).dot(v - q), 1e-12);
     EXPECT_LE((q - nearest_on_triangle(q, a, b, c)).norm(), 1e-12);
     const Vec3 s = nearest_on_segment(p, a, b);
@@ -213,7 +213,7 @@ TEST(RunsInside, TellsTheTubeOfATorusFromItsHole) {
 }
 
 TEST(RunsInside, NeverHidesALineOfAConvexBody) {
-  // Every chord of a convex body is inside; the tolerance must carry this through any grid.
+  // Every chord of a convex body lies inside. The tolerance must preserve that on any grid.
   const Shape shape = test::icosphere(1);
   std::mt19937 random(5);
   for (const int resolution : {1, 3, 11, 40}) {

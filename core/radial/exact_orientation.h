@@ -1,6 +1,7 @@
 #pragma once
 
-// For tests only: the orientation of triangles in exact arithmetic, coordinates as they stand.
+// For tests only: the orientation of triangles in exact arithmetic. Every double is taken as the exact
+// rational number that it is.
 
 #include <algorithm>
 #include <array>
@@ -35,7 +36,7 @@ inline Exact3 cross(const Exact3& a, const Exact3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// The triangle at time t, and where an observer sees its points from.
+// A triangle and an observer at time t.
 struct ExactView {
   Exact3 corner[3], normal, head, tail;
   bool is_segment;
@@ -45,14 +46,15 @@ struct ExactView {
     for (std::size_t i = 0; i < 3; ++i) corner[i] = at(moving[i], t);
     normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   }
-  // The point with these barycentric weights of the second and third corner.
+  // Returns the point of the triangle in which the second corner has weight v and the third has weight w.
   Exact3 point(const mpq_class& v, const mpq_class& w) const {
     Exact3 out;
     for (std::size_t i = 0; i < 3; ++i)
       out[i] = corner[0][i] + v * (corner[1][i] - corner[0][i]) + w * (corner[2][i] - corner[0][i]);
     return out;
   }
-  // The sign of the dot product of the normal with the ray through a point of the triangle.
+  // Returns the sign of the dot product of the normal with the ray from the observer through a point of the
+  // triangle.
   int sign(const Exact3& point) const {
     Exact3 from = head;
     const Exact3 way = tail - head;
@@ -71,7 +73,8 @@ inline radial::Orientation from_sign(int sign) {
                     : radial::Orientation::uncertain;
 }
 
-// The true class towards a point observer, for all of [0, 1]: by isolation of the roots of the exact cubic.
+// Returns the true class towards a point observer over all of [0, 1], found by isolating the roots of the
+// exact cubic.
 inline radial::Orientation exact_class(const MovingPoint (&corner)[3], const MovingPoint& q) {
   const cscd::exact::Polynomial f =
       cscd::exact::coplanarity(cscd::exact::linear_points({q, corner[0], corner[1], corner[2]}));
@@ -80,8 +83,9 @@ inline radial::Orientation exact_class(const MovingPoint (&corner)[3], const Mov
   return from_sign(start.sign(start.corner[0]));
 }
 
-// The sign that all sampled points of the triangle share at all sampled times, or nothing if they differ:
-// `times` + 1 instants, and all barycentric weights that are multiples of 1 / parts.
+// Returns the sign that all sampled points of the triangle share at all sampled times, or nothing if the
+// signs differ. Samples `times` + 1 instants, and all points whose barycentric weights are multiples of 1 /
+// `parts`.
 inline std::optional<int> sampled_sign(const MovingPoint (&corner)[3], const radial::Observer& observer,
                                        int times, int parts) {
   std::optional<int> common;

@@ -7,40 +7,43 @@
 #include <cstdint>
 #include <vector>
 
-// Bone heat: the surface conducts heat, each vertex is held by a spring to the temperature of the bones it
-// sees, and the weight of bone i is the equilibrium when bone i is at 1 and the others are at 0:
-//   (-Laplacian + H) w_i = H p_i,   H_jj = c / d_j^2,   p_ij = 1 / k if bone i is one of the k bones of
-//   vertex j.
-// Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section 4. There k
-// equally near bones pull k times as hard; here H does not depend on k, so that the rounding that decides a
-// tie cannot change the matrix. Both sides are multiplied by the vertex areas A, which makes the matrix
-// symmetric:
+// Bone heat (Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section
+// 4). The surface conducts heat, and each vertex is pulled to the temperature of the bones that it sees. The
+// weight of bone i is the temperature in equilibrium when bone i is at 1 and all other bones are at 0:
+//   (-Laplacian + H) w_i = H p_i,   H_jj = c / d_j^2,
+// where p_ij = 1 / k if bone i is one of the k bones of vertex j, at distance d_j, and 0 otherwise.
+//
+// In the paper, k equally near bones pull k times as hard. Here H does not depend on k, so that the rounding
+// that decides a tie cannot change the matrix. Both sides are multiplied by the vertex areas A, which makes
+// the matrix symmetric:
 //   (L + A H) w_i = A H p_i,   L the cotangent matrix.
-// Edge weights are kept positive, so that the matrix is an M-matrix (inverse without negative entries):
-// weights stay in [0, 1] and sum to 1 even where triangles are obtuse or degenerate. Cost: one sparse
-// Cholesky factorisation, one pair of triangular solves a bone; memory of one vector a bone in work, not of
-// all.
+//
+// Edge weights are kept positive, so that the matrix is an M-matrix, whose inverse has no negative entries.
+// So weights stay in [0, 1] and sum to 1 even where triangles are obtuse or degenerate.
+//
+// Cost: one sparse Cholesky factorisation, and one pair of triangular solves a bone. Memory holds the weights
+// of one bone at a time.
 
 namespace cscd::radial {
 namespace {
 
-// c of the paper, which takes 1 as well.
+// The c of the formula, which is 1 in the paper too.
 constexpr double kHeat = 1;
-// Bounds of an edge's weight, (cot + cot) / 2: angles of half a tenth of a degree are as good as none, and
-// the edge of a non-Delaunay pair still conducts a little.
+// Bounds of an edge's weight, (cot + cot) / 2. The upper bound treats angles below half a tenth of a degree
+// alike. The lower bound lets the edge of a non-Delaunay pair conduct a little.
 constexpr double kWeakestEdge = 1e-3, kStrongestEdge = 1e3;
-// Bound of A H, which has no unit: the weight at such a vertex is that of its own bones within 1e-3 even
-// against the strongest edges, and the matrix stays well conditioned.
+// Upper bound of A H, which has no unit. At a vertex with that value, the weights are those of its own bones
+// within 1e-3 even against the strongest edges, and the matrix stays well conditioned.
 constexpr double kStiffest = 1e6;
-// A bone further than this many diagonals of the component heats it evenly, however far it is.
+// A bone farther away than this many diagonals of the component's box is treated as being at this distance.
 constexpr double kFarthest = 100;
-// Floor of a vertex's area as part of the squared diagonal over the vertices of its component: any surface
-// that deserves the name has more.
+// Lower bound of a vertex's area, as a share of the squared diagonal of its component divided by the
+// component's number of vertices. On any ordinary surface vertices have more.
 constexpr double kLeastArea = 1e-6;
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-// Half the cotangent of the angle at `tip`; without meaning (infinite, NaN) for a degenerate triangle.
+// Returns half the cotangent of the angle at `tip`. For a degenerate triangle the result is infinite or NaN.
 double half_cotangent(const Vec3& tip, const Vec3& a, const Vec3& b) {
   const Vec3 u = a - tip, v = b - tip;
   return u.dot(v) / u.cross(v).norm() / 2;
@@ -60,7 +63,8 @@ std::vector<double> edge_weights(const TriangleMesh& mesh, std::span<const Vec3>
   return weight;
 }
 
-// A third of the area of the triangles at each vertex, with a floor; 0 for a vertex without triangles.
+// Returns a third of the area of the triangles at each vertex, [vertices], but at least the lower bound
+// above; 0 for a vertex without triangles.
 std::vector<double> vertex_areas(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                  std::span<const double> diagonal, std::span<const std::int32_t> component) {
   std::vector<double> area(mesh.vertex_count(), 0);
@@ -80,7 +84,7 @@ std::vector<double> vertex_areas(const TriangleMesh& mesh, std::span<const Vec3>
   return area;
 }
 
-// The diagonal of each component's box; 1 for a component that is a single point.
+// Returns the diagonal of each component's box, [components]; 1 for a component that is a single point.
 std::vector<double> component_diagonals(const TriangleMesh& mesh, std::span<const Vec3> positions) {
   std::vector<Eigen::AlignedBox3d> box(static_cast<std::size_t>(mesh.component_count()));
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -96,7 +100,7 @@ std::vector<double> component_diagonals(const TriangleMesh& mesh, std::span<cons
   return diagonal;
 }
 
-// A H, the pull of its bones on each vertex.
+// Returns the diagonal of A H, [vertices]: how strongly its bones pull on each vertex.
 Eigen::VectorXd pulls(const TriangleMesh& mesh, std::span<const Vec3> positions,
                       const VisibleBones& visible) {
   std::vector<std::int32_t> component(mesh.vertex_count(), -1);
@@ -116,7 +120,7 @@ Eigen::VectorXd pulls(const TriangleMesh& mesh, std::span<const Vec3> positions,
   return pull;
 }
 
-// The lower half of L + A H.
+// Returns the lower half of L + A H.
 Matrix system_matrix(const TriangleMesh& mesh, std::span<const Vec3> positions, const Eigen::VectorXd& pull) {
   const std::vector<double> weight = edge_weights(mesh, positions);
   Eigen::VectorXd diagonal = pull;
@@ -131,7 +135,7 @@ Matrix system_matrix(const TriangleMesh& mesh, std::span<const Vec3> positions, 
   }
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     const auto i = static_cast<int>(v);
-    // A vertex without triangles stands alone: 1 w = 0.
+    // A vertex without triangles has the equation 1 w = 0 of its own.
     entries.emplace_back(i, i, mesh.triangles_at(VertexId{i}).empty() ? 1 : diagonal[i]);
   }
   const auto n = static_cast<Eigen::Index>(mesh.vertex_count());
@@ -140,7 +144,7 @@ Matrix system_matrix(const TriangleMesh& mesh, std::span<const Vec3> positions, 
   return matrix;
 }
 
-// The vertices that a bone heats directly, with their shares.
+// A vertex that a bone heats directly, with the bone's share of it: p_ij above.
 struct Heated {
   BoneId bone;
   std::int32_t vertex;

@@ -31,7 +31,8 @@ std::map<BoneId, Eigen::VectorXd> weights_of(const Shape& shape, const VisibleBo
   return weights;
 }
 
-// Gauss elimination entry by entry; the matrices below are diagonally dominant and need no pivoting.
+// Solves by Gauss elimination, entry by entry. The matrices below are diagonally dominant and need no
+// pivoting.
 Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd side) {
   const Eigen::Index n = side.size();
   for (Eigen::Index k = 0; k < n; ++k)
@@ -47,7 +48,7 @@ Eigen::VectorXd solve(Eigen::MatrixXd matrix, Eigen::VectorXd side) {
   return side;
 }
 
-// Angles and areas the plain way, one dense solve.
+// Returns the weights of one bone from plainly computed angles and areas and one dense solve.
 Eigen::VectorXd dense_solution(const Shape& shape, const VisibleBones& visible, BoneId bone) {
   const auto n = static_cast<Eigen::Index>(shape.positions.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
@@ -80,7 +81,7 @@ Shape capsule() {
                            [](double x) { return std::sqrt(std::max(0.0, 0.6 * std::min(x, 3 - x))); });
 }
 
-// Entry by entry, as gcc 12 takes Eigen's AVX-512 reductions for uninitialised.
+// Compares entry by entry, because gcc 12 takes Eigen's AVX-512 reductions for uninitialised.
 double largest_difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double most = 0;
   for (Eigen::Index i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
@@ -158,7 +159,7 @@ TEST(HeatWeights, OneBoneHeatsEverythingFully) {
 TEST(HeatWeights, HiddenVerticesAreHeatedByTheirNeighbours) {
   const Shape shape = test::capped_tube(8, 40, 0.5, 8);
   VisibleBones visible = visible_in(shape, {{{0, 0, 0}, {4, 0, 0}}, {{4, 0, 0}, {8, 0, 0}}});
-  // Take away what all vertices but the first and the last ring see.
+  // Remove the visible bones of all vertices but those of the first and the last ring.
   VisibleBones ends{{0}, {}, visible.distance};
   for (std::size_t v = 0; v < shape.positions.size(); ++v) {
     if (v < 8 || (v >= 320 && v < 328)) ends.bones.push_back(visible.of(v).front());

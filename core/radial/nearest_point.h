@@ -31,7 +31,7 @@ inline Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
   offer(nearest_on_segment(p, c, a));
 
   const Vec3 ab = b - a, ac = c - a, ap = p - a, normal = ab.cross(ac);
-  const double area = normal.squaredNorm();  // all four of these times twice the triangle's area
+  const double area = normal.squaredNorm();  // v and w are barycentric weights times this
   const double v = ap.cross(ac).dot(normal), w = ab.cross(ap).dot(normal);
   if (v > 0 && w > 0 && v + w < area) offer(a + v / area * ab + w / area * ac);
   return nearest;

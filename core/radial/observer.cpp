@@ -10,7 +10,8 @@ Vec3 centre(const Bone& bone) {
   return bone.head / 2 + bone.tail / 2;
 }
 
-// Positive triangles of one cluster while every vertex moves from the reference pose to `moved(position)`.
+// Counts the positive triangles of one cluster in an interval in which every vertex moves from its reference
+// position x to moved(x).
 template <class Moved>
 std::size_t count_positive(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            std::span<const TriangleId> triangles, const Observer& from, const Moved& moved) {

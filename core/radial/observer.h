@@ -12,6 +12,7 @@ namespace cscd::radial {
 // What the triangles of a cluster are viewed from: the centre of its bone, or the bone as a segment.
 enum class ObserverKind { bone_centre, bone_segment };
 
+// Returns the observer of one bone, from the bone's positions at the start and at the end of an interval.
 Observer observer(ObserverKind kind, const Bone& start, const Bone& end);
 
 // Chooses the kind of observer with more positive triangles in the reference pose, and the centre on a tie,

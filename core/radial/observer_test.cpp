@@ -101,8 +101,9 @@ TEST(RotationTrial, WithoutRotationItIsTheReferencePoseButForTies) {
   }
 }
 
-// A wide turn about the head carries the far end off its parallel bone, but not the centre from the centre:
-// the trial sees more than the reference pose does.
+// A wide turn about the head carries the far end of the cluster away from the bone, which moves without
+// turning. The centre of the bone moves with the cluster. So the trial can choose another kind than the
+// reference pose.
 TEST(RotationTrial, ItCanDecideAgainstTheReferencePose) {
   const test::Shape tube = test::uneven_tube(8, 10, 10, [](double) { return 0.6; });
   const Body body(tube, {{0.5, 0, 0}, {9.5, 0, 0}});

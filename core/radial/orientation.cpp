@@ -4,17 +4,19 @@
 #include <cmath>
 #include <limits>
 
-// Idea: towards a point q the orientation of a triangle is the sign of normal(t) . (p(t) - q(t)) for any one
-// corner p, a cubic in t whose Bernstein coefficients prove a sign when they exceed their forward error bound
-// (rule error-bound).
+// Towards a point q, the orientation of a triangle is the sign of normal(t) . (p(t) - q(t)) for any one
+// corner p. That is a cubic in t. Its Bernstein coefficients prove a sign if they exceed their forward error
+// bound (rule error-bound).
 //
-// Towards a segment the viewing position q(u) slides with the projection u of each point, clamped to [0, 1].
-// The dot product is linear in u, and u is monotone in the projection, which over a triangle is extreme at a
-// corner. So with [low, high] enclosing the clamped projections of all three corners over the interval, one
-// sign at both q(low) and q(high) holds at every viewing position in use (rule three-vertices). Two cubics, instead of the
-// paper's rational function of degree five at one arbitrary vertex.
+// Towards a segment, each point of the triangle is viewed from a position q(u) of its own, where u is the
+// projection of the point onto the segment, clamped to [0, 1]. The dot product is linear in u. The clamped u
+// is monotone in the projection, and over a triangle the projection is extreme at a corner. Let [low, high]
+// enclose the clamped projections of all three corners over the interval. If the signs at q(low) and at
+// q(high) are the same, that sign holds at every viewing position in use (rule three-vertices). This takes
+// two cubics, instead of the paper's rational function of degree five at one arbitrary vertex.
 //
-// A sign is a proof; `uncertain` is not. About 40 operations a triangle and point observer, vectorised.
+// A sign is a proof, `uncertain` proves nothing. One triangle and one point observer take about 40
+// operations, vectorised.
 namespace cscd::radial {
 namespace {
 
@@ -26,11 +28,14 @@ MovingVector between(const MovingPoint& from, const MovingPoint& to) {
   return {to.start - from.start, to.end - from.end};
 }
 
-// One cubic, or eight. A half sum is exact but for one rounding, and a control point of a half is up to three
-// of them deep: 3 u of the coefficients, and 4 also pays for the bound itself.
+// Returns the sign of one cubic, or the signs of eight.
+//
+// Error bound of a half: each half sum rounds once, and a control point of a half is up to three half sums
+// deep. That puts it off by at most 3 u times the coefficients. The factor 4 also pays for the roundings of
+// the bound.
 template <class Cubic>
 auto signs_of(Cubic f, SignTest test) {
-  if (test == SignTest::plain) f.error -= f.error;  // NaN, above and below nothing, where nothing is known
+  if (test == SignTest::plain) f.error -= f.error;  // NaN, thus no sign, where the error is infinite
   const auto whole = certain_sign(f);
   if (test != SignTest::halved) return whole;
   const auto error =
@@ -44,19 +49,19 @@ auto signs_of(Cubic f, SignTest test) {
   return select(whole != 0, whole, select(first == last, first, none));
 }
 
-// Towards the moving point q, itself known up to `slack` in each coordinate.
+// The class of a triangle towards the moving point q, each coordinate of which is known up to `slack`.
 Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, double slack, SignTest sign) {
   return from_sign(signs_of(triple_product(between(corner[0], corner[1]), between(corner[0], corner[2]),
                                            between(q, corner[0]), slack),
                             sign));
 }
 
-// What a triangle needs to know of a moving segment, whichever triangle it is.
+// A segment as an observer, with the numbers that are the same for all triangles.
 struct MovingSegment {
   MovingPoint head, tail;
   MovingVector way;          // from head to tail
-  double shortest, longest;  // bounds of its squared length
-  double slack;              // a viewing position is rounded in two operations on each coordinate
+  double shortest, longest;  // bounds of the squared length
+  double slack;              // error of a viewing position, which rounds in two operations on each coordinate
 
   explicit MovingSegment(const Observer& observer)
       : head(observer.head), tail(observer.tail), way(between(head, tail)) {
@@ -67,21 +72,23 @@ struct MovingSegment {
     slack = 4 * kUnitRoundoff *
             std::max({largest(head.start), largest(head.end), largest(tail.start), largest(tail.end)});
   }
-  // Outside the range of doubles nothing is known of projections; the triple products are as strict.
+  // False if the squared length may leave the range of doubles, so that nothing is known of projections.
+  // Triple products have limits as strict.
   bool projects() const { return shortest > 0 && longest <= kHugeProduct; }
   MovingPoint at(double u) const {
     return {(1 - u) * head.start + u * tail.start, (1 - u) * head.end + u * tail.end};
   }
 };
 
-// A dot product of differences is off by at most 6 u times three products; 32 also covers the division.
+// A dot product of differences is off by at most 6 u times three products. The factor 32 also covers the
+// division.
 constexpr double kProjectionError = 32 * kUnitRoundoff;
 
 struct Range {
   double low, high;
 };
 
-// Encloses the clamped projection parameters of corners on the moving segment.
+// Returns a range that encloses the clamped projection parameters of the corners on the moving segment.
 Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& segment) {
   if (!segment.projects()) return {0, 1};
   const auto& [head, tail, d, shortest, longest, unused] = segment;
@@ -101,7 +108,7 @@ Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& s
   return known ? Range{std::clamp(range.low, 0.0, 1.0), std::clamp(range.high, 0.0, 1.0)} : Range{0, 1};
 }
 
-// As many of the corners as the test looks at.
+// Returns the corners that the test takes into account.
 template <class Corner>
 std::span<const Corner> looked_at(const Corner (&corner)[3], SegmentTest test) {
   return std::span<const Corner>(corner).first(test == SegmentTest::all_corners ? 3 : 1);
@@ -116,7 +123,7 @@ Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment&
   return last == first ? first : Orientation::uncertain;
 }
 
-// The same for eight triangles, operation for operation.
+// The rest repeats the functions above for eight triangles side by side, operation for operation.
 
 VectorLanes in_all_lanes(const Vec3& start, const Vec3& end) {
   VectorLanes out;
@@ -155,7 +162,7 @@ RangeLanes viewing_range(std::span<const VectorLanes> corners, const MovingSegme
   return {select(known, clamped(low), zero), select(known, clamped(high), one)};
 }
 
-// Where eight triangles are seen from.
+// Returns the viewing positions of eight triangles.
 VectorLanes viewing_positions(const MovingSegment& segment, Lane8 u) {
   VectorLanes out;
   for (int i = 0; i < 3; ++i) {
@@ -210,7 +217,8 @@ void OrientationTable::update(const Motion& motion) {
   }
 }
 
-// `block_signs`: of a block's number, the signs of its eight triangles towards the observer.
+// Calls `use` with a function that takes the number of a block and returns the signs of its eight triangles
+// towards the observer.
 template <class Use>
 void OrientationTable::with_signs(const Observer& observer, Use use) const {
   if (observer.is_segment) {

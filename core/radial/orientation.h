@@ -11,13 +11,13 @@
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
 
-// Orientation of moving triangles towards a moving observer (Wong et al. 2013; section 3.1 of the paper).
-//
-// positive: the normal makes a positive dot product with the ray through every point of the triangle at every
-// t in [0, 1]; negative likewise; uncertain: anything that is not proven. Bits, so that a set of classes is a
-// mask.
+// Orientation of moving triangles towards a moving observer (Wong et al. 2013; section 3.1 of the 2014
+// paper).
 namespace cscd::radial {
 
+// A triangle is *positive* if its normal makes a positive dot product with the ray from the observer through
+// every point of the triangle at every t in [0, 1]. It is *negative* if all these products are negative. It
+// is *uncertain* if neither is proven. The values are bits, so that a set of classes is a mask.
 enum class Orientation : std::uint8_t { positive = 1, negative = 2, uncertain = 4 };
 
 // An observer is a point, or a segment along which the viewing position slides. Its ends move in straight
@@ -53,7 +53,8 @@ class OrientationTable {
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
                    SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
 
-  // The vertices of `motion` must stay in place until the last classification of the interval.
+  // Begins an interval. The positions of `motion` must stay in place until the last classification of the
+  // interval.
   void update(const Motion& motion);
 
   // Classifies all triangles of one group, in the group's order.

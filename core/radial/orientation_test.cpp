@@ -29,7 +29,7 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-// Where everything happens: p becomes scale p + offset, rounded.
+// Unit and origin of a test: p becomes scale p + offset, rounded.
 struct Place {
   double scale;
   Vec3 offset;
@@ -42,7 +42,7 @@ const Place kPlaces[] = {
     {1e-80, Vec3::Zero()}, {1e80, Vec3::Zero()},  {1e-9, {1, 1, 1}},
 };
 
-// An observer a few ulps off the plane of a triangle, at both ends.
+// Returns an observer that is a few ulps off the plane of a triangle at both ends.
 MovingPoint near_plane(const Corners& corner, Dice& dice) {
   const auto pick = [&](Vec3 a, Vec3 b, Vec3 c) -> Vec3 {
     const double v = dice(-2, 3), w = dice(-2, 3);
@@ -99,7 +99,7 @@ TEST(PointObserver, CoefficientsOfOneSignWellAboveTheBoundAreCertain) {
   EXPECT_GT(certain, 1000);
 }
 
-// Mutation: in signs_of, the last half without its first control point.
+// Mutation: in signs_of, the last half lacks its first control point.
 TEST(PointObserver, HalvesProveMoreAndNothingWrong) {
   Dice dice(13);
   int by_halves = 0;
@@ -120,7 +120,7 @@ TEST(PointObserver, HalvesProveMoreAndNothingWrong) {
   EXPECT_GT(by_halves, 100);
 }
 
-// Mutation: kTripleProductError set to zero.
+// Rule error-bound. Mutation: kTripleProductError is zero.
 TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
   Dice dice(3);
   int wrong_without_bound = 0, certain = 0;
@@ -148,7 +148,7 @@ TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
   EXPECT_LT(certain, 6000);
 }
 
-// Mutation: coefficients that are zero or positive count as positive.
+// Rule error-bound. Mutation: coefficients that are zero count as positive.
 TEST(Orientation, RuleErrorBoundTangentTrianglesAreUncertainNearAndFar) {
   for (const double offset : {0.0, 1e3, 1e9, 1e15}) {
     const Vec3 o(offset, -offset, offset);
@@ -205,7 +205,8 @@ TEST(SegmentObserver, ASignHoldsAtEveryPointAndInstant) {
   for (int i = 0; i < 3000; ++i) {
     const Place& place = kPlaces[i % 6];
     const double speed = i % 2 == 0 ? 0.1 : 0.5;
-    // Long, short and nearly vanishing segments, moving and turning; triangles beside and beyond their ends.
+    // Segments are long, short or nearly vanishing, and move and turn. Triangles lie beside them and beyond
+    // their ends.
     const double length = i % 5 == 0 ? 0.01 : i % 5 == 1 ? 4 : 1;
     const MovingPoint head = dice.moving(0.5, speed);
     const MovingPoint tail = {head.start + dice.in_box(length), head.end + dice.in_box(length)};
@@ -228,7 +229,7 @@ TEST(SegmentObserver, ASignHoldsAtEveryPointAndInstant) {
 }
 
 TEST(SegmentObserver, IsNoStricterThanItsTwoEndsWhereTheseSeeTheTriangle) {
-  // One sign towards both ends of the segment is one sign from everywhere on it.
+  // A triangle that has one sign towards both ends of a segment has that sign from everywhere on the segment.
   Dice dice(7);
   int both = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -243,8 +244,9 @@ TEST(SegmentObserver, IsNoStricterThanItsTwoEndsWhereTheseSeeTheTriangle) {
   EXPECT_GT(both, 300);
 }
 
-// The squared length of such a bone is infinite, which says nothing about where the triangle projects to: a
-// hundred-thousandth along it, where the observer is in its plane.
+// The squared length of this bone is infinite, so nothing is known about where the triangle projects to. In
+// fact it projects to a hundred-thousandth of the bone's length, where the viewing position lies in the
+// triangle's plane.
 TEST(SegmentObserver, OfALengthWhoseSquareOverflowsProvesNothingWrong) {
   const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const Observer bone = Observer::segment(still(0, 0, 0), still(1e155, 0, 0));
@@ -265,8 +267,9 @@ TEST(SegmentObserver, OfLengthZeroIsThePoint) {
   }
 }
 
-// The literature's example: seen from the points nearest to its three corners, the dot product is +30, -15
-// and +7.5. Mutation: viewing_range looks at corner[0] alone - positive or negative, whichever comes first.
+// Rule three-vertices, with the example of the literature: seen from the points nearest to its three corners,
+// the dot product is +30, -15 and +7.5. Mutation: viewing_range looks at corner[0] alone, so the triangle is
+// positive or negative, depending on which corner comes first.
 TEST(SegmentObserver, RuleThreeVerticesAllThreeVerticesDecide) {
   const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const MovingPoint vertices[3] = {still(0, 1, 1), still(5, 0.25, 4), still(10, -0.5, 1)};
@@ -300,7 +303,7 @@ TEST(SegmentObserver, RuleThreeVerticesOneVertexWouldOftenBeWrong) {
   EXPECT_GT(mixed, 50);
 }
 
-// Triangles that share no vertex, in groups of 1 to 20 and of sizes round multiples of eight.
+// Triangles that share no vertex, in groups of 1 to 20 triangles: below, at and above multiples of eight.
 struct Soup {
   std::vector<Vec3> start, end;
   std::vector<Triangle> triangles;
@@ -326,7 +329,8 @@ struct Soup {
   }
 };
 
-// Expects the table and its scalar twin to say the same about every triangle. Returns how many have a sign.
+// Expects the table and its scalar twin to say the same about every triangle. Returns how many triangles have
+// a sign.
 int expect_twins(const Soup& soup, const std::function<Observer(std::size_t group)>& observer_of,
                  SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain) {
   const TriangleMesh mesh(soup.triangles, soup.start.size());
@@ -371,13 +375,14 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
   }
 }
 
-// Merging decides with either twin (rule fresh-detector), so they have to agree on triangles at the very bound, too.
+// Merging decides with either twin, so both have to agree on triangles at the very bound, too (rule
+// fresh-detector).
 TEST(OrientationTable, EqualsItsScalarTwinWhereTheErrorBoundDecides) {
   Dice dice(11);
   for (const double height : {3e-14, 6e-14, 1e-13, 3e-13}) {
     Soup soup;
     for (int i = 0; i < 8000; ++i) {
-      // Planes through a common point, the observer, missed by about the bound.
+      // The planes of the triangles miss a common point, the observer, by about the error bound.
       const auto tilted = [&](const Vec3& u, const Vec3& v, const Vec3& n) -> Vec3 {
         return dice(-2, 2) * u + dice(-2, 2) * v + dice(0, height) * n;
       };
@@ -392,7 +397,7 @@ TEST(OrientationTable, EqualsItsScalarTwinWhereTheErrorBoundDecides) {
     });
     EXPECT_GT(certain, 50);
     EXPECT_LT(certain, 2000);
-    // A segment beside the planes' common point is seen as one point: its nearer end.
+    // A segment beside the common point of the planes acts as one point, its nearer end.
     const int along = expect_twins(soup, [](std::size_t) {
       return Observer::segment({Vec3::Zero(), Vec3::Zero()}, {Vec3(1e-15, 0, 0), Vec3(1e-15, 0, 0)});
     });

@@ -5,8 +5,8 @@ namespace {
 
 constexpr std::int32_t kUnassigned = -1;
 
-// Grows all clusters at once over shared edges; a triangle joins the first cluster that reaches it and may
-// have it.
+// Grows all clusters at once over shared edges. A triangle without a cluster joins the first cluster that
+// reaches it and that `may_join` allows.
 template <class MayJoin>
 void grow(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of, const MayJoin& may_join) {
   std::vector<TriangleId> front;
@@ -43,7 +43,8 @@ std::vector<BoneId> refine_by_orientation(const TriangleMesh& mesh, std::span<co
   grow(mesh, cluster_of, positive);
   grow(mesh, cluster_of, [](TriangleId, std::int32_t) { return true; });
 
-  // A piece of the surface on which nothing is positive keeps the clusters that it had.
+  // Triangles that no cluster has reached return to their given clusters. They form pieces of the surface on
+  // which no triangle is positive.
   std::vector<BoneId> bone_of(cluster_of.size());
   for (std::size_t t = 0; t < bone_of.size(); ++t) {
     const std::int32_t c = cluster_of[t] == kUnassigned ? clusters.of_triangle[t] : cluster_of[t];

@@ -8,10 +8,11 @@
 
 namespace cscd::radial {
 
-// Refinement by orientation (section 4.1 of the 2014 paper): triangles that are not positive towards their
-// cluster's observer in the reference pose are given up, clusters grow again over edges among triangles that
-// are positive towards them, and what is then left goes to whichever cluster reaches it first. Returns the
-// bone of each triangle. Breadth-first from all clusters at once, in index order; O(triangles).
+// Refines clusters by orientation (section 4.1 of the 2014 paper) and returns the bone of each triangle,
+// [triangles]. Triangles that are not positive towards their cluster's observer in the reference pose leave
+// their cluster. Clusters then grow again over edges, among triangles that are positive towards them. Each
+// triangle that is left after that goes to the cluster that reaches it first. Clusters grow breadth first,
+// all at once, from their triangles in index order. Takes time O(triangles).
 std::vector<BoneId> refine_by_orientation(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                           const Rig& rig, const AtomicClusters& clusters,
                                           std::span<const ObserverKind> kinds);

@@ -78,8 +78,8 @@ TEST(Refinement, MakesMoreTrianglesPositiveNeverFewer) {
   EXPECT_TRUE(more);
 }
 
-// Nothing that is still not positive could be so next to a triangle that is and stays: the growth is
-// complete.
+// The growth is complete: no triangle that is not positive towards its own cluster would be positive towards
+// the cluster of a neighbour that is.
 TEST(Refinement, GrowsAsFarAsOrientationAllows) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const Tube tube(seed);
@@ -97,7 +97,7 @@ TEST(Refinement, GrowsAsFarAsOrientationAllows) {
 }
 
 TEST(Refinement, APieceOnWhichNothingIsPositiveKeepsItsClusters) {
-  // Facing inward, nothing is positive; the other ball is not reachable over edges.
+  // No triangle of a ball that faces inward is positive, and the other ball cannot be reached over edges.
   test::Shape inward = test::icosphere(1);
   for (Triangle& t : inward.triangles) std::swap(t[1], t[2]);
   const test::Shape both = test::together(inward, test::moved(test::icosphere(1), {5, 0, 0}));
@@ -108,8 +108,8 @@ TEST(Refinement, APieceOnWhichNothingIsPositiveKeepsItsClusters) {
     bone_of[t] = BoneId{t < bone_of.size() / 4 ? 1 : t < bone_of.size() / 2 ? 0 : 1};
   const AtomicClusters clusters = make_atomic_clusters(mesh, bone_of);
   const std::vector<ObserverKind> kinds(clusters.clusters.size(), ObserverKind::bone_centre);
-  // Away from the ball's inside, bone 1 sees one half of the inward ball from its front: look at bone 0's
-  // triangles.
+  // Bone 1 lies outside of the inward ball and sees half of it from the front, so triangles of that ball may
+  // go to bone 1. Only the other ball is expected to keep its bone here.
   const std::vector<BoneId> refined = refine_by_orientation(mesh, both.positions, rig, clusters, kinds);
   for (std::size_t t = bone_of.size() / 2; t < bone_of.size(); ++t) EXPECT_EQ(refined[t], BoneId{1});
   for (const BoneId bone : refined) EXPECT_TRUE(bone == BoneId{0} || bone == BoneId{1});

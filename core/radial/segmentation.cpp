@@ -12,23 +12,24 @@
 #include "core/radial/surface_box.h"
 #include "core/radial/visible_bones.h"
 
-// Each triangle goes to the bone that heats it most.
-// Wong, Lin, Wang, Hung, Huang, "Dynamic Radial View Based Culling for Continuous Self-Collision Detection",
-// I3D 2014, section 4.1, which takes it from Wong et al., "Radial View Based Culling", SIGGRAPH 2013. Neither
-// prints the diffusion; this is the bone heat of Baran and Popovic 2007 that they build upon (see
-// heat_weights.cpp). The 2014 paper differs from the 2013 one in its options alone: smoothing first, and a
-// coarser grid. Cost: see distance_field.cpp, visible_bones.cpp and heat_weights.cpp; memory does not grow
-// with vertices x bones.
+// Each triangle goes to the bone that heats it most (Wong, Lin, Wang, Hung, Huang, "Dynamic Radial View Based
+// Culling for Continuous Self-Collision Detection", I3D 2014, section 4.1, which takes this from Wong et al.,
+// "Radial View Based Culling", SIGGRAPH 2013). Neither paper prints the diffusion. This is the bone heat of
+// Baran and Popovic 2007 that both build upon (heat_weights.cpp). The method of 2014 differs from the method
+// of 2013 in its options alone: it smooths first and takes a coarser grid.
+//
+// The cost is that of distance_field.cpp, visible_bones.cpp and heat_weights.cpp. Memory does not grow with
+// vertices x bones.
 
 namespace cscd::radial {
 namespace {
 
-// Sums of three weights that differ by less are equal: some hundred times the rounding of the solver, so that
-// a symmetric mesh gets the same answer from every compiler.
+// Sums of three weights that differ by less than this are equal. The number is some hundred times the
+// rounding of the solver, so that a symmetric mesh gets the same answer from every compiler.
 constexpr double kTie = 1e-9;
 
 // The surface and the bones, shifted and scaled so that the surface's box has its middle at the origin and a
-// longest side of 1. No length below is then out of range.
+// longest side of 1. This keeps all lengths in the range in which distances and heat can be computed.
 struct Scene {
   std::vector<Vec3> positions;
   std::vector<Bone> bones;
@@ -93,7 +94,7 @@ std::vector<BoneId> nearest_bone_by_heat(const TriangleMesh& mesh, std::span<con
   if (!diffuse_heat(mesh, scene.positions, visible, keep_the_most))
     bone_of.assign(mesh.triangle_count(), none);
 
-  // Without usable heat, distance decides.
+  // A triangle without usable heat goes to the nearest bone.
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     if (bone_of[t] == none) bone_of[t] = nearest_by_distance(mesh.triangles()[t], scene);
   return bone_of;

@@ -10,16 +10,17 @@
 
 namespace cscd::radial {
 
-// How much care the diffusion takes: the 2013 method works at full resolution, the 2014 paper smooths the
-// mesh and coarsens the distance field (section 4.1).
+// The resolution at which heat is diffused. The 2013 method works at full resolution. The 2014 paper smooths
+// the mesh and coarsens the distance field (section 4.1).
 struct HeatOptions {
   int grid_resolution;   // cells along the longest side of the mesh's box
-  int smoothing_passes;  // umbrella-operator passes over the mesh beforehand; 0 for none
+  int smoothing_passes;  // passes of the umbrella operator over the mesh (smoothing.h); 0 for none
 };
 
-// Bone-heat weights: one row a vertex, one column a bone would be dense; only the bone with the largest
-// weight is needed, so this returns, per triangle, the bone whose weight summed over the three corners is
-// largest (ties: the smaller index).
+// Returns for each triangle the bone that heats it most, [triangles]: the bone whose heat weight
+// (heat_weights.h), summed over the three corners, is largest. On a tie, returns the bone with the smaller
+// index. The dense table of all weights, [vertices][bones], is never stored. Throws InputError if there is no
+// bone, or if the positions are not finite or are too far apart for double precision.
 std::vector<BoneId> nearest_bone_by_heat(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                          const Rig& rig, const HeatOptions& options);
 

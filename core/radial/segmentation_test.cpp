@@ -78,7 +78,7 @@ TEST(NearestBoneByHeat, TubeFallsIntoOneBandABone) {
 }
 
 TEST(NearestBoneByHeat, HeatDoesNotJumpAcrossAGap) {
-  // A ring: the bone in the hole is nearest to the inner side, yet outside of the body.
+  // The bone in the hole of a torus is nearest to the inner side, yet lies outside of the body.
   const Shape shape = test::torus(40, 16, 2, 0.5);
   std::vector<Bone> bones{{{1.2, -0.2, 0}, {1.2, 0.2, 0}}};
   const auto joint = [](int k) {

@@ -27,7 +27,7 @@ TEST(Smoothing, FlattensASpikeAndMovesAllAtOnce) {
   const TriangleMesh mesh = shape.mesh();
   const std::vector<Vec3> result = smoothed(mesh, shape.positions, 1);
   EXPECT_LT(result[0].norm(), 1.6);
-  // Relabelling the vertices relabels the result: no vertex sees a neighbour that has already moved.
+  // Relabelling the vertices relabels the result, because no vertex sees a neighbour that has already moved.
   const auto n = shape.positions.size();
   Shape reversed = shape;
   for (std::size_t v = 0; v < n; ++v) reversed.positions[n - 1 - v] = shape.positions[v];

@@ -8,25 +8,31 @@
 
 #include "core/radial/nearest_point.h"
 
-// Which bones heat a vertex directly: those to which the shortest straight line stays inside the body.
-// Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section 4 (bone
-// heat). There a vertex whose nearest bone is hidden gets no heat of its own; here the nearest one in sight
-// counts, so that fewer vertices depend on diffusion alone. Cost: vertices x bones distances; a line is
-// traced for the nearest bone first and further ones only while hidden.
+// A bone heats a vertex directly if the shortest straight line between them stays inside the body (bone heat;
+// Baran and Popovic, "Automatic Rigging and Animation of 3D Characters", SIGGRAPH 2007, section 4). In that
+// paper, a vertex whose nearest bone is hidden gets no heat of its own. Here the nearest bone in sight heats
+// it, so that fewer vertices depend on diffusion alone.
+//
+// Cost: vertices x bones distances. A line is traced to the nearest bone first, and to farther bones only
+// while all nearer bones are hidden.
 
 namespace cscd::radial {
 namespace {
 
-// Bones whose distances agree to this factor are equally near, as in the authors' program (Pinocchio):
-// vertices nearest to a joint belong to both of its bones although rounding tells their distances apart.
+// Bones whose distances agree to this factor are equally near, as in the authors' program (Pinocchio). So a
+// vertex that is nearest to a joint belongs to both bones of the joint, although rounding makes their
+// distances differ.
 constexpr double kEquallyNear = 1.0001;
 
 using Candidate = std::pair<double, std::int32_t>;  // distance, bone
 
-// Appends the bones of one vertex and returns their distance.
+// Finds the nearest bones of vertices.
 class Finder {
  public:
   Finder(std::span<const Bone> bones, const DistanceField& field) : bones_(bones), field_(field) {}
+
+  // Appends the nearest bones of a vertex to `out`, ascending, and returns their distance. With `seen_only`,
+  // only bones count that a line inside the body reaches.
 
   double append(const Vec3& vertex, bool seen_only, std::vector<BoneId>& out) {
     heap_.clear();

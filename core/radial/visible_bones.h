@@ -16,9 +16,9 @@ namespace cscd::radial {
 // The bones that heat each vertex, and their common distance, in compressed rows: the bones of vertex v are
 // bones[offset[v] .. offset[v + 1]), ascending. A vertex that sees no bone has none.
 struct VisibleBones {
-  std::vector<std::int32_t> offset;
+  std::vector<std::int32_t> offset;  // [vertices + 1]
   std::vector<BoneId> bones;
-  std::vector<double> distance;  // one a vertex; meaningless where the row is empty
+  std::vector<double> distance;  // [vertices]; without meaning for a vertex with an empty row
 
   std::span<const BoneId> of(std::size_t vertex) const {
     const auto first = static_cast<std::size_t>(offset[vertex]);

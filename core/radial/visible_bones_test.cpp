@@ -24,7 +24,7 @@ std::vector<BoneId> row(const VisibleBones& visible, std::size_t vertex) {
 }
 
 TEST(VisibleBones, AnotherBranchIsHiddenHoweverNear) {
-  // Vertices inside the hole of the torus are nearer to the post in the hole than to the bones in the tube.
+  // Vertices at the hole of the torus are nearer to the post in the hole than to the bones in the tube.
   const Shape shape = test::torus(40, 16, 2, 0.5);
   std::vector<Bone> bones{{{0.9, 0, -1}, {0.9, 0, 1}}};
   for (int i = 0; i < 20; ++i) {
@@ -49,7 +49,7 @@ TEST(VisibleBones, ComponentThatSeesNoneTakesTheNearest) {
   const Shape shape = test::together(test::octahedron(), test::moved(test::octahedron(), {5, 0, 0}));
   const VisibleBones visible = find(shape, {{{9, 9, 9}, {9, 9, 8}}, {{-0.2, 0, 0}, {0.2, 0, 0}}});
   for (std::size_t v = 0; v < 6; ++v) EXPECT_EQ(row(visible, v), std::vector<BoneId>{BoneId{1}});
-  // The second octahedron holds no bone; its tip (6, 0, 0) is nearer to the inner one all the same.
+  // The second octahedron holds no bone. Its vertices take the nearest bone, which lies in the first.
   for (std::size_t v = 6; v < 12; ++v) EXPECT_EQ(row(visible, v), std::vector<BoneId>{BoneId{1}});
   EXPECT_NEAR(visible.distance[6], 5.8, 1e-12);
 }

@@ -67,7 +67,7 @@ FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positio
   return best;
 }
 
-// Numbers clusters from 0 and returns how many there are.
+// Numbers the clusters from 0 in the order of their first triangles, and returns how many there are.
 std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
   std::map<std::int32_t, std::int32_t> number;
   for (std::int32_t& c : cluster_of)
@@ -109,6 +109,8 @@ void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Tak
 struct Rings {
   std::vector<std::int32_t> seed, distance;
 };
+// Grows rings of triangles from several sets of seeds at once, breadth first. A ring has the triangles that
+// share a vertex with the ring before.
 Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds) {
   Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
               std::vector<std::int32_t>(mesh.triangle_count(), kNone)};

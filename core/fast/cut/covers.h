@@ -13,7 +13,7 @@ namespace cscd::fast {
 inline constexpr std::int32_t kNone = -1;
 
 // A cover divides triangles of the surface into disjoint clusters and gives every cluster one observer. A
-// cover may leave triangles out. No cluster spans two connected components of the mesh (rule "component" of
+// cover may leave triangles out. No cluster spans two connected components of the mesh (rule component,
 // core/soundness.md).
 struct Cover {
   std::vector<std::int32_t> cluster_of;   // [triangles]; kNone for a triangle that the cover leaves out
@@ -25,22 +25,23 @@ struct Cover {
 inline constexpr std::size_t kCovers = 3;
 using Covers = std::array<Cover, kCovers>;
 
-// Makes a cover from the cluster of each triangle (kNone for none): numbers the clusters from 0 in the order
-// of their first triangles, and places an observer for each where it sees as much of its cluster as possible
-// from behind in the reference pose.
+// Makes a cover from the cluster of each triangle, `cluster_of` [triangles], with kNone for a triangle
+// without a cluster. Numbers the clusters from 0 in the order of their first triangles. Places the observer
+// of each cluster where it sees as much of the cluster as possible from behind in the reference pose.
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
                  std::vector<std::int32_t> cluster_of);
 
 // Merges each cluster that is too thin for its middle to lie well inside it with the neighbour along the
-// longest seam, the thinnest cluster first. Only links of a chain are merged, because a cluster with more
-// than two neighbours is no limb.
+// longest seam, the thinnest cluster first. Only clusters with at most two neighbours are merged, because a
+// cluster with more neighbours is no link of a limb.
 void merge_thin_clusters(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of);
 
 // Returns for each triangle the nearest seam between two clusters, as a label, or kNone where every seam is
 // farther away than a few rings of triangles.
 std::vector<std::int32_t> nearest_seams(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of);
 
-// Returns for each triangle whether it and all triangles that share a vertex with it belong to one cluster.
+// Returns for each triangle whether it lies *inside* its cluster: whether the triangle and all triangles that
+// share a vertex with it belong to that cluster.
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of);
 
 }  // namespace cscd::fast

@@ -8,7 +8,7 @@
 namespace cscd::fast {
 namespace {
 
-// Gives all triangles of a patch the cluster that most of them have.
+// Gives all triangles of a patch the cluster that most of its triangles have.
 std::vector<std::int32_t> rounded_to_patches(const PatchTree& tree, std::vector<std::int32_t> cluster_of) {
   for (std::size_t p = 0; p < tree.patches.size(); ++p) {
     std::map<std::int32_t, int> times;
@@ -20,8 +20,8 @@ std::vector<std::int32_t> rounded_to_patches(const PatchTree& tree, std::vector<
   return cluster_of;
 }
 
-// Writes into the tree which cluster of a cover each patch belongs to, and which of its triangles lie inside
-// it.
+// Writes into the tree, for cover `number`, the cluster of each patch and the triangles of each patch that
+// lie inside that cluster.
 void enter_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree) {
   const std::vector<bool> is_inside = inside(mesh, cover.cluster_of);
   for (std::size_t p = 0; p < tree.patches.size(); ++p) {

@@ -20,7 +20,7 @@ TEST(Covers, WhatLiesAtASeamOfOneLiesInsideTheOther) {
   for (std::size_t t = 0; t < first.size(); ++t) EXPECT_TRUE(first[t] || second[t]);
 }
 
-// A slice of two rings between long ones is joined with one of them.
+// A cluster of two rings between two long clusters is merged with one of these.
 TEST(Covers, ThinClustersAreMerged) {
   const test::Body body(0.01, 0);
   std::vector<BoneId> bone_of;
@@ -33,7 +33,7 @@ TEST(Covers, ThinClustersAreMerged) {
   EXPECT_EQ(cut_surface(body.mesh, body.shape.positions, atomic.of_triangle).covers[0].observers.size(), 2u);
 }
 
-// Mutation: seeds spread over all triangles instead of over neighbours.
+// Rule component. Mutation: rings grow over all triangles instead of over neighbours.
 TEST(Covers, RuleComponentNoClusterSpansTwoComponents) {
   const test::Shape two = test::together(test::capped_tube(8, 30, 1, 10), test::icosphere(2, 12));
   const TriangleMesh mesh = two.mesh();
@@ -52,8 +52,8 @@ TEST(Covers, RuleComponentNoClusterSpansTwoComponents) {
   }
 }
 
-// A sphere so small beside its one spike that the point from which it is seen best is far away from it, in
-// its own measure. Mutation: draws of any weights.
+// A sphere is so small beside its one spike that the point which sees it best is far away in units of the
+// sphere. Mutation: draws with any weights are accepted.
 TEST(Covers, ObserversStayWithinReachOfTheirVertices) {
   test::Shape shape = test::icosphere(4, 1e-19);
   shape.positions[17] = {1, 0, 0};

@@ -14,8 +14,10 @@ class PatchCutter {
  public:
   using Patches = std::vector<std::vector<TriangleId>>;
 
+  // `centroid` is [triangles]. The mesh and the centroids must outlive the cutter.
   PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid, std::size_t most);
 
+  // Returns the patches of one cell (patches.h). Every triangle of the cell is in exactly one of them.
   Patches cut(std::span<const TriangleId> cell);
 
  private:

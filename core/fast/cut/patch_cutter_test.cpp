@@ -47,8 +47,8 @@ void expect_valid(const Surface& surface, const std::vector<TriangleId>& cell,
   EXPECT_EQ(met, std::multiset<TriangleId>(cell.begin(), cell.end()));
 }
 
-// Mutations: small ones are not emptied, or only where there is room at once; triangles move into a patch
-// that another leaves for their sake; without the limit on vertices.
+// Mutations: small patches are not emptied, or only where there is room at once; triangles move into a patch
+// that another triangle leaves for their sake; the number of vertices has no limit.
 TEST(PatchCutter, FillsPatches) {
   const Surface surface;
   const std::vector<TriangleId> all = surface.all();
@@ -61,7 +61,7 @@ TEST(PatchCutter, FillsPatches) {
 TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
   const Surface surface;
   const VertexId centre{0};
-  std::vector<TriangleId> fan;  // every second triangle at a vertex, and none of its edges
+  std::vector<TriangleId> fan;  // every second triangle at a vertex; no two share an edge
   std::set<VertexId> taken;
   for (const TriangleId t : surface.mesh.triangles_at(centre)) {
     const Triangle& c = surface.mesh.corners(t);
@@ -76,7 +76,8 @@ TEST(PatchCutter, KeepsTogetherWhatHangsByItsCorners) {
   EXPECT_EQ(patches.size(), 1u);
 }
 
-// Much is left over in cells that are full of holes. Mutation: room is counted without the one that comes.
+// In cells that are full of holes many triangles are left over. Mutation: room is counted without the
+// triangle that comes.
 TEST(PatchCutter, KeepsAllTrianglesWhereManyMove) {
   const Surface surface;
   std::mt19937 random(5);
@@ -97,14 +98,15 @@ test::Shape book(int pages) {
   return shape;
 }
 
-// Many triangles at one edge, each beside more than three. Mutation: so many are taken for the most.
+// Many triangles share one edge, so each has more than three neighbours. Mutation: three is taken for the
+// largest number of neighbours.
 TEST(PatchCutter, CutsWhatIsNoManifold) {
   const Surface surface(book(40));
   expect_valid(surface, surface.all(), surface.cut(surface.all()));
 }
 
-// Mutations: what is free beside an edge is counted whenever it is asked for; all patches beside an edge are
-// asked for room.
+// Mutations: the free triangles at an edge are counted whenever their number is needed; all patches beside an
+// edge are asked for room.
 TEST(PatchCutter, TakesLittleTimeWhereThousandsMeet) {
   const Surface surface(book(6000));
   const auto begin = std::chrono::steady_clock::now();

@@ -108,7 +108,7 @@ class TreeBuilder {
     return items;
   }
 
-  // Halves items at the median along the longest axis of the box of their centres.
+  // Halves the items at the median along the longest axis of the box of their centres, down to single items.
   using Leaf = std::function<void(const Item&, std::size_t node)>;
   void split(std::span<Item> items, std::size_t node, const Leaf& leaf) {
     if (items.size() == 1) return leaf(items[0], node);

@@ -33,7 +33,7 @@ static_assert(sizeof(Patch) == 2 * 64);
 
 // Says which triangles of another patch have each vertex of this patch.
 struct Common {
-  std::array<Mask16, kLanes16> at;
+  std::array<Mask16, kLanes16> at;  // [places of this patch]; triangles of the other patch at that vertex
 
   // Returns the triangles of the other patch that share a corner with one triangle of this patch.
   Mask16 beside(const Patch& patch, std::size_t lane) const {
@@ -116,15 +116,21 @@ struct PatchTree {
   }
 };
 
-// The clusters of the first two covers, as the surface is cut along their seams: [triangles] each.
+// The cluster of each triangle in the first two covers, [triangles] each. The surface is cut along the seams
+// of both.
 struct CuttingClusters {
   std::span<const std::int32_t> first, second;
 };
 
-// Cuts the surface into patches and builds the tree over them. No patch crosses a seam of the first clusters.
-// A patch crosses a seam of the second clusters only where that seam would cut fewer than `least_cell`
-// triangles out of a first cluster. The patches belong to no cluster yet, and no triangle is marked as inside
-// one: cut_surface.h enters both.
+// Cuts the surface into patches and builds the tree over them.
+//
+// The surface is first cut into cells, and each cell into patches. A *cell* is a set of triangles that the
+// certificates treat alike: the triangles of one first cluster and one second cluster that all lie inside the
+// second cluster, or all do not. A set of fewer than `least_cell` triangles is no cell of its own: all such
+// sets of a first cluster form one cell together. So no patch crosses a seam of the first clusters, and a
+// patch crosses a seam of the second clusters only where that seam would make too small a cell.
+//
+// The patches that are returned belong to no cluster, and `inside` is empty: cut_surface.h enters both.
 PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
                        const CuttingClusters& clusters, std::size_t least_cell);
 

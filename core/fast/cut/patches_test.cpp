@@ -33,7 +33,7 @@ TEST(Patches, EveryTriangleLiesInOneLane) {
   EXPECT_LT(cut.tree.patches.size(), cut.mesh.triangle_count() / 7) << "patches are filled";
 }
 
-// Mutation: `inside` looks at neighbours over edges only.
+// Mutation: inside() considers neighbours over edges only.
 TEST(Patches, InsideMeansAllAroundEveryCorner) {
   const Cut cut;
   std::size_t not_inside = 0;
@@ -81,8 +81,9 @@ TEST(Patches, AllTrianglesWithACommonVertexAreFound) {
     }
 }
 
-// What lies inside no cluster of the first two covers lies inside one of the third, which spans no two
-// components. Mutation: no rings about the patches that are missed.
+// Triangles that lie inside no cluster of the first two covers lie inside a cluster of the third. No cluster
+// of the third spans two components. Mutation: the third cover has no rings round the patches that the first
+// two miss.
 TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
   const test::Shape two = test::together(test::icosphere(4, 1), test::icosphere(4, 3));
   const TriangleMesh mesh = two.mesh();
@@ -108,7 +109,7 @@ TEST(Patches, TheLastCoverHoldsWhereSeamsMeet) {
   for (const auto& [cluster, in] : components) EXPECT_EQ(in.size(), 1u);
 }
 
-// Mutation: cells are as small whatever is asked for.
+// Mutation: `least_cell` is ignored.
 TEST(Patches, AreFewerWhereSeamsCutLargeCellsAlone) {
   const Cut cut;
   const CutSurface coarse =

@@ -26,6 +26,8 @@ constexpr int kStraightened = 3;      // the number of times that seams are stra
 using Triangles = std::vector<TriangleId>;
 using Pair = std::pair<std::int32_t, std::int32_t>;
 
+// Pieces of the surface that are halved, merged and straightened until they are the clusters. At first each
+// connected component is a piece.
 class Pieces {
  public:
   Pieces(const TriangleMesh& mesh, std::span<const Vec3> positions)
@@ -108,8 +110,8 @@ class Pieces {
     }
   }
 
-  // Lets the pieces grow anew from their middles, so that seams run halfway between them: round a limb, not
-  // up and down.
+  // Lets the pieces grow again from their middles. Seams then run halfway between the middles: straight round
+  // a limb, not up and down.
   void straighten() {
     Triangles seam, middle;
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });

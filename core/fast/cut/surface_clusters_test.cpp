@@ -23,7 +23,7 @@ TEST(SurfaceClusters, WhatOnePointSeesIsNotCut) {
   EXPECT_EQ(count(surface_clusters(egg.mesh(), egg.positions)), 1u);
 }
 
-// Mutation: merging regardless of what is seen.
+// Mutation: pieces are merged whether or not they are seen well.
 TEST(SurfaceClusters, ALongTubeIsCutIntoRings) {
   const test::Shape tube = test::capped_tube(16, 200, 1, 60);
   const TriangleMesh mesh = tube.mesh();
@@ -36,20 +36,21 @@ TEST(SurfaceClusters, ALongTubeIsCutIntoRings) {
     auto& [low, high] = extent.try_emplace(cluster_of[t], x, x).first->second;
     low = std::min(low, x), high = std::max(high, x);
   }
-  // Rings lie one behind the other, whatever side of the tube one looks at.
+  // Each cluster goes all round the tube, so the clusters lie one behind the other along it.
   std::vector<std::pair<double, double>> rings;
   for (const auto& [cluster, range] : extent) rings.push_back(range);
   std::sort(rings.begin(), rings.end());
   for (std::size_t i = 1; i < rings.size(); ++i) EXPECT_GT(rings[i].first, rings[i - 1].second - 2);
 }
 
-// A fat ring is no ball: nothing sees all of it from behind.
+// No point sees all of a fat ring from behind.
 TEST(SurfaceClusters, ATorusIsCut) {
   const test::Shape ring = test::torus(60, 24, 3, 1);
   EXPECT_GE(count(surface_clusters(ring.mesh(), ring.positions)), 3u);
 }
 
-// Mutation: the first pieces are not the components. Far apart, one inside the other, and both small.
+// Rule component. The two components are far apart, or one is inside the other, or both are small. Mutation:
+// the first pieces are not the components.
 TEST(SurfaceClusters, RuleComponentNoClusterSpansTwoComponents) {
   for (const test::Shape& both : {test::together(test::capped_tube(12, 90, 1, 30), test::icosphere(3, 2)),
                                   test::together(test::icosphere(3, 3), test::icosphere(3, 1)),

@@ -1,6 +1,6 @@
 #pragma once
 
-// For tests only: a bent, noisy tube with bones along it, and one interval of it.
+// For tests only: a bent, noisy tube with bones along it, and the positions of one interval.
 
 #include <cmath>
 #include <random>
@@ -19,7 +19,8 @@ struct Body {
   radial::AtomicClusters atomic;
   std::vector<Vec3> start, end;
 
-  // Shifted by `origin` and scaled; `noise` and `bend` are lengths of a tube of radius 0.8 and length 15.
+  // The tube has radius 0.8 and length 15, and `noise` and `bend` are lengths in that unit. All positions are
+  // then scaled by `scale` and shifted by `origin`.
   explicit Body(double noise, double bend, const Vec3& origin = Vec3::Zero(), double scale = 1, int seed = 1)
       : shape(uneven_tube(12, 70, 15, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); })),
         mesh(shape.mesh()),

@@ -98,6 +98,7 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
     if (shared.p[s] == patches_[p].lanes) columns &= static_cast<Mask16>(~shared.q[s]);
   }
   if (rows == 0 || columns == 0) return;
+  // Drop the triangles that lie apart from the bounds of the other patch.
   rows = near_counted(bounds_of_triangles(p), rows, bounds_[b]);
   if (rows == 0) return;
   columns = near_counted(bounds_of_triangles(q), columns, bounds_[a]);

@@ -80,7 +80,7 @@ class OnDemand {
 // demand.
 class alignas(64) PatchDescent {  // aligned so that no cache line is shared with another thread's descent
  public:
-  // What `input` names must outlive the descent.
+  // Everything that `input` refers to must outlive the descent.
   explicit PatchDescent(const DescentInput& input);
 
   // `bounds`, [nodes] in steps of `grid`, must stay until the last descent of the interval.

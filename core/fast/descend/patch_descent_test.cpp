@@ -5,7 +5,8 @@
 namespace cscd::fast {
 namespace {
 
-// Whatever was asked for before; and of two of which the first is asked for twice, both are still there.
+// The cache returns the result of the patch that is asked for, whatever was asked for before. If the first of
+// two patches is asked for again after the second, the results of both are in the cache.
 TEST(PatchDescent, WhatIsMadeOnDemandIsOfThePatch) {
   constexpr std::size_t kPatches = 300;
   OnDemand<std::size_t> squares(kPatches);
@@ -22,8 +23,8 @@ TEST(PatchDescent, WhatIsMadeOnDemandIsOfThePatch) {
     for (std::size_t p = 0; p < kPatches; ++p) EXPECT_EQ(square(p), p * p);
     EXPECT_EQ(made, kPatches);
     for (std::size_t p = kPatches; p-- > 0;) EXPECT_EQ(square(p), p * p);
-    EXPECT_GT(made, kPatches);      // few are kept
-    EXPECT_LT(made, 2 * kPatches);  // the last are
+    EXPECT_GT(made, kPatches);      // the cache holds few results
+    EXPECT_LT(made, 2 * kPatches);  // the cache holds the last results
     for (std::size_t p = 0; p < kPatches; ++p) {
       const std::size_t q = (7 * p + 3) % kPatches;
       square(p);

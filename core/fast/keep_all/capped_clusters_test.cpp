@@ -13,7 +13,7 @@ namespace {
 using test::Shape;
 using test::touching;
 
-// What one cover says of one interval.
+// Runs the contour test of one cover for one interval, and holds which triangles are clear.
 class Seen {
  public:
   Seen(const TriangleMesh& mesh, std::span<const Vec3> reference, const PatchTree& tree, const Cover& cover,
@@ -62,7 +62,7 @@ class Seen {
   std::vector<bool> clear_;
 };
 
-// An open surface that is one cluster, seen from a vertex of no triangle.
+// An open surface that is one cluster. Its observer follows a vertex that no triangle uses.
 struct OneCluster {
   Shape shape;
   TriangleMesh mesh;
@@ -86,8 +86,8 @@ struct OneCluster {
   }
 };
 
-// A strip that winds like a spiral staircase faces its observer all along, and lies twice over some of it.
-// The ray goes through what lies there once. Mutation: caps not looked at.
+// A strip that winds like a spiral staircase faces its observer all along, and covers some directions twice.
+// The ray goes where the strip covers directions once. Mutation: caps are ignored.
 TEST(CappedClusters, AnOpenSpiralThatIsSqueezedIsNotClear) {
   for (const double turns : {0.2, 1.25, 1.75}) {
     const OneCluster ramp(test::ramp(24, turns, 1, 2, 1), {-1.2, -0.5, -2});
@@ -105,8 +105,8 @@ TEST(CappedClusters, AnOpenSpiralThatIsSqueezedIsNotClear) {
   }
 }
 
-// A tube that goes round twice before it closes: it and its caps face the middle everywhere. Mutation:
-// crossings not counted.
+// A tube goes round twice before it closes. The tube and its caps face the observer in the middle everywhere.
+// Mutation: crossings are not counted.
 TEST(CappedClusters, ATubeThatGoesRoundTwiceIsNotClear) {
   for (const int turns : {1, 2}) {
     constexpr int kSteps = 60;
@@ -130,8 +130,8 @@ TEST(CappedClusters, ATubeThatGoesRoundTwiceIsNotClear) {
   }
 }
 
-// A bent tube whose skin is thrown about until it meets itself, from starts that do so already. Mutations:
-// clear returns `positive`; what is not known taken for known.
+// A bent tube whose vertices move at random until the tube touches itself, also from starts that touch
+// already. Mutations: clear() returns `positive`; clusters that are not `known` count as known.
 TEST(CappedClusters, NoPairThatTouchesIsDropped) {
   std::size_t touching_in_cluster = 0, clear = 0, all = 0;
   for (int seed = 1; seed <= 10; ++seed) {
@@ -155,13 +155,14 @@ TEST(CappedClusters, NoPairThatTouchesIsDropped) {
   EXPECT_GT(touching_in_cluster, 800u);
 }
 
-// Every edge as often in one direction as in the other. Mutation: a cut-off triangle forgotten.
+// The triangles of a cluster and its caps pass every edge as often in one direction as in the other.
+// Mutation: a triangle that cuts off a vertex is left out.
 TEST(Caps, CloseTheirClusters) {
   const test::Body body(0.1, 2);
   const Covers covers = cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle).covers;
   std::size_t caps_seen = 0;
   for (std::size_t c = 0; c < 2; ++c) {
-    std::map<std::size_t, std::map<std::pair<int, int>, int>> passed;  // of each cluster
+    std::map<std::size_t, std::map<std::pair<int, int>, int>> passed;  // by cluster
     const auto pass = [&](std::size_t cluster, const std::array<int, 3>& corner) {
       for (std::size_t k = 0; k < 3; ++k) {
         const int from = corner[k], to = corner[(k + 1) % 3];

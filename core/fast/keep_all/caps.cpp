@@ -30,6 +30,7 @@ std::vector<Loop> chained(std::multimap<VertexId, VertexId> edges) {
   return loops;
 }
 
+// Returns a point that follows a few vertices of the loop and lies at their mean.
 FollowingPoint middle(const Loop& loop) {
   const std::size_t count = std::min(kFollowed, loop.size());
   FollowingPoint point;
@@ -70,7 +71,8 @@ class Fan {
   static constexpr VertexId kApex{-1};
 
  private:
-  // The loop goes round the axis clockwise.
+  // Returns whether vertex i and the next are seen in the right order: clockwise round the axis, and at least
+  // a quarter of the mean angle apart.
   bool in_order(std::size_t i) const {
     const auto &a = seen_[next_[i]], &b = seen_[i];
     const double wanted =

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-// Rounding. u = 2^-24, d = `error`. A vector r from the viewpoint is off by d + u |r| in each component, its
-// direction by less than 4 d / |r| + 4 u, and the cosine of its angle with the axis by that and a few u.
-// What of lengths near one is computed of cosines and sines below is off by less than kRounding.
+// Rounding (rule error-bound). Let u = 2^-24 and d = `error`. A vector r from the viewpoint is off by d + u
+// |r| in each component. Its direction is off by less than 4 d / |r| + 4 u, and the cosine of its angle with
+// the axis by that and a few u. The results below that are computed from cosines, sines and vectors of length
+// about one are off by less than kRounding.
 namespace cscd::fast {
 namespace {
 

@@ -11,8 +11,8 @@ namespace cscd::fast {
 // A cone has a half-angle below a right angle, so it is convex: a triangle whose corners lie in the cone at
 // both ends of the interval lies in it at every t. The viewpoint is then no point of the triangle.
 struct Cone {
-  float axis[3];  // of unit length, up to rounding
-  float cosine, sine;
+  float axis[3];       // of unit length, up to rounding
+  float cosine, sine;  // of the half-angle
 };
 
 // The cones of sixteen triangles. A lane that is not known has no cone.

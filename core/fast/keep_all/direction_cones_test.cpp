@@ -7,7 +7,8 @@
 namespace cscd::fast {
 namespace {
 
-// Sixteen triangles of a patch without common vertices but one in a row, thrown at random.
+// A patch of sixteen triangles with random vertices. Triangle l has the vertices l, l + 3 and l + 6, modulo
+// sixteen.
 struct Thrown {
   PatchLanes lanes;
   Patch patch{};
@@ -26,7 +27,7 @@ struct Thrown {
         patch.corner[k][l] = static_cast<std::uint8_t>((l + 3 * k) % kLanes16);
     patch.lanes = 0xffff;
   }
-  // The direction of a point of a triangle at a time.
+  // Returns the direction in which a point of a triangle is seen at time t. `weights` are barycentric.
   Vec3 seen(std::size_t lane, const Vec3& weights, double t) const {
     Vec3 sum = Vec3::Zero();
     for (int i = 0; i < 3; ++i) {
@@ -54,7 +55,7 @@ Vec3 random_weights(std::mt19937& random) {
   return (w + Vec3::Constant(1e-9)) / (w.sum() + 3e-9);
 }
 
-// Mutations: the end not looked at; the largest cosine taken.
+// Mutations: the end of the interval is ignored; the cone takes the largest cosine.
 TEST(DirectionCones, HoldATriangleAtEveryTimeWithRoomForTheError) {
   std::mt19937 random(1);
   std::size_t known = 0;
@@ -77,7 +78,7 @@ TEST(DirectionCones, HoldATriangleAtEveryTimeWithRoomForTheError) {
   EXPECT_GT(known, 1000u);
 }
 
-// A cone less than a right angle wide that is met by no other one.
+// Compares apart() with the angles in double precision: the cones of all triangles against the cone of each.
 TEST(DirectionCones, AreApartOnlyWhereTheSumOfTheirAnglesIsLessThanThatBetweenTheirAxes) {
   std::mt19937 random(2);
   std::size_t are_apart = 0, nearly = 0;
@@ -117,7 +118,7 @@ TEST(DirectionCones, AreUnknownAroundAndAtTheViewpoint) {
   std::mt19937 random(3);
   Thrown thrown(random, 0.1F);
   for (int i = 0; i < 3; ++i) {
-    thrown.lanes.at[1][i][0] = thrown.from.at[1][i];       // vertex 0 runs into it
+    thrown.lanes.at[1][i][0] = thrown.from.at[1][i];       // vertex 0 runs into the viewpoint
     thrown.lanes.at[1][i][1] = -thrown.lanes.at[0][i][1];  // vertex 1 goes to the other side
   }
   const Cones cones = cones_of(thrown.lanes, thrown.patch, thrown.from, kError);
@@ -129,7 +130,7 @@ TEST(DirectionCones, AreUnknownAroundAndAtTheViewpoint) {
   EXPECT_FALSE(cone_of({&thrown.lanes, 1}, thrown.from, kError));
 }
 
-// Mutation: the sum of directions not looked at.
+// Mutation: the sum of the directions is not checked for zero.
 TEST(DirectionCones, ThereIsNoneOfDirectionsThatSumToNothing) {
   PatchLanes lanes{};
   for (int end = 0; end < 2; ++end)

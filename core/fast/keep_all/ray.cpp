@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-// Rounding. u = 2^-24, d = `error`, at least u M where M is the largest coordinate, Q the viewpoint's
-// largest. A vector r from the viewpoint is off by d + u |r| in each component, and u |r| <= 1.01 (d + u Q).
-// Its product with a vector of components up to one is off by 3 (d + u |r|) and three roundings of at most
-// 3.03 u |r| each: less than E = 20 d + 16 u Q. What u takes of such a product is less than E / 5.
-// A difference of two products a b - a' b' of them is off by at most
+// Rounding (rule error-bound). Let u = 2^-24, M the largest coordinate of the vertices, Q the largest
+// coordinate of the viewpoint, and d = `error`, which is at least u M. A vector r from the viewpoint is off
+// by d + u |r| in each component, and u |r| <= 1.01 (d + u Q). The product of r with a vector of components
+// up to one is off by 3 (d + u |r|) and by three roundings of at most 3.03 u |r| each: less than E = 20 d +
+// 16 u Q. Such a product times u is less than E / 5. A difference a b - a' b' of two products of such numbers
+// is off by at most
 //   E (|a| + |b| + |a'| + |b'|) + 2 E^2 + 3 u (|a b| + |a' b'|) <= 2 E (|a| + |b| + |a'| + |b'| + E).
 //
-// A ray along p x q has the sign of (p x q) . (v x w) = (p.v)(q.w) - (p.w)(q.v) towards an edge v w. A
-// triangle whose corners go round the viewpoint positively is crossed where all three are positive.
+// The side on which a ray along p x q passes an edge v w is the sign of
+//   (p x q) . (v x w) = (p.v)(q.w) - (p.w)(q.v).
+// The ray crosses a triangle that is positive towards the viewpoint if the signs of all three edges are
+// positive.
 namespace cscd::fast {
 namespace {
 
@@ -80,7 +83,7 @@ Ray::Crossed Ray::crossed(const PatchLanes& lanes, const Patch& patch) const {
   return out;
 }
 
-// The ray is off its direction `along_` by a few roundings.
+// `along_` differs from the exact direction of the ray by a few roundings, which 1e-5 pays for.
 bool Ray::outside(const Cone& cone) const {
   const float between = along_[0] * cone.axis[0] + along_[1] * cone.axis[1] + along_[2] * cone.axis[2];
   const bool has_direction = along_[0] != 0 || along_[1] != 0 || along_[2] != 0;

@@ -21,6 +21,7 @@ class Ray {
   };
   Crossed crossed(const PatchLanes& lanes, const Patch& patch) const;
 
+  // True is a proof that the direction of the ray lies outside the cone.
   bool outside(const Cone& cone) const;
 
  private:

@@ -12,7 +12,8 @@ struct Fixture {
   Viewpoint from{};
 };
 
-// Vertices around the viewpoint, or around a point; of each three one near the ray.
+// Makes a patch of random vertices and triangles, and a viewpoint. With `around`, the vertices lie round the
+// viewpoint, and every third vertex lies near the ray. Without, all vertices lie round one random point.
 Fixture thrown(std::mt19937& random, const float (&through)[3], bool around) {
   const auto dice = [&] { return static_cast<float>(random() >> 8) * 0x1p-23F - 1; };
   Fixture f;
@@ -29,7 +30,8 @@ Fixture thrown(std::mt19937& random, const float (&through)[3], bool around) {
   return f;
 }
 
-// Mutations: the bound zero; sign turned round; one edge not looked at; may_cross by one side alone.
+// Mutations: the error bound is zero; the sign is reversed; one edge is ignored; may_cross tests one side
+// alone.
 TEST(Ray, CrossesWhatDoublePrecisionSaysItDoesWithinTheErrorOfCoordinates) {
   std::mt19937 random(7);
   constexpr float kError = 1e-5F;
@@ -81,7 +83,7 @@ TEST(Ray, CrossesWhatDoublePrecisionSaysItDoesWithinTheErrorOfCoordinates) {
   EXPECT_GT(rejected, 300u);
 }
 
-// Mutation: may_cross without the error.
+// Mutation: may_cross ignores the error.
 TEST(Ray, MayCrossWhatHasACornerOnIt) {
   std::mt19937 random(8);
   const auto dice = [&] { return static_cast<float>(random() >> 8) * 0x1p-23F - 1; };

@@ -1,6 +1,6 @@
 #pragma once
 
-// For tests only: what touches, by the exact referee.
+// For tests only: the pairs of triangles that touch, by the exact referee.
 
 #include <Eigen/Geometry>
 #include <utility>
@@ -12,7 +12,7 @@
 
 namespace cscd::test {
 
-// Pairs of triangles that carry a contact.
+// Returns all pairs of triangles that carry a feature pair in contact.
 inline std::vector<std::pair<TriangleId, TriangleId>> touching(const TriangleMesh& mesh,
                                                                const Motion& motion) {
   const ElementaryTest& exact = *find_elementary_test("exact");

@@ -31,6 +31,7 @@ struct TriangleBounds {
   Short32 low[kDirections], high[kDirections];
 };
 
+// Returns the bounds of all points of both.
 inline NodeBounds united(const NodeBounds& a, const NodeBounds& b) {
   return {smaller(a.at, b.at)};
 }
@@ -58,6 +59,7 @@ inline NodeBounds unbounded() {
   return {Short32{} - std::int16_t{32767}};
 }
 
+// The grid of one interval, in whose steps bounds are counted.
 class Grid {
  public:
   // A grid for local positions whose coordinates are off by at most `error`, which is at least 2^-24 of the

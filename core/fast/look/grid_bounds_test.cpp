@@ -24,8 +24,8 @@ NodeBounds bounds_of_point(const Vec3& start, const Vec3& end) {
   return bounds;
 }
 
-// Points that rush by together stay apart, points that change places do not; touching is not apart.
-// Mutation: `apart` joins both ends by "or".
+// Points that move fast side by side stay apart. Points that change places do not, and points that touch are
+// not apart. Mutation: `apart` joins both ends by "or".
 TEST(NodeBounds, ApartMeansOnOneSideAllTheTime) {
   const NodeBounds a = bounds_of_point({0, 0, 0}, {100, 0, 0});
   EXPECT_TRUE(apart(a, bounds_of_point({1, 0, 0}, {101, 0, 0})));
@@ -36,8 +36,9 @@ TEST(NodeBounds, ApartMeansOnOneSideAllTheTime) {
   EXPECT_FALSE(apart(a, a));
 }
 
-// As far as the rounding says. Mutations: bounds of nodes or of triangles that do not give way; a triangle's
-// sums rounded before; one end twice.
+// Rule outward-rounding. Bounds are off by no more than the header says. Mutations: bounds of nodes or of
+// triangles are not widened; coordinates of a triangle are rounded before they are summed; one end is taken
+// twice.
 TEST(GridBounds, RuleOutwardRoundingContainTheExactPositionsAtBothEnds) {
   for (const test::Patches& scene : test::patches()) {
     const Grid grid(scene.local.error());
@@ -74,8 +75,8 @@ NodeBounds of_lane(const TriangleBounds& bounds, std::size_t lane) {
   return one;
 }
 
-// `near` says of every triangle what `apart` says of its bounds, and nothing of those not asked about.
-// Mutations: one of the two sides left out; one direction; the mask of the second step forgotten.
+// `near` says of every triangle in the mask what `apart` says of its bounds, and returns no other triangle.
+// Mutations: one of the two sides is left out; one direction is left out; the second step ignores the mask.
 TEST(GridBounds, NearIsApartLaneByLane) {
   const test::Patches scene(0.3, 2, {0, 0, 0}, 1, 3);
   const Grid grid(scene.local.error());
@@ -102,7 +103,7 @@ TEST(GridBounds, NearIsApartLaneByLane) {
   EXPECT_GT(outcomes[1], 100u);
 }
 
-// Of triangles swept bounds are those of nodes, lane by lane.
+// Swept bounds of triangles are the swept bounds of nodes, lane by lane.
 TEST(GridBounds, SweptTrianglesAreSweptLaneByLane) {
   const test::Patches scene(0.1, 2, {0, 0, 0}, 1, 4);
   const Grid grid(scene.local.error());
@@ -127,7 +128,7 @@ TEST(NodeBounds, NothingIsApartFromTheUnbounded) {
   EXPECT_FALSE(apart(unbounded(), unbounded()));
 }
 
-// Every lane of every row counts, and no other.
+// The minimum takes every lane of every row, and nothing else.
 TEST(NodeBounds, TheSmallestPairsOfRowsAreThoseOfALoop) {
   std::mt19937 random(5);
   for (int round = 0; round < 100; ++round) {

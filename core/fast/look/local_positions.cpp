@@ -59,7 +59,7 @@ std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, st
   Record* const records = records_.data();
   const std::size_t whole = std::min(last, records_.size() - 1);
   for (std::size_t v = first; v < whole; ++v) convert(start + 3 * v, end + 3 * v, records[v].at);
-  // The fourth number behind the last vertex is not ours to read.
+  // A load of four numbers at the last vertex of the mesh would read past the end of the positions.
   for (std::size_t v = whole; v < last; ++v) {
     double points[2][4] = {};
     std::memcpy(points[0], start + 3 * v, 3 * sizeof(double));

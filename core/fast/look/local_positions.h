@@ -21,8 +21,10 @@ class LocalPositions {
     float at[8];
   };
 
+  // `reference`, [vertices], sets the scale and the number of vertices.
   explicit LocalPositions(std::span<const Vec3> reference);
 
+  // Converts the positions of an interval, and finds their error.
   void update(const Motion& motion, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }

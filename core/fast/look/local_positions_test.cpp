@@ -9,7 +9,7 @@
 namespace cscd::fast {
 namespace {
 
-// Mutations: the error without its summand for rounding; the difference taken in float.
+// Mutations: the error lacks its summand for rounding; the difference is taken in float.
 TEST(LocalPositions, EveryCoordinateIsWithinItsError) {
   for (const auto& [origin, scale] : {std::pair<Vec3, double>{{0, 0, 0}, 1},
                                       {{1e7, -3e6, 123.456}, 1},
@@ -19,7 +19,7 @@ TEST(LocalPositions, EveryCoordinateIsWithinItsError) {
     LocalPositions local(body.start);
     local.update(body.motion());
     ASSERT_TRUE(local.known());
-    // The scale is a power of two, so that it shows in any coordinate.
+    // The scale is a power of two, so any coordinate shows it.
     const test::Exact3 first = test::exact(body.start[0]);
     double unit = 0;
     for (std::size_t v = 1; unit == 0; ++v)
@@ -48,7 +48,7 @@ TEST(LocalPositions, AMotionOutOfRangeIsNotKnown) {
   EXPECT_FALSE(local.known());
 }
 
-// In any coordinate. Mutation: a maximum that passes over what is no number.
+// The coordinate that is no number may be any of the three. Mutation: the maximum passes over NaN.
 TEST(LocalPositions, WhatIsNoNumberIsNotKnown) {
   for (const Eigen::Index i : {0, 1, 2}) {
     test::Body body(0, 1);

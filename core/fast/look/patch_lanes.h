@@ -11,6 +11,7 @@ namespace cscd::fast {
 
 // The positions of a patch's vertices, one vertex a lane.
 using PatchLanes = VectorLanes16;
+// Loads the positions of these sixteen vertices.
 PatchLanes load(std::span<const LocalPositions::Record> records,
                 const std::array<std::int32_t, kLanes16>& vertex);
 

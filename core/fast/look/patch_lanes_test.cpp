@@ -23,9 +23,9 @@ TEST(PatchLanes, LoadBringsEveryVertexToItsLane) {
   }
 }
 
-// Every certified sign is the exact one, far from the origin and in any unit; and nearly all are certified.
-// Mutations: the bound zero; positions in float without the shift; corner 1 for corner 0; the middle
-// coefficients not looked at.
+// Rule error-bound. Every certified sign is the exact sign, far from the origin and in any unit, and nearly
+// all signs are certified. Mutations: the error bound is zero; positions are converted to float without the
+// shift; corner 1 takes the place of corner 0; the middle coefficients are ignored.
 TEST(PatchLanes, RuleErrorBoundCertifiedSignsAreExact) {
   std::size_t certified = 0, all = 0, negative = 0;
   int turn = 0;
@@ -33,7 +33,7 @@ TEST(PatchLanes, RuleErrorBoundCertifiedSignsAreExact) {
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 11) {
       const Patch& patch = scene.tree.patches[p];
       const PatchLanes lanes = load(scene.local.records(), patch.vertex);
-      // From inside, from the surface itself, and from outside.
+      // Viewpoints inside the body, on the surface, and outside.
       Viewpoint from;
       MovingPoint q;
       for (std::size_t end = 0; end < 2; ++end)
@@ -44,7 +44,7 @@ TEST(PatchLanes, RuleErrorBoundCertifiedSignsAreExact) {
           const double world =
               scene.shift[static_cast<Eigen::Index>(i)] + scene.unit * static_cast<double>(from.at[end][i]);
           (end == 0 ? q.start : q.end)[static_cast<Eigen::Index>(i)] = world;
-          // Else the exact test would judge another point.
+          // Skip viewpoints that are not exact in the world: the exact test would take another point.
           if (mpq_class(world) != mpq_class(scene.shift[static_cast<Eigen::Index>(i)]) +
                                       mpq_class(scene.unit) * mpq_class(from.at[end][i]))
             from.at[end][i] = std::numeric_limits<float>::quiet_NaN();
@@ -67,8 +67,8 @@ TEST(PatchLanes, RuleErrorBoundCertifiedSignsAreExact) {
   EXPECT_GT(certified, all / 2);
 }
 
-// Nothing overflows as far away as positions and observers are allowed to be, be triangles large or small.
-// Mutation: kMostWeight 1e14.
+// Nothing overflows with positions and observers as far away as they are allowed to be, whether triangles are
+// large or small. Mutation: kMostWeight is 1e14.
 TEST(PatchLanes, CertifiedSignsAreExactTowardsTheFarthestObservers) {
   constexpr float kFarthest = 1e9F;  // of local positions
   std::mt19937 random(3);
@@ -91,7 +91,7 @@ TEST(PatchLanes, CertifiedSignsAreExactTowardsTheFarthestObservers) {
       patch.corner[1][l] = static_cast<std::uint8_t>((l + 5) % kLanes16);
       patch.corner[2][l] = static_cast<std::uint8_t>((l + 11) % kLanes16);
     }
-    if (round % 4 < 2)  // at rest, or certain signs are rare
+    if (round % 4 < 2)  // at rest; in motion certain signs are rare
       for (std::size_t i = 0; i < 3; ++i) lanes.at[1][i] = lanes.at[0][i], from.at[1][i] = from.at[0][i];
     const float error = 0x1.1p-24F * kFarthest;
     if (round % 8 < 4) from.reach = reach_of(from, error);
@@ -113,7 +113,7 @@ TEST(PatchLanes, CertifiedSignsAreExactTowardsTheFarthestObservers) {
   EXPECT_GT(certified, 500u);
 }
 
-// One lane as plain scalar code.
+// Returns the sign of one triangle, computed by plain scalar code.
 int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
   float a[2][3], b[2][3], c[2][3], n[3][3], most[3] = {};
   for (int end = 0; end < 2; ++end)
@@ -148,12 +148,12 @@ int scalar_sign(const float (&x)[3][2][3], const Viewpoint& from, float error) {
   return above ? 1 : below ? -1 : 0;
 }
 
-// With errors so large that bounds decide, and with lengths so small that nothing is known; and the same
-// whether it is known how far positions reach. Mutations: the smallest component taken for the largest; what
-// is not known passed as positive where all of a patch is.
+// The cases have errors so large that bounds decide, or lengths so small that nothing is known. Signs are the
+// same whether or not the viewpoint's reach is known. Mutations: the bound takes the smallest component for
+// the largest; the bound for a whole patch passes unknown signs as positive.
 TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
   struct Case {
-    float size, error;  // of lengths; in local units
+    float size, error;  // scale of all lengths; error in local units
   };
   const Viewpoint centre = {{{0.5F, 0.01F, 0.02F}, {0.52F, 0.05F, -0.01F}}};
   for (const test::Patches& scene : test::patches())

@@ -12,10 +12,11 @@
 
 namespace cscd::test {
 
-// The origin and the unit keep viewpoints of few bits exact in world coordinates.
+// A body that is cut into patches, and its local positions. The origin and the unit of the local coordinates
+// are such that a viewpoint whose local coordinates have few bits is exact in world coordinates too.
 struct Patches : Body, fast::CutSurface {
   Vec3 shift;
-  double unit;  // of local lengths in the world
+  double unit;  // length of one local unit in the world
   fast::LocalPositions local;
 
   Patches(double noise, double bend, const Vec3& origin, double scale, int seed)
@@ -28,7 +29,7 @@ struct Patches : Body, fast::CutSurface {
     for (const Vec3& p : start) box.extend(p);
     unit = std::ldexp(1.0, std::ilogb(box.sizes().maxCoeff()));
   }
-  // In local units, exactly, times 1.
+  // Returns the exact local coordinates of a point of the world.
   Exact3 exact_local(const Vec3& p) const {
     const Exact3 at = exact(p), from = exact(shift);
     Exact3 out;

@@ -9,8 +9,8 @@
 namespace cscd::fast {
 
 // Where an observer stands at both ends of an interval, [end][axis], in local coordinates; it moves in a
-// straight line between them. A viewpoint is exactly these numbers and has no error. The vertices that it
-// looks at have one, which the orientations allow for.
+// straight line between the two. A viewpoint is exactly these numbers and has no error. The vertices that are
+// seen from it have an error, which the orientations allow for.
 struct Viewpoint {
   float at[2][3];
   // More than the distance of any vertex from the viewpoint along an axis, including the error of the vertex.
@@ -18,11 +18,11 @@ struct Viewpoint {
   float reach = std::numeric_limits<float>::infinity();
 };
 
-// The `reach` of a viewpoint among vertices whose coordinates are off by at most `error`, which must be at
-// least 2^-24 of the largest coordinate.
+// Returns the `reach` of a viewpoint among vertices whose coordinates are off by at most `error`, which must
+// be at least 2^-24 of the largest coordinate.
 float reach_of(const Viewpoint& viewpoint, float error);
 
-// The viewpoint of an observer that follows the vertices with these records.
+// Returns the viewpoint of an observer that follows the vertices with these records (local_positions.h).
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records);
 
 }  // namespace cscd::fast

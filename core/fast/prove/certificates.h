@@ -49,7 +49,7 @@ class Certificates {
   // triangle of q in the same set.
   struct Shared {
     std::array<Mask16, 2 * kCovers> p, q;
-    Mask16 lanes_q;
+    Mask16 lanes_q;  // all triangles of q
 
     // Returns the triangles of patch q that have to be held against triangle `lane` of patch p.
     Mask16 needed(std::size_t lane) const {

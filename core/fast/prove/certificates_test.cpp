@@ -11,19 +11,19 @@ namespace {
 
 using radial::Orientation;
 
-// One interval of a body, and what the rule of the theorem says about its triangles, in double precision and
-// by looking at every triangle: the twin of what certificates gather from patches.
+// One interval of a body, and its certificates computed straight from their definition, in double precision
+// and triangle by triangle. These are the twins of the certificates that Certificates computes from patches.
 struct Scene : test::Body {
   Covers covers;
   PatchTree tree;
   LocalPositions local;
   Certificates certificates;
-  // Of each triangle and cover: its sign towards the observer of its cluster; the one that all triangles with
-  // a common vertex have towards the observer of the cluster that all of them belong to, uncertain where they
-  // do not.
+  // [triangles][covers]. `own` is the sign of the triangle towards the observer of its cluster. `all_round`
+  // is the sign that all triangles that share a vertex with it have towards that observer; uncertain if these
+  // do not all belong to one cluster or do not all have one sign.
   std::vector<std::array<Orientation, kCovers>> own, all_round;
 
-  enum class Bones { chain, sixths };  // sixths: seams of both covers meet
+  enum class Bones { chain, sixths };  // sixths: seams of the first two covers meet
 
   explicit Scene(double noise, double bend, int seed, bool inside_out = false, Bones bones = Bones::chain)
       : test::Body(noise, bend, {3, -2, 1}, 1, seed),
@@ -40,9 +40,10 @@ struct Scene : test::Body {
     certificates.finish();
   }
   std::int32_t cluster(std::size_t c, std::size_t triangle) const { return covers[c].cluster_of[triangle]; }
-  // What certificates are to say: the first cover of a triangle alone, the others of all round it.
+  // Returns the certificate that is expected: in the first cover from the triangle alone, in the others from
+  // all triangles round it.
   Orientation certain(std::size_t c, TriangleId t) const { return (c == 0 ? own : all_round)[+t][c]; }
-  // Whether one cover has both triangles on one side of one observer, with what it has to look at besides.
+  // Returns whether one cover certifies both triangles with one sign, in one cluster.
   bool one_field(TriangleId t, TriangleId u) const {
     for (std::size_t c = 0; c < kCovers; ++c)
       if (cluster(c, +t) == cluster(c, +u) && certain(c, t) != Orientation::uncertain &&
@@ -50,8 +51,8 @@ struct Scene : test::Body {
         return true;
     return false;
   }
-  // Whether one cover has all of these on one side of one observer: what the theorem asks of the triangles at
-  // a feature pair that is dropped.
+  // Returns whether all these triangles have one sign towards one observer of one cover. The theorem asks
+  // that of the triangles at a feature pair that is dropped.
   bool one_field(std::span<const TriangleId> at, std::span<const TriangleId> also_at) const {
     for (std::size_t c = 0; c < kCovers; ++c) {
       const auto as_first = [&](TriangleId t) {
@@ -83,7 +84,7 @@ struct Scene : test::Body {
         for (Vec3& p : *positions) p.x() = -p.x();
     return Certificates(tree, covers);
   }
-  // A point of the body in the coordinates of the records, hardly rounded.
+  // Returns a vertex in local coordinates, but in double precision.
   MovingPoint at(VertexId v) const {
     const double unit = scale();
     return {(start[+v] - start[0]) * unit, (end[+v] - start[0]) * unit};
@@ -142,8 +143,9 @@ constexpr Case kCases[] = {{false, Scene::Bones::chain},
                            {false, Scene::Bones::sixths},
                            {true, Scene::Bones::sixths}};
 
-// Mutations: look_round clears the lane that is not positive instead of all round it; needed compares signs
-// whatever the cluster, or drops what different covers certify; look_round asks no neighbour for negatives.
+// Mutations: look_round takes the certificate from the triangle that is not positive instead of from all
+// round it; needed() compares signs of different clusters, or drops pairs whose triangles are certified by
+// different covers; look_round ignores neighbours when it certifies negatives.
 TEST(Certificates, APairIsDroppedOnlyByOneField) {
   for (const auto& [inside_out, bones] : kCases)
     for (int seed = 1; seed <= 2; ++seed) {
@@ -170,8 +172,8 @@ TEST(Certificates, APairIsDroppedOnlyByOneField) {
     }
 }
 
-// A feature pair is dropped where all triangle pairs that carry it are. Mutations: the second cover, too,
-// does not look around (positive); the same of negative.
+// Rule one-field. A feature pair is dropped if all triangle pairs that carry it are dropped. Mutations: the
+// second cover also certifies triangles by themselves, as positive or as negative.
 TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
   for (const auto& [inside_out, bones] : kCases) {
     const Scene scene(0.08, 3, 2, inside_out, bones);
@@ -233,7 +235,7 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
   EXPECT_GT(skipped_inner, 10u);
 }
 
-// Mutations: what other covers certified before stays; looks counts every cover.
+// Mutations: certificates of covers that are no longer used stay; looks_per_interval counts all covers.
 TEST(Certificates, CoversThatAreNotUsedDropNothing) {
   Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
   const std::size_t looks = scene.certificates.looks_per_interval();
@@ -253,13 +255,13 @@ TEST(Certificates, CoversThatAreNotUsedDropNothing) {
   EXPECT_GT(dropped, 10'000u);
 }
 
-// Takes intervals of a scene, one after the other, by certificates that have seen those before and by fresh
-// ones, which are to say the same.
+// Takes intervals one after the other with certificates that have seen all intervals before, and with fresh
+// certificates for each interval. Both must give the same results.
 class FreshBesideUsed {
  public:
   explicit FreshBesideUsed(Scene& scene) : scene_(scene) {}
 
-  // `mirrored`: patches that are seen from the other side, whatever their neighbours are.
+  // `mirrored`, [patches], marks patches that are seen from the other side.
   void take(const Motion& motion, const std::vector<bool>& mirrored, std::size_t covers) {
     scene_.local.update(motion);
     look(scene_.certificates, mirrored);
@@ -332,7 +334,7 @@ TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
 
 TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
   Scene scene(0.01, 1, 1);
-  for (Vec3& p : scene.start) p *= 1e10;  // as certain as before, but for the range
+  for (Vec3& p : scene.start) p *= 1e10;  // changes no sign, but leaves the range
   for (Vec3& p : scene.end) p *= 1e10;
   scene.local.update(scene.motion());
   ASSERT_FALSE(scene.local.known());

@@ -18,7 +18,7 @@ namespace cscd::fast {
 
 // Sixteen pairs of triangles by their vertices, [corner][lane].
 struct PairLanes {
-  using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;
+  using Vertices = std::array<std::array<std::int32_t, kLanes16>, 3>;  // [corner][pair]
   Vertices first{}, second{};
 };
 // Returns the pairs that neither of the two planes parts. `error` bounds the error of every coordinate. The

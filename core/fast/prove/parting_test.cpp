@@ -13,13 +13,13 @@ struct Interval {
   TriangleMesh mesh;
   std::vector<Vec3> start, end;
 
-  // Pairs of triangles, either way round, that a plane parts.
+  // Returns the ordered pairs of triangles that a plane parts, each pair in both orders.
   std::set<std::pair<TriangleId, TriangleId>> parted() const {
     LocalPositions local(start);
     local.update(motion());
     std::set<std::pair<TriangleId, TriangleId>> found;
     PairLanes lanes;
-    std::vector<std::pair<TriangleId, TriangleId>> pairs;  // of these lanes
+    std::vector<std::pair<TriangleId, TriangleId>> pairs;  // the pairs in `lanes`
     const auto ask = [&] {
       const Mask16 left = not_parted(local.records(), lanes, local.error());
       for (std::size_t l = 0; l < pairs.size(); ++l)
@@ -44,7 +44,7 @@ struct Interval {
   Motion motion() const { return Motion(start, end); }
 };
 
-// How many corners two triangles share.
+// Returns how many corners two triangles share.
 std::size_t shared(const TriangleMesh& mesh, TriangleId a, TriangleId b) {
   std::size_t count = 0;
   for (const VertexId v : mesh.corners(a))
@@ -52,8 +52,9 @@ std::size_t shared(const TriangleMesh& mesh, TriangleId a, TriangleId b) {
   return count;
 }
 
-// Skins that are thrown about until they meet themselves. Mutations: signs of both sides taken for one; the
-// shared corners of other triangles; a pair parted where only some corners are on one side.
+// Vertices of bodies move at random until the bodies touch themselves. Mutations: corners on both sides count
+// as on one side; the shared corners are those of the wrong triangle; a pair counts as parted where only some
+// corners are on one side.
 TEST(Parting, NoPairThatTouchesIsParted) {
   std::size_t met = 0, by_shared[3] = {};
   for (int seed = 1; seed <= 5; ++seed) {
@@ -103,7 +104,7 @@ TEST(Parting, RuleCertainSignWhatTouchesExactlyIsNotParted) {
   EXPECT_GT(apart, 100u);
 }
 
-// Two triangles of the same three corners share all that they have: no plane says anything. Mutation: shared
+// Two triangles with the same three corners have no other corner, so no plane parts them. Mutation: shared
 // corners alone are enough.
 TEST(Parting, TwoTrianglesOfOneFaceAreNotParted) {
   const Interval twice{TriangleMesh(std::vector<Triangle>{test::corners(0, 1, 2), test::corners(0, 2, 1)}, 3),

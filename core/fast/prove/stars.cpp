@@ -8,14 +8,18 @@
 #include "core/base/bring_near.h"
 #include "core/fast/look/patch_lanes.h"
 
-// Rounding, as in triple_product16.h: edges are off by 2 d + u of themselves. A component of a control vector
-// is a sum of two products (four for the middle one, which is twice the control vector) of edges not longer
-// than A and B, hence off by 4 d (A' + B') + 10.5 u A' B'; its dot product with the direction, which is exact
-// by definition and has components up to D, by D (12 d (A' + B') + 49.5 u A' B'). 12.2 and 50 also pay for
-// the bound's own roundings. A component of `side`, of a direction with components up to D and a sum of edges
-// up to L, rounds by 4 u D L, so that its product with the direction of unit length is off zero by at most 12
-// u D L, 120 u of its own length where that is at least kLeastSide D L. What it says of an edge with
-// components up to A is then off by less than 120 sqrt(3) u A of that, by roundings and by 2 d: kOffSide.
+// Rounding (rule error-bound), in the notation of triple_product16.h. Edges are off by 2 d + u of themselves.
+// A component of a control vector is a sum of two products of edges whose components are at most A and B
+// (four products for the middle control vector, which is computed as twice that vector). Therefore the
+// component is off by 4 d (A' + B') + 10.5 u A' B'. The direction is exact by definition and has components
+// up to D. Therefore the dot product of a control vector with the direction is off by D (12 d (A' + B') +
+// 49.5 u A' B'). The constants 12.2 and 50 below also pay for the roundings of the bound itself.
+//
+// A component of `side` is computed from a direction with components up to D and a sum of edges up to L, and
+// rounds by 4 u D L. So the product of `side` with the direction of unit length, which should be zero, is at
+// most 12 u D L. That is 120 u of the length of `side`, if that length is at least kLeastSide D L. The
+// distance of an edge with components up to A from the plane, in units of that length, is then off by less
+// than 120 sqrt(3) u A, by its own roundings and by 2 d. kOffSide bounds the sum of the first two.
 namespace cscd::fast {
 namespace {
 

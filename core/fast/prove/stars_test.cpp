@@ -15,7 +15,7 @@ const ElementaryTest& exact() {
   return *find_elementary_test("exact");
 }
 
-// Contacts of triangles at the vertex among each other.
+// Counts the contacts between triangles of the star of a vertex.
 std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, VertexId vertex) {
   std::size_t contacts = 0;
   const std::span<const TriangleId> star = mesh.triangles_at(vertex);
@@ -27,8 +27,8 @@ std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, Ver
   return contacts;
 }
 
-// Noise up to where neighbours run into each other. Mutations: the bound zero on flat surfaces; the
-// direction's sign; the end not looked at.
+// Vertices move at random, up to where neighbours run into each other. Mutations: the error bound is zero on
+// flat surfaces; the sign of the direction is wrong; the end of the interval is ignored.
 TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
   std::size_t flat = 0, others_with_contacts = 0, embedded = 0;
   for (int seed = 1; seed <= 12; ++seed) {
@@ -57,7 +57,8 @@ TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
   EXPECT_GT(others_with_contacts, 20u);
 }
 
-// A tip that is turned inside out is no graph all the time. Mutation: only the ends are looked at.
+// The stars round a tip that is turned inside out are no graphs all the time. Mutation: only the ends of the
+// interval are tested.
 TEST(Stars, ATipThatTurnsOverIsNotFlat) {
   test::Shape shape = test::octahedron();
   std::vector<Vec3> end = shape.positions;
@@ -70,7 +71,7 @@ TEST(Stars, ATipThatTurnsOverIsNotFlat) {
   EXPECT_FALSE(stars.flat(VertexId{0}, local));
 }
 
-// Triangles of no area prove nothing.
+// Triangles without area prove nothing.
 TEST(Stars, DegenerateTrianglesAreNotFlat) {
   test::Shape shape = test::octahedron();
   shape.positions[4] = shape.positions[0];
@@ -82,7 +83,7 @@ TEST(Stars, DegenerateTrianglesAreNotFlat) {
   EXPECT_TRUE(stars.flat(VertexId{1}, local));
 }
 
-// Mutation: turns not counted.
+// Mutation: the turns of the star are not counted.
 TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
   for (const int turns : {1, 2}) {
     test::Shape star{{{0, 0, 0}}, {}};
@@ -104,9 +105,10 @@ TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
   }
 }
 
-// Goes round twice. The half-line that is looked for in each triangle is the middle of the first one, and
-// that is seen 1e-5 from along the direction of the graph: its cross product with the direction is rounding.
-// Mutation: steepness not compared with the lengths of what it was made of.
+// A star goes round twice. The test looks for the triangles that contain the direction through the middle of
+// the first triangle. Here that direction differs by only 1e-5 from the direction along which the star would
+// be a graph, so the cross product of the two is mostly rounding. Mutation: the steepness is not compared
+// with the lengths that it is computed from.
 TEST(Stars, OneThatGoesRoundTwiceIsNotFlatThoughItsFirstTriangleIsSteep) {
   const test::Shape star{{{0, 0, 0},
                           {0x1.366f6cdbc7008p+0, 0x1.35b6052755bdp-4, 0x1.356d878345b19p-1},
@@ -127,8 +129,8 @@ TEST(Stars, OneThatGoesRoundTwiceIsNotFlatThoughItsFirstTriangleIsSteep) {
   EXPECT_FALSE(Stars(mesh).flat(VertexId{0}, local));
 }
 
-// Half a turn in straight lines, on which one corner goes past the centre early: flat at both ends, and not
-// in between. Mutation: the middle control vectors not looked at.
+// The corners make half a turn in straight lines, and one corner passes the centre early. The star is flat at
+// both ends but not in between. Mutation: the middle control vectors are ignored.
 TEST(Stars, OneThatFoldsInBetweenIsNotFlat) {
   test::Shape star{{{0, 0, 0}}, {}};
   std::vector<Vec3> end = star.positions;
@@ -153,8 +155,8 @@ TEST(Stars, OneThatFoldsInBetweenIsNotFlat) {
   EXPECT_FALSE(flat(motion));
 }
 
-// What is one fan is flat; nothing is said of others. Mutations: the first of two fans taken for all; an open
-// fan closed by a triangle that is not there.
+// A star of one closed fan is flat. Nothing is proven of other stars. Mutations: the first of two fans stands
+// for the whole star; an open fan is closed by a triangle that does not exist.
 TEST(Stars, OneOfTwoFansIsNotFlat) {
   constexpr int kCorners = 6;
   for (const int fan : {kCorners, kCorners - 1})
