@@ -5,8 +5,10 @@
 
 namespace cscd {
 
-// Reads each cache line of some memory, so that who soon needs all of it at random need not wait for every
-// line by itself. By loads, not by prefetches: a processor may drop those where it does not know the page.
+// Reads one byte of every cache line of `items`, which brings the whole span into the cache. A caller
+// that soon needs all of the items in random order calls this first, so that it need not wait for
+// every line by itself. The lines are loaded, because a processor may drop a prefetch of a page whose
+// address it has not translated.
 template <class T>
 void bring_near(std::span<const T> items) {
   constexpr std::size_t kLine = 64;

@@ -10,13 +10,15 @@
 
 namespace cscd {
 
-// Swept bounding volumes of every node of a tree over one interval.
+// The bounds of the path of every node of a tree over one interval: each node's volume contains the paths
+// of all triangles below the node.
 template <class Volume>
 class SweptVolumes {
  public:
   SweptVolumes(const TriangleMesh& mesh, const Tree& tree);
 
-  // Bounds of all vertices' paths, then bottom-up over the tree; O(vertices + triangles), no allocation.
+  // Computes the bounds of all vertices' paths, then those of the nodes from the leaves to the root. Linear
+  // in vertices and triangles; allocates nothing.
   void refit(const Motion& motion);
 
   const Volume& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
@@ -29,20 +31,22 @@ class SweptVolumes {
   struct Inner {
     NodeIndex node, right;
   };
-  // Backwards, so that children come first; by kind, as a branch on it would often be mispredicted.
+  // Nodes in descending order, so that children come before their parents. Leaves and inner nodes have lists
+  // of their own, because a branch on the kind of a node would often be mispredicted.
   std::vector<Leaf> leaves_;
   std::vector<Inner> inner_;
-  std::vector<Volume> vertex_, node_;
+  std::vector<Volume> vertex_, node_;  // [vertices], [nodes]
 };
 using SweptBounds = SweptVolumes<Kdop16>;
 using SweptBoxes = SweptVolumes<Aabb>;
 
-// The bounds of every vertex's path: vectorised over vertices, equal to what kdop_of and aabb_of give (their
-// scalar twins). Only a zero may have the other sign, which no comparison sees.
+// Computes the bounds of every vertex's path, in vector code over eight vertices at a time. The results equal
+// those of kdop_of() and aabb_of(), their scalar counterparts, except that a zero may have the other sign,
+// which no comparison sees. `out`: [vertices].
 void swept_vertex_bounds(const Motion& motion, std::span<Kdop16> out);
 void swept_vertex_bounds(const Motion& motion, std::span<Aabb> out);
 
-// The bounds of every triangle's path, of the bounds of its corners' paths.
+// Returns the bounds of a triangle's path, from the bounds of all vertices' paths ([vertices]).
 template <class Volume>
 Volume swept_triangle(const Triangle& corner, std::span<const Volume> of_vertex) {
   return united(united(of_vertex[+corner[0]], of_vertex[+corner[1]]), of_vertex[+corner[2]]);

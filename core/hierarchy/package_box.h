@@ -6,8 +6,8 @@
 
 namespace cscd {
 
-// A box as packages take it: cut off at `farthest`, beyond which they lose it. What overlaps still does when
-// cut off there.
+// A box for a package that cannot handle coordinates beyond `farthest` and would lose the box: all
+// coordinates are clamped to [-farthest, farthest]. Boxes that overlap still do so when both are clamped.
 struct PackageBox {
   float low[3], high[3];
 

@@ -12,9 +12,9 @@ namespace cscd {
 
 using NodeIndex = std::int32_t;
 
-// Topology of a binary tree over triangles, built once in the reference pose. Nodes stand in depth-first
-// order: the left child of node n is n + 1, so every subtree is a contiguous range and children follow their
-// parents.
+// The topology of a binary tree over triangles, built once from the reference pose. Nodes are numbered in
+// depth-first order: the left child of node n is node n + 1. So every subtree is a contiguous range of nodes,
+// and children have larger numbers than their parents.
 class Tree {
  public:
   std::size_t node_count() const { return link_.size(); }
@@ -23,23 +23,23 @@ class Tree {
   NodeIndex left(NodeIndex node) const { return node + 1; }
   NodeIndex right(NodeIndex node) const { return link_[static_cast<std::size_t>(node)]; }
 
-  // For a tree over clusters: the node below which cluster c lies. Empty otherwise.
+  // For a tree over clusters: [clusters], the root of each cluster's subtree. Empty for other trees.
   std::span<const NodeIndex> cluster_roots() const { return cluster_roots_; }
 
  private:
   friend Tree build_tree(const TriangleMesh&, std::span<const Vec3>);
   friend Tree build_tree(const TriangleMesh&, std::span<const Vec3>, std::span<const std::int32_t>, int);
   friend struct TreeBuilder;
-  std::vector<std::int32_t> link_;  // inner node: its right child; leaf: ~triangle
+  std::vector<std::int32_t> link_;  // [nodes]; an inner node's right child, or ~triangle for a leaf
   std::vector<NodeIndex> cluster_roots_;
 };
 
-// Median split of triangle centroids along the longest axis of their box (Bridson et al. 2002), one triangle
-// a leaf.
+// Builds a tree with one triangle a leaf. Every node splits its triangles in half at the median of their
+// centroids, along the longest axis of the centroids' box (Bridson et al. 2002). `positions`: [vertices].
 Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions);
 
-// A local tree for each cluster, and a global one over their roots (Wong et al. 2013, section 6 of the 2014
-// paper). `cluster` holds one label in [0, cluster_count) a triangle; every label occurs.
+// Builds a local tree for each cluster and a global tree over the roots of the local trees (Wong et al. 2013;
+// section 6 of the 2014 paper). `cluster`: [triangles], labels in [0, cluster_count); every label must occur.
 Tree build_tree(const TriangleMesh& mesh, std::span<const Vec3> positions,
                 std::span<const std::int32_t> cluster, int cluster_count);
 
