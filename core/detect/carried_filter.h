@@ -5,9 +5,10 @@
 
 namespace cscd {
 
-// The feature pairs of two triangles that the filter (core/elementary/question/filter.h) cannot prove apart,
-// among those at some places. Six vertices are loaded once; what fifteen pairs need are permutations of
-// registers.
+// The non-penetration filter (core/elementary/question/filter.h) for all feature pairs that two triangles
+// carry. Takes two different triangles and the places (carried_pairs.h) to look at. Returns the places among
+// them whose feature pairs the filter cannot prove apart. The six vertices are loaded once; the points and
+// edges of the fifteen pairs are permutations of the registers that hold them.
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
 
 }  // namespace cscd

@@ -7,8 +7,10 @@
 
 namespace cscd {
 
-// What not_filtered (carried_filter.h) says, where single precision can tell: nothing where it cannot tell of
-// some pair. All fifteen side by side, with bounds for what single precision loses.
+// A *look* is the single-precision version of not_filtered() (carried_filter.h). It evaluates all fifteen
+// feature pairs of two triangles side by side, with bounds for the rounding of single precision. Returns
+// exactly the places that not_filtered() returns, or nullopt if rounding leaves any of `places` undecided;
+// the caller then asks not_filtered().
 std::optional<CarriedPlaces> not_filtered_at_a_look(const Motion& motion, const Triangle& a,
                                                     const Triangle& b, CarriedPlaces places);
 

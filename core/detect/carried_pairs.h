@@ -10,43 +10,52 @@
 
 namespace cscd {
 
-// The feature pairs that two different triangles carry: any vertex against the other triangle, any edge
-// against any edge, unless they share a vertex. They stand at fifteen places, one bit each: 0 to 2 the
-// corners of the first against the second, 3 to 5 those of the second against the first, 6 + 3 i + k edge i
-// of the first against edge k of the second.
+// Two different triangles *carry* the feature pairs between them: each vertex of one
+// against the other triangle, and each edge of one against each edge of the other, except
+// where the two features share a vertex.
+//
+// The fifteen possible pairs stand at fifteen *places*, one bit each:
+//   0 to 2        corner i of the first triangle against the second,
+//   3 to 5        corner i of the second triangle against the first,
+//   6 + 3 i + k   edge i of the first triangle against edge k of the second.
 using CarriedPlaces = std::uint16_t;
 inline constexpr CarriedPlaces kAllCarried = 0x7fff;
+// Returns the places of the feature pairs that the two triangles carry: kAllCarried if they share no vertex.
 CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
+// Returns the feature pair at one place, in [0, 15), of two triangles.
 inline FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place) {
   if (place < 3) return FeaturePair::of(mesh.corners(pair.a)[place], pair.b);
   if (place < 6) return FeaturePair::of(mesh.corners(pair.b)[place - 3], pair.a);
   return FeaturePair::of(mesh.edges_of(pair.a)[(place - 6) / 3], mesh.edges_of(pair.b)[(place - 6) % 3]);
 }
 
-// Some of them.
+// Some of the feature pairs that two triangles carry.
 struct CarriedPairs {
   TrianglePair pair;
   CarriedPlaces places;
 };
+// Calls take(feature_pair) for each of them, in the order of their places.
 template <class Take>
 void for_each_carried(const TriangleMesh& mesh, const CarriedPairs& some, const Take& take) {
   for (unsigned rest = some.places; rest != 0; rest &= rest - 1)
     take(carried(mesh, some.pair, static_cast<std::size_t>(std::countr_zero(rest))));
 }
-// All of them.
+// Calls take(feature_pair) for all feature pairs that the two triangles carry.
 template <class Take>
 void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, const Take& take) {
   for_each_carried(mesh, CarriedPairs{pair, carried_by(mesh.corners(pair.a), mesh.corners(pair.b))}, take);
 }
 
-// For strategies in which not every triangle pair is tested for all that it carries. Whatever it leaves out
-// must be tested for another pair that the same culler passes on, or always (rule any-carrier).
+// Assigns feature pairs to triangle pairs, for strategies in which a triangle pair is tested for some of the
+// feature pairs that it carries. A feature pair that is left out of one triangle pair must be assigned to
+// another that the same culler passes on whenever the features touch, or else be tested in every interval
+// (rule any-carrier, core/soundness.md).
 class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;
-  // Appends what the pairs of a block have to be tested for.
+  // Appends to `out` the feature pairs for which the triangle pairs of `block` have to be tested.
   virtual void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const = 0;
-  // Tested in every interval.
+  // Returns the feature pairs that are tested in every interval.
   virtual std::span<const FeaturePair> always() const = 0;
 };
 

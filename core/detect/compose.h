@@ -9,22 +9,23 @@
 
 namespace cscd {
 
-// Which feature pairs the coplanarity cubic drops: those of certain sign. The others are there to measure
-// what that certainty costs and saves; a plain sign, without its error bound, loses contacts.
+// Selects the feature pairs that are dropped because of the signs of their coplanarity cubic. `certain_sign`
+// drops a pair only if the sign exceeds its error bound. The others measure what that certainty costs and
+// saves: `none` drops nothing, and `plain_sign` ignores the error bound and so loses contacts.
 enum class PairFilter { certain_sign, plain_sign, none };
 
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
   PairFilter filter = PairFilter::certain_sign;
-  // What triangle pairs are tested for; null: all that they carry. Comes without relative boxes and with the
-  // certain sign.
+  // The feature pairs for which triangle pairs are tested; null tests all that they carry. An assignment is
+  // used without relative boxes and with the certain sign, whatever the other options say.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
 };
 
-// A detector out of a culling strategy and an elementary test: the way of one interval. Every strategy shares
-// what happens behind the culler: relative boxes (optional), expansion into feature pairs, each tested once,
-// the certified non-penetration filter, the elementary test. Owns the clock of the interval. `mesh` must
-// outlive the detector.
+// Makes a detector out of a culling strategy and an elementary test. All strategies share the steps after the
+// culler: drop triangle pairs by their relative boxes (optional), expand the others into feature pairs, apply
+// the non-penetration filter, and give each remaining feature pair to the elementary test once. The detector
+// owns the clock of the interval. `mesh` and `test` must outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const TriangleMesh& mesh,
                                   const ElementaryTest& test, PairOptions options = {});
 

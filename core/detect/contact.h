@@ -11,7 +11,7 @@
 
 namespace cscd {
 
-// A vertex of some triangle and a triangle that does not contain it, or two edges that share no vertex.
+// A vertex and a triangle that does not contain it, or two edges that share no vertex.
 struct FeaturePair {
   enum class Kind : std::uint8_t { vertex_face, edge_edge };
   Kind kind;
@@ -28,29 +28,33 @@ struct FeaturePair {
   auto operator<=>(const FeaturePair&) const = default;
 };
 
-// Asks an elementary test about one feature pair of a mesh in motion.
+// Asks an elementary test about one feature pair of a moving mesh and returns its answer.
 Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
            const FeaturePair& pair);
 
-// A feature pair that touches at `time` (earliest), or whose test could not tell (`undecided`).
+// A feature pair that the elementary test calls a contact, or about which the test could not tell.
 struct Contact {
   FeaturePair pair;
   Verdict verdict;  // contact or undecided
+  // The earliest contact time, in [0, 1]; for `undecided`, a lower bound of it.
   double time;
 };
 
-// What one interval found. Detectors append in any order; `sort` makes it canonical.
+// The contacts and undecided feature pairs of one interval. Detectors append them in any order;
+// sort() makes the order canonical.
 struct ContactSet {
   std::vector<Contact> contacts;
 
   void clear() { contacts.clear(); }
-  void sort();  // by time, then feature pair
+  void sort();  // by time, then by feature pair
 };
 
-// Leaves the contacts of the earliest time, and what is undecided.
+// Removes all contacts that are later than the earliest one. Undecided feature
+// pairs stay. Takes a sorted set.
 void keep_first(ContactSet& sorted);
 
-// 64-bit FNV-1a over the sorted set (pairs, verdicts and the bits of the times), as 16 hex digits.
+// Returns the 64-bit FNV-1a hash of a sorted set (pairs, verdicts and the bits
+// of the times) as 16 hex digits.
 std::string digest(const ContactSet& sorted);
 
 }  // namespace cscd

@@ -9,27 +9,28 @@
 
 namespace cscd {
 
-// How a feature pair touches, in doubles: for people and for contact response. Whether and when it touches is
-// decided elsewhere, exactly.
+// How a feature pair touches, computed in doubles, for people and for contact response. Whether and when the
+// pair touches is decided elsewhere, exactly.
 //
-// A contact has two sides. First: the vertex, or the edge of the pair's `a`. Second: the face, or the edge of
-// `b`.
+// A contact has two sides. The first feature is the vertex, or the edge FeaturePair::a. The second feature is
+// the face, or the edge FeaturePair::b.
 struct ContactGeometry {
-  Vec3 point;  // on the first feature at the time of contact
-  // Where the contact lies on the features. A vertex and a face: the barycentric weights of the face's three
-  // corners, which sum to 1. Two edges: the share of the way along the first edge and along the second, each
-  // from its end with the smaller index, in [0, 1].
+  Vec3 point;  // on the first feature at the time of contact, in lengths of the scene
+  // The place of the contact on the features. For a vertex and a face: the barycentric weights of the face's
+  // three corners, which sum to 1. For two edges: the share of the way along the first edge and along the
+  // second, each in [0, 1] and measured from the end with the smaller index.
   std::array<double, 3> weights{};
   int weight_count = 0;  // 3 or 2
-  // Unit vector from the second feature to the first, that is, towards the side from which the first came.
-  // Absent where the features leave no direction: a face without area, or edges that are parallel or points,
-  // that moreover did not come from different places.
+  // Unit vector from the second feature to the first, that is, towards the side from which the first feature
+  // came. It is absent if nothing defines a direction: the features define none (a face without area, edges
+  // that are parallel or have length zero), and they started from the same place too.
   std::optional<Vec3> normal;
-  // How fast the first feature moves away from the second along the normal, in units of length per interval;
-  // negative where they approach. Absent without a normal.
+  // The speed at which the first feature moves away from the second along the normal, in lengths of the scene
+  // per interval; it is negative if they approach. Absent if there is no normal.
   std::optional<double> relative_speed;
 };
 
+// Returns the geometry of one contact of a moving mesh. `time` is the time of the contact, in [0, 1].
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
                                  double time);
 

@@ -10,10 +10,13 @@
 
 namespace cscd {
 
-// Of up to sixteen pairs of triangles, a time before which the two certainly do not touch: 0 where nothing is
-// known, more than 1 where they never do. Along a direction, the gap between them is at least what lies on
-// the straight line between the gaps at both ends. So it is the latest time at which one of these lines meets
-// 0, of three axes, the normals of both triangles at both ends, and the way from one to the other.
+// Returns, for up to sixteen pairs of triangles, a time before which the two certainly do not touch: 0 if
+// nothing is known, more than 1 if they never touch in the interval. Lanes without a pair hold no meaning.
+//
+// Along a fixed direction, the gap between the two triangles is at least the linear interpolation of the gaps
+// at both ends of the interval. So the triangles are apart until that line reaches 0. The result is the
+// latest such time over these directions: the three axes, the normals of both triangles at both ends, and the
+// direction from one triangle to the other.
 std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Motion& motion,
                                               std::span<const TrianglePair> pairs);
 

@@ -5,11 +5,11 @@
 
 namespace cscd {
 
-// For pictures: how a radial strategy saw the surface in the last interval, triangle by triangle. Empty for
-// strategies without observers.
+// How a radial strategy saw the surface in the last interval, for pictures. Both vectors are empty
+// for strategies without observers.
 struct RadialView {
-  std::vector<std::int32_t> cluster;  // those with one label share an observer
-  std::vector<bool> positive;         // certified to be seen from inside throughout
+  std::vector<std::int32_t> cluster;  // [triangles]; triangles with the same label share an observer
+  std::vector<bool> positive;         // [triangles]; certainly seen from inside throughout the interval
 };
 
 }  // namespace cscd

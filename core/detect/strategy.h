@@ -12,30 +12,34 @@
 
 namespace cscd {
 
-// complete: on every input, every feature pair in contact is passed on to the elementary test.
-// first_contact: on a closed, consistently oriented mesh with an embedded start, at least one feature pair
-// that attains the earliest contact time is; later contacts may be missing. heuristic: neither.
+// What a strategy promises about the feature pairs that it passes on to the elementary test:
+//   complete        on every input, it passes on every feature pair that is in contact;
+//   first_contact   on a closed, consistently oriented mesh with an embedded start, it passes on at least one
+//                   feature pair that attains the earliest contact time; later contacts may be missing;
+//   heuristic       neither of these.
 enum class Guarantee { complete, first_contact, heuristic };
+// Returns the name of the enumerator.
 std::string_view to_string(Guarantee guarantee);
 
-// What a strategy is made for. The referenced objects must outlive the detector.
+// The input for which a detector is made. The referenced objects must outlive the detector.
 struct Setup {
   const TriangleMesh& mesh;
-  std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
+  std::span<const Vec3> reference;  // [vertices]; positions in the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
   const ElementaryTest& elementary;
-  // Threads that answer one interval, the caller's included; at least 1. Strategies that cannot share their
-  // work run on one. Answers and counters do not depend on it.
+  // Number of threads that answer one interval, the calling thread included; at least 1.
+  // Strategies that cannot share out their work run on one thread. Answers and counters are the
+  // same for every number of threads.
   int threads = 1;
 };
 
-// One-time work before the first interval, as in Table 1 of the paper.
+// Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).
 struct Preparation {
   std::optional<double> distance_and_heat_ms;  // distance field and heat diffusion
-  std::optional<double> decomposition_ms;      // clusters from heat weights, observers
-  std::vector<std::int32_t> atomic_cluster;    // of each triangle; empty where there are none
+  std::optional<double> decomposition_ms;      // clusters from heat weights, and their observers
+  std::vector<std::int32_t> atomic_cluster;    // [triangles]; empty if the strategy has no clusters
   int atomic_clusters = 0;
-  int threads = 1;  // on which intervals are answered, of those of the setup
+  int threads = 1;  // number that the detector uses, at most that of the setup
 };
 
 struct Prepared {
@@ -46,14 +50,14 @@ struct Prepared {
 // One row of the catalogue of strategies.
 struct Strategy {
   std::string_view name;
-  std::string_view source;  // paper or package, in a line
+  std::string_view source;  // paper or package, in one line
   Guarantee guarantee;
   bool needs_rig;
-  Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
-  // Rows with a group are timed only where they or their group is named, the others wherever the input allows
-  // it.
+  Prepared (*make)(const Setup& setup);  // throws InputError if the setup lacks what the strategy needs
+  // Strategies with a group are timed only if they or their group are named. The others are
+  // timed wherever the input allows it.
   std::string_view group = "";
-  bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
+  bool own_test = false;  // has an elementary test of its own, whose answers are compared with the referee's
 };
 
 }  // namespace cscd

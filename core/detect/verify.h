@@ -11,34 +11,36 @@
 
 namespace cscd {
 
-// One interval's judgement of a strategy, against a complete reference, both with an elementary test that is
-// always right. Comparing numbers of contacts would be wrong (rule fair-comparison): a strategy may report fewer
-// where its guarantee allows it.
+// The judgement of a strategy's answer for one interval, compared with a complete reference. Both
+// answers must come from an elementary test that is always right. The verdict does not compare numbers
+// of contacts, because a strategy may report fewer where its guarantee allows that (rule
+// fair-comparison, core/soundness.md).
 struct Verification {
   bool ok = true;
   std::string failure;  // empty when ok: which pair is missing or wrong, and at what time
   std::uint64_t reference_contacts = 0;
-  std::uint64_t found_contacts = 0;  // of the reference's
+  std::uint64_t found_contacts = 0;  // contacts of the reference that the strategy reported
 };
 
-// Both sets sorted. `starts_embedded` matters for the guarantee first_contact alone: without it nothing is
-// promised.
+// Compares two sorted sets. `starts_embedded` matters only for the guarantee first_contact, which promises
+// nothing from a start that is not embedded.
 Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
                     bool starts_embedded);
 
-// How an inexact elementary test did on the pairs that a complete culler passed on, the referee having
-// answered the same pairs.
+// How an inexact elementary test answered the feature pairs that a complete culler passed on, compared with
+// the referee's answers for the same pairs.
 struct Accuracy {
-  std::uint64_t misses = 0;        // contact by the referee, apart by the test
-  std::uint64_t false_alarms = 0;  // apart by the referee, contact by the test
+  std::uint64_t misses = 0;        // the referee says contact, the test says apart
+  std::uint64_t false_alarms = 0;  // the referee says apart, the test says contact
   std::uint64_t undecided = 0;
-  double largest_time_error = 0;  // over pairs that both call contact
+  double largest_time_error = 0;  // in intervals, over pairs that both call a contact
 
   void add(const Accuracy& other);
 };
 Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test);
 
-// A pair that one of them calls a contact and the other apart; a missing time means apart.
+// A feature pair that one of the referee and the test calls a contact and the other
+// apart. A missing time means apart.
 struct Difference {
   FeaturePair pair;
   std::optional<double> truth, said;

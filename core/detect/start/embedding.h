@@ -10,26 +10,28 @@
 
 namespace cscd {
 
-// Do two different triangles meet in these positions, except in the vertices and edges they share? Exact.
+// Returns whether two different triangles meet outside the vertices and edges that they share, decided
+// exactly. `positions`: [vertices].
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
 
-// Decides exactly whether a frame is embedded: no two triangles meet except in the vertices and edges they
-// share. (No feature pair touches, and no edge pierces a face.) The theorem behind the guarantee
-// `first_contact` needs it.
+// Decides exactly whether a frame is *embedded*: no two triangles meet outside the vertices and edges that
+// they share. In an embedded frame no feature pair touches and no edge pierces a face. The theorem behind the
+// guarantee `first_contact` needs an embedded start (rule embedded-start, core/soundness.md).
 class EmbeddingTest {
  public:
-  // `reference` shapes the tree; any frame will do.
+  // Builds a tree from the positions `reference` ([vertices]); any frame will do.
+  // `mesh` must outlive the object.
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
-  // Two triangles that meet, or nothing if the frame is embedded.
+  // Returns two triangles that meet, or nullopt if the frame is embedded.
   std::optional<CrossingPair> find_intersection(std::span<const Vec3> positions);
   bool embedded(std::span<const Vec3> positions) { return !find_intersection(positions); }
 
-  // All of them are counted; up to `most` are kept.
+  // Counts all triangle pairs that meet and keeps up to `most` of them.
   Crossings find_all(std::span<const Vec3> positions, std::size_t most);
 
  private:
-  // Calls found(pair) for every pair that meets until it returns false.
+  // Calls found(pair) for every triangle pair that meets, until found() returns false.
   template <class Found>
   void search(std::span<const Vec3> positions, const Found& found);
 

@@ -9,34 +9,40 @@
 
 namespace cscd {
 
-// The crossing pairs of triangles of a surface in one pose after another.
+// Keeps the crossing triangle pairs of a surface while it moves from one pose to the next.
 //
-// To find them from nothing, every neighbourhood of the surface is tested with exact predicates, which takes
-// many times as long as a query. But two triangles begin or cease to cross only at a moment at which a
-// feature pair that they carry touches: where triangles meet, either a vertex lies on a face, or two edges
-// meet, or an edge pierces a face, and a piercing edge has to leave the face by its own end or across the
-// face's border. (Where triangles share a vertex, that vertex ends the edge it leaves by, and the pair of
-// edges counts.) So whoever knows all feature pairs that touched on the way from a known pose has to look at
-// their carriers alone, and where nothing touched, the same pairs cross as before: in particular, an embedded
-// pose stays embedded.
+// Finding them from nothing tests every neighbourhood of the surface with exact predicates, which takes many
+// times as long as a query. But two triangles can begin or cease to cross only at a moment at which a
+// feature pair that they carry touches. Where triangles cross, either a vertex lies on a face, or two edges
+// meet, or an edge pierces a face. The first two are touching feature pairs. A piercing edge has to leave
+// the face by its own end or across the face's border, and either way a feature pair touches. (If the
+// triangles share a vertex, the edge may leave through that vertex; there it meets the edges at the vertex,
+// and the pair of edges counts.)
+//
+// So a caller who knows all feature pairs that touched on the way from a known pose has to test only the
+// triangle pairs that carry them. If nothing touched, the same pairs cross in both poses; in particular, an
+// embedded pose leads to an embedded pose.
 class PoseCrossings {
  public:
-  // `reference` shapes the tree; any frame will do. Of one pose up to `most` pairs are kept.
+  // Builds a tree from the positions `reference` ([vertices]); any frame will do. Of each pose, up to `most`
+  // crossing pairs are kept. `mesh` must outlive the object.
   PoseCrossings(const TriangleMesh& mesh, std::span<const Vec3> reference, std::size_t most);
 
-  // Whether the crossings of these very positions, bit for bit, are known without work.
+  // Returns whether `positions` are those last asked for, bit for bit, so that
+  // their crossings are known already.
   bool knows(std::span<const Vec3> positions) const;
 
-  // The positions last asked for, and what crosses there.
+  // The positions last asked for, and the crossings in them.
   std::span<const Vec3> positions() const { return positions_; }
   const Crossings& crossings() const { return crossings_; }
 
-  // Finds the crossings from nothing.
+  // Finds the crossings in `positions` from nothing.
   const Crossings& find(std::span<const Vec3> positions);
 
-  // Derives them from the pose last asked for: every vertex moved from there in a straight line, and
-  // `touched` holds all feature pairs that touched on the way, decided or not. Finds them from nothing where
-  // the last pose's pairs are not all known.
+  // Derives the crossings in `positions` from the pose last asked for. Every vertex must have moved from
+  // there in a straight line, and `touched` must hold all feature pairs that touched on the way, contacts and
+  // undecided ones. If no pose was asked for yet, or the last pose has more crossing pairs than were kept,
+  // this finds the crossings from nothing.
   const Crossings& follow(std::span<const Vec3> positions, const ContactSet& touched);
 
  private:
