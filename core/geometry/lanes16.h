@@ -14,8 +14,9 @@
 
 namespace cscd {
 
-// Sixteen floats side by side. What the vector types of gcc and clang lack stands here for AVX-512, then by
-// halves: one instruction each where there is one, else a loop.
+// Sixteen floats side by side. Operations for which the vector types of gcc and clang have no
+// operator are written here for AVX-512, then for two halves: as one instruction where the
+// processor has one, else as a loop.
 inline constexpr std::size_t kLanes16 = 16;
 using Float16 = LanesOf<float>;
 using Float8 = HalfOf<float>;
@@ -25,13 +26,14 @@ using Int8 = HalfOf<std::int32_t>;
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
-// The same in all lanes. (x - 0 is x, which compilers know; x + 0 is not where x is -0, so they would add.)
+// Returns x in all lanes. (Compilers know that x - 0 is x, and leave the subtraction out. They cannot leave
+// out x + 0, because it is not x if x is -0.)
 inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
 
 #ifndef __AVX512F__
-// Where a comparison of a half is true.
+// Returns one bit for each lane of half a vector: 1 if the comparison is true there.
 inline unsigned bits_of(Int8 lanes) {
 #ifdef __AVX2__
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
@@ -49,8 +51,8 @@ inline Float16 absolute(Float16 a) {
   return bits_as<Float16>(bits_as<Int16>(a) & 0x7fffffff);
 }
 
-// a b + c and a b - c, rounded once where that is one instruction, else twice: who bounds rounding has to
-// allow for both.
+// Returns a b + c, and a b - c. The result is rounded once if the processor has an instruction for it, else
+// twice; a bound of the rounding has to allow for both.
 inline Float16 product_plus(Float16 a, Float16 b, Float16 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmadd_ps(0xffff, a, b, c);
@@ -70,10 +72,11 @@ inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 #endif
 }
 
-// The larger of both absolute values.
+// Returns the larger of both absolute values.
 inline Float16 larger_size(Float16 a, Float16 b) {
 #ifdef __AVX512DQ__
-  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: its sign cleared
+  return _mm512_maskz_range_ps(0xffff, a, b,
+                               0b1011);  // bits 11: the larger in size; bits 10: without its sign
 #else
   return larger(absolute(a), absolute(b));
 #endif
@@ -90,7 +93,7 @@ inline Float16 square_root(Float16 v) {
 #endif
 }
 
-// Where a > b.
+// Returns one bit for each lane: 1 if a > b.
 inline Mask16 above(Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
@@ -99,7 +102,7 @@ inline Mask16 above(Float16 a, Float16 b) {
 #endif
 }
 
-// Of the lanes in `where`, those where a > b.
+// Returns the lanes of `where` in which a > b.
 inline Mask16 above(Mask16 where, Float16 a, Float16 b) {
 #ifdef __AVX512F__
   return _mm512_mask_cmp_ps_mask(where, a, b, _CMP_GT_OQ);
@@ -108,13 +111,13 @@ inline Mask16 above(Mask16 where, Float16 a, Float16 b) {
 #endif
 }
 
-// Of a mask, the first lane first.
+// Calls take(lane) for each lane whose bit is set in the mask, in ascending order.
 template <class Take>
 void for_each_lane(unsigned mask, const Take& take) {
   for (; mask != 0; mask &= mask - 1) take(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
-// Where the numbers are the same.
+// Returns one bit for each lane: 1 if both numbers are equal.
 inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
                     const std::array<std::int32_t, kLanes16>& b) {
 #ifdef __AVX512F__
@@ -127,7 +130,8 @@ inline Mask16 equal(const std::array<std::int32_t, kLanes16>& a,
 #endif
 }
 
-// All lanes by an operation that takes two vectors of any length, or two numbers: halves first.
+// Combines all lanes of v by an operation that takes two vectors of any length, or two numbers. The halves of
+// the vector are combined first, then the halves of the result, and so on.
 template <class Operation>
 float folded(Float16 v, const Operation& operation) {
   Float8 eight[2];
@@ -142,12 +146,13 @@ float folded(Float16 v, const Operation& operation) {
 // Lane l of the result is lane place[l] of v.
 inline Float16 permuted(Float16 v, const Places16& place) {
 #ifdef __AVX512F__
-  // With masks of ones, as gcc 12 warns of the forms without (GCC bug 105593).
+  // The intrinsics take masks of ones, because gcc 12 warns about the forms without a mask (GCC bug 105593).
   __m128i bytes;
   std::memcpy(&bytes, place.data(), sizeof bytes);
   return _mm512_maskz_permutexvar_ps(0xffff, _mm512_maskz_cvtepu8_epi32(0xffff, bytes), v);
 #elif defined(__AVX2__)
-  // Out of each half by the last three bits; which half by the fourth, moved to where a blend looks.
+  // Permute each half by the last three bits of the place, then choose the half by the fourth bit, moved to
+  // the sign bit, where a blend reads it.
   const auto half = [&](const std::uint8_t* places) {
     const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places)));
     return _mm256_blendv_ps(_mm256_permutevar8x32_ps(v.low, lanes), _mm256_permutevar8x32_ps(v.high, lanes),
