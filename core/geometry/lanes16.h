@@ -75,8 +75,7 @@ inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 // Returns the larger of both absolute values.
 inline Float16 larger_size(Float16 a, Float16 b) {
 #ifdef __AVX512DQ__
-  return _mm512_maskz_range_ps(0xffff, a, b,
-                               0b1011);  // bits 11: the larger in size; bits 10: without its sign
+  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: without its sign
 #else
   return larger(absolute(a), absolute(b));
 #endif

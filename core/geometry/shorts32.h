@@ -86,8 +86,8 @@ inline Short32 swapped(Short32 v) {
 
 // One step of a reduction over two rows. Where bit kBit of l is 0, pair l of `own` is pair l of a, and where
 // the bit is 1, pair l of b. Pair l of `other` comes from the same row, from the pair whose number differs
-// from l in that bit. So the smaller of `own` and `other` holds minima of two pairs, those of a and those of
-// b by turns. Two separate reductions would give the same numbers; this form takes one shuffle and a blend.
+// from l in that bit. So the smaller of `own` and `other` holds the minimum of two pairs of one row. Shuffles
+// alone would need two of them to bring these pairs together; this form needs one shuffle and a blend.
 struct Neighbours {
   Short32 own, other;
 };
