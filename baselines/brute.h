@@ -4,7 +4,7 @@
 
 namespace cscd {
 
-// All pairs of triangles: the oracle. Quadratic.
+// The oracle: passes on all pairs of triangles, so it takes quadratic time.
 Prepared make_brute(const Setup& setup);
 
 }  // namespace cscd

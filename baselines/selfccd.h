@@ -8,11 +8,12 @@
 namespace cscd {
 
 // The traversal of SelfCCD (UNC Gamma group): representative triangles (Curtis, Tamstorf and Manocha, "Fast
-// Collision Detection for Deformable Models using Representative-Triangles", I3D 2008) over orphan sets
-// (Tang, Curtis, Yoon and Manocha, TVCG 15(4), 2009).
+// Collision Detection for Deformable Models using Representative-Triangles", I3D 2008) and orphan sets (Tang,
+// Curtis, Yoon and Manocha, TVCG 15(4), 2009).
 Prepared make_selfccd(const Setup& setup);
 
-// Every feature pair assigned to one triangle pair without a common vertex, or else to the orphans.
+// Assigns every feature pair to one triangle pair without a common vertex that carries it; a feature pair
+// that no such triangle pair carries is an orphan and always tested. `mesh` must outlive the result.
 std::unique_ptr<const FeatureAssignment> representative_triangles(const TriangleMesh& mesh);
 
 }  // namespace cscd
