@@ -17,7 +17,7 @@
 // Tuning: one thread; pointers to boxes instead of boxes, as the package's manual advises; the cut-off below
 // which it scans was chosen on the rope.
 //
-// That a dropped pair is apart rests on CGAL's own code and proof.
+// The proof that a dropped pair is apart rests on CGAL's own code and proof.
 namespace cscd {
 namespace {
 

@@ -16,8 +16,8 @@
 //
 // The manual says little about rtcCollide; the following was found by trying it. A scene with itself reports
 // every pair in both orders, and no pair of a primitive with itself. Leaves hold several primitives, whose
-// boxes are not compared with each other. So this strategy takes one order and compares the boxes itself.
-// That rtcCollide finds all pairs is not documented either; the test compares its answer with all pairs of
+// boxes are not compared with each other. So this strategy takes one order and compares the boxes itself. The
+// manual does not say either that rtcCollide finds all pairs; the test compares its answer with all pairs of
 // boxes. rtcCollide calls back with a processor mode that takes subnormal numbers for zero, so the callback
 // computes nothing. A device that is told to use one thread limits all of oneTBB to one thread, our own team
 // included. So the device is not told, and its functions are called where there is only one thread.
@@ -29,7 +29,7 @@
 // Tuning: one thread; the hierarchy is built once in the reference pose and refitted at every interval, as
 // all hierarchies here. On the rope that is much cheaper in all than building it anew.
 //
-// That a dropped pair is apart rests on Embree's own code.
+// The claim that a dropped pair is apart rests on Embree's own code.
 namespace cscd {
 namespace {
 

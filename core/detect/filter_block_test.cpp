@@ -52,7 +52,7 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
   }
 }
 
-// By triangle pairs the filter leaves the same feature pairs, whichever triangle comes first and
+// Filtering by triangle pairs leaves the same feature pairs, whichever triangle comes first and
 // however its corners are turned.
 TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
   const TriangleMesh mesh = test::icosphere(1).mesh();

@@ -12,7 +12,7 @@
 
 namespace cscd {
 
-// What a strategy promises about the feature pairs that it passes on to the elementary test:
+// The promise of a strategy about the feature pairs that it passes on to the elementary test:
 //   complete        on every input, it passes on every feature pair that is in contact;
 //   first_contact   on a closed, consistently oriented mesh with an embedded start, it passes on at least one
 //                   feature pair that attains the earliest contact time; later contacts may be missing;

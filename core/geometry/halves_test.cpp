@@ -111,7 +111,7 @@ TYPED_TEST(Vectors, CompareAndSelectLaneByLane) {
     this->expect(a != b, [](Number x, Number y) { return -(x != y); });
     this->expect(select(a < b, a, b), [](Number x, Number y) { return x < y ? x : y; });
     this->expect(select((a < b) | (a == b), b, a), [](Number x, Number y) { return x <= y ? y : x; });
-    // Of 0 and -0 either may be taken, and so may either number if one of them is NaN.
+    // Either of 0 and -0 may be taken, and either number if one of them is NaN.
     const TypeParam least = smaller(a, b), most = larger(a, b);
     for (std::size_t l = 0; l < this->kCount; ++l) {
       if (a[l] != a[l] || b[l] != b[l]) continue;
