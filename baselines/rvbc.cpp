@@ -10,13 +10,13 @@
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
 
-// Clusters and observers come from the reference pose and stay: heat diffusion at full resolution, one
-// cluster a bone, viewed from the bone's centre or along it. Every interval the triangles are classified and
-// the intra- and inter-cluster checks run over the same hierarchies, bounds and elementary tests as every
-// other strategy.
+// Clusters and observers come from the reference pose and stay as they are: heat diffusion at full
+// resolution, one cluster for each bone, viewed from the bone's centre or along the bone. In every interval
+// the triangles are classified, and then pairs within and between clusters are found over the same
+// hierarchies and bounds, and tested by the same elementary tests, as in every other strategy.
 //
-// Fidelity: the 2013 text could not be had; this follows what the 2014 paper says of it (sections 3.1, 4.1
-// and 7). Relative boxes are the 2014 paper's addition, so there are none here but in the ablation's row.
+// Fidelity: the text of 2013 could not be had; this follows what the 2014 paper says about it (sections 3.1,
+// 4.1 and 7). Relative boxes are the 2014 paper's addition, so only the ablation's row has them.
 namespace cscd {
 namespace {
 

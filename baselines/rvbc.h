@@ -10,11 +10,13 @@ namespace cscd {
 struct RvbcOptions {
   std::string_view name = "rvbc";  // begins error texts
   bool relative_boxes = false;     // the 2014 paper's addition
+  // The corners that decide a triangle's sign towards a segment observer (rule
+  // three-vertices, core/soundness.md).
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
 };
 
-// Radial view based culling with fixed clusters (Wong, Lin, Hung, Huang and Lii, ACM TOG 32(4), 2013). Needs
-// a closed, consistently oriented mesh and a rig.
+// Radial view based culling with fixed clusters (Wong, Lin, Hung, Huang and Lii, ACM TOG 32(4), 2013). Throws
+// InputError unless the setup has a closed, consistently oriented mesh and a rig.
 Prepared make_rvbc(const Setup& setup, const RvbcOptions& options = {});
 
 }  // namespace cscd

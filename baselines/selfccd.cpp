@@ -6,24 +6,25 @@
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 
-// Idea: a feature pair is carried by many triangle pairs (a vertex and a face by about six, two edges by
-// four) and need be tested for one of them only, its representative; and of triangle pairs that share a
-// vertex, of which a hierarchy yields hundreds of thousands, none need be looked at if the few feature pairs
-// that no other triangle pair carries, the orphans, are listed once and tested at every interval.
+// Idea: many triangle pairs carry the same feature pair (about six for a vertex and a face, four for two
+// edges), and it need be tested for only one of them, its *representative*. Triangle pairs that share a
+// vertex, of which a hierarchy yields hundreds of thousands, then need no test at all: the few feature pairs
+// that only such triangle pairs carry, the *orphans*, are listed once and tested at every interval.
 //
 // Rule any-carrier is about this method. It is sound here because the bounds alone cull: the representative
 // of a pair in contact are two triangles that touch, so their bounds overlap whatever other pairs are
 // dropped. Under culling by orientation it would lose contacts. A "no" proves that the swept bounds are
 // disjoint.
 //
-// Fidelity: own code after descriptions of the published one. The representative is found by a rule instead
-// of a table, as in the published code: the first triangle at the vertex that shares no vertex with the face;
-// the first such pair around the edge with the smaller index and the other one. Its hierarchy has 18-DOPs in
-// float, its filter no bound of the rounding and its cubics a tolerance; here bounds, tree, filter and
-// elementary test are those of all strategies. Its normal cones are the strategy `mcd`.
+// Fidelity: own code after descriptions of the published code. As there, the representative is found by a
+// rule instead of a table. For a vertex and a face, the rule takes the first triangle at the vertex that
+// shares no vertex with the face. For two edges, it takes the first such pair of a triangle at the edge with
+// the smaller index and one at the other edge. The published hierarchy has 18-DOPs in float, its filter has
+// no bound of the rounding, and its cubics have a tolerance. Here, bounds, tree, filter and elementary test
+// are those of all strategies. The normal cones of the published code are the strategy `mcd`.
 //
-// Tuning: adjacent pairs are dropped where the descent meets them, before they are stored; the rule looks at
-// one triangle in most cases.
+// Tuning: pairs of adjacent triangles are dropped where the descent meets them, before they are stored; the
+// rule looks at one triangle in most cases.
 namespace cscd {
 namespace {
 
@@ -52,7 +53,8 @@ class Representatives : public FeatureAssignment {
             ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
           out.push_back(features);
       };
-      // All fifteen, as the two have no vertex in common, in loops that compilers unroll.
+      // The two triangles have no common vertex, so they carry all fifteen feature pairs. These loops
+      // are ones that compilers unroll.
       for (const VertexId v : mesh_.corners(pair.a)) take(FeaturePair::of(v, pair.b));
       for (const VertexId v : mesh_.corners(pair.b)) take(FeaturePair::of(v, pair.a));
       for (const EdgeId e : mesh_.edges_of(pair.a))
@@ -64,7 +66,7 @@ class Representatives : public FeatureAssignment {
  private:
   bool adjacent(TriangleId a, TriangleId b) const { return share_vertex(mesh_.corners(a), mesh_.corners(b)); }
 
-  // The triangle pair that the feature pair is tested for; none for an orphan.
+  // Returns the triangle pair for which the feature pair is tested, or nullopt for an orphan.
   std::optional<TrianglePair> representative(const FeaturePair& pair) const {
     if (pair.kind == FeaturePair::Kind::vertex_face) {
       const TriangleId face{pair.b};

@@ -15,7 +15,7 @@ test::Shape open_ball() {
   return shape;
 }
 
-// Three triangles at one edge, a triangle that occurs twice, two fans that meet in a vertex.
+// Three triangles at one edge, a triangle that occurs twice, and two fans that meet in a vertex.
 test::Shape odd_pieces() {
   using test::corners;
   return {std::vector<Vec3>(11, Vec3(0, 0, 0)),
@@ -23,8 +23,8 @@ test::Shape odd_pieces() {
            corners(5, 6, 7), corners(5, 8, 9), corners(8, 10, 9)}};
 }
 
-// With the orphans, the triangle pairs without a common vertex bring every feature pair exactly once. So as
-// long as bounds alone cull, none is lost (rule any-carrier).
+// The triangle pairs without a common vertex, together with the orphans, bring every feature pair exactly
+// once. So as long as only bounds cull, no feature pair is lost (rule any-carrier).
 TEST(RepresentativeTriangles, AndOrphansCoverEveryFeaturePairExactlyOnce) {
   for (const test::Shape& shape : {test::octahedron(), test::box(), test::icosphere(1), test::torus(7, 5),
                                    test::capped_tube(3, 3, 1, 3), test::ramp(5, 0.5, 1, 2, 1), open_ball(),
@@ -39,7 +39,7 @@ TEST(RepresentativeTriangles, AndOrphansCoverEveryFeaturePairExactlyOnce) {
                                 TriangleId{static_cast<std::int32_t>(j)}};
         const bool adjacent = share_vertex(mesh.corners(pair.a), mesh.corners(pair.b));
         for_each_carried(mesh, pair, [&](const FeaturePair& features) { expected[features] = 1; });
-        // In either order, as descents meet them.
+        // Pairs come in either order, as descents meet them.
         if (!adjacent) distant.push_back((i + j) % 2 == 0 ? pair : TrianglePair{pair.b, pair.a});
       }
     std::vector<FeaturePair> tested;

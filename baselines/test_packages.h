@@ -10,8 +10,9 @@
 
 namespace cscd::test {
 
-// The package reports exactly the pairs of boxes that overlap: as many triangle pairs, the same feature pairs
-// and contacts as the hierarchy of boxes, on fresh detectors and on used ones.
+// Expects that the package reports exactly the pairs of boxes that overlap: the same number
+// of triangle pairs, and the same feature pairs and contacts as the hierarchy of boxes, on
+// fresh detectors and on used ones.
 inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
   const ElementaryTest& newton = *find_elementary_test("newton");
   std::uint64_t pairs = 0;
@@ -38,7 +39,8 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
   EXPECT_GT(pairs, 100000u);
 }
 
-// Triangles without common vertices.
+// Expects the same for triangles at rest without common vertices. `corners`:
+// three positions for each triangle.
 inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std::vector<Vec3>& corners) {
   std::vector<Triangle> triangles;
   for (int v = 0; v < static_cast<int>(corners.size()); v += 3)
@@ -54,7 +56,7 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std:
   EXPECT_EQ(digest(found), digest(expected));
 }
 
-// What reaches beyond the floats, beside one triangle that does not.
+// Expects the same for triangles that reach beyond the floats, beside one triangle that does not.
 inline void expect_pairs_beyond_floats(Prepared (*make)(const Setup&)) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(0, 4), near(-0.5, 0.5);
@@ -70,8 +72,8 @@ inline void expect_pairs_beyond_floats(Prepared (*make)(const Setup&)) {
   }
 }
 
-// So many pairs of subnormal triangles, all of them apart, that some are tested while others are still
-// sought.
+// Expects the same for subnormal triangles that are all apart. Their pairs are so many that some are tested
+// while others are still being sought.
 inline void expect_pairs_of_subnormal_triangles(Prepared (*make)(const Setup&)) {
   std::vector<Vec3> corners;
   for (int t = 0; t < 260; ++t)

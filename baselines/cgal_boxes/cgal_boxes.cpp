@@ -7,22 +7,22 @@
 #include "core/detect/compose.h"
 #include "core/hierarchy/package_box.h"
 
-// Idea: no hierarchy that is kept, but a streamed segment tree with a scan as cut-off, made anew for every
-// set of boxes; proven to take O(n log^3 n + pairs).
+// Idea: instead of a hierarchy that is kept, a streamed segment tree with a scan below a cut-off, made anew
+// for every set of boxes. It is proven to take O(n log^3 n + pairs).
 //
-// Fidelity: the package as it is, in its mode for pairs within one set, closed boxes. Boxes are those of the
-// strategy `aabb`, rounded outward; filter and elementary test follow as for all. It does not tell how many
-// boxes it compares, so there is no number of overlap tests.
+// Fidelity: the package as it is, in its mode for pairs within one set, with closed boxes. The boxes are
+// those of the strategy `aabb`, rounded outward. Filter and elementary test follow as for all strategies. The
+// package does not tell how many boxes it compares, so there is no number of overlap tests.
 //
-// Tuning: one thread; pointers to boxes instead of boxes, as its manual advises, and the cut-off below which
-// it scans, chosen on the rope.
+// Tuning: one thread; pointers to boxes instead of boxes, as the package's manual advises; the cut-off below
+// which it scans was chosen on the rope.
 //
-// A "no" rests on CGAL's own code and proof.
+// The proof that a dropped pair is apart rests on CGAL's own code and proof.
 namespace cscd {
 namespace {
 
 constexpr std::ptrdiff_t kScanBelow = 200;  // boxes
-// Its segment tree spans the floats; boxes at their very end fall out of it.
+// The package's segment tree spans the floats; boxes at the very end of their range would be lost.
 constexpr float kFarthest = 1e38F;
 
 using Box = CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::ID_FROM_BOX_ADDRESS>;

@@ -11,27 +11,29 @@
 #include "core/detect/compose.h"
 #include "core/hierarchy/package_box.h"
 
-// Idea: a ray tracer's hierarchy, four children a node and vectorised, as a user would take it for the broad
-// phase: every triangle is a user primitive with the swept box of its path.
+// Idea: a ray tracer's hierarchy, vectorised and with four children a node, as a user would take it for the
+// broad phase. Every triangle is a user primitive with the swept box of its path.
 //
-// What is known of rtcCollide beyond its manual, found by trying it: a scene with itself reports every pair
-// in both orders and none of a primitive with itself; leaves hold several primitives, whose boxes are not
-// compared with each other. So one order is taken and the boxes are compared here. Neither that it finds all
-// pairs is documented: the test compares it with all pairs of boxes. It calls back with subnormal numbers
-// taken for zero, so nothing is computed there. A device that is told of one thread leaves all of oneTBB no
-// more, ours among it, so it is called where there is but one.
+// The manual says little about rtcCollide; the following was found by trying it. A scene with itself reports
+// every pair in both orders, and no pair of a primitive with itself. Leaves hold several primitives, whose
+// boxes are not compared with each other. So this strategy takes one order and compares the boxes itself. The
+// manual does not say either that rtcCollide finds all pairs; the test compares its answer with all pairs of
+// boxes. rtcCollide calls back with a processor mode that takes subnormal numbers for zero, so the callback
+// computes nothing. A device that is told to use one thread limits all of oneTBB to one thread, our own team
+// included. So the device is not told, and its functions are called where there is only one thread.
 //
-// Fidelity: the package as it is. Boxes are those of the strategy `aabb`, rounded outward; filter and
-// elementary test follow as for all. Its counters are not open, so there is no number of overlap tests.
+// Fidelity: the package as it is. The boxes are those of the strategy `aabb`, rounded outward. Filter
+// and elementary test follow as for all strategies. The package's counters are not accessible, so there
+// is no number of overlap tests.
 //
 // Tuning: one thread; the hierarchy is built once in the reference pose and refitted at every interval, as
-// all hierarchies here, which on the rope is much cheaper in all than building it anew.
+// all hierarchies here. On the rope that is much cheaper in all than building it anew.
 //
-// A "no" rests on Embree's own code.
+// The claim that a dropped pair is apart rests on Embree's own code.
 namespace cscd {
 namespace {
 
-// Embree takes a box that reaches farther for a mistake and leaves it out.
+// Embree takes a box that reaches farther for a mistake and leaves the box out.
 constexpr float kFarthest = 1.8e18F;
 
 class EmbreeCuller : public Culler {
@@ -45,7 +47,7 @@ class EmbreeCuller : public Culler {
                        "); choose another strategy, such as aabb");
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);  // the one that honours the geometry's own
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);  // lets the geometry's own quality count
     geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryBuildQuality(geometry_, RTC_BUILD_QUALITY_REFIT);
     rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(box_.size()));
@@ -97,18 +99,19 @@ class EmbreeCuller : public Culler {
         culler.reported_.push_back({TriangleId{static_cast<std::int32_t>(pair.primID0)},
                                     TriangleId{static_cast<std::int32_t>(pair.primID1)}});
   }
-  // Embree keeps to itself what is thrown in its calls, but remembers that something was.
+  // Throws if a call of Embree has failed. Embree catches what is thrown in its calls
+  // but remembers that something was.
   void require_success() {
     if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
       throw std::runtime_error("strategy embree: Embree failed (error " + std::to_string(error) + ")");
   }
 
   const TriangleMesh& mesh_;
-  std::vector<Aabb> of_vertex_, box_;  // one a vertex; one a triangle
+  std::vector<Aabb> of_vertex_, box_;  // [vertices], [triangles]
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   RTCGeometry geometry_ = nullptr;
-  std::vector<TrianglePair> reported_;  // in one order, boxes not compared
+  std::vector<TrianglePair> reported_;  // in one order; their boxes are not yet compared
 };
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 namespace cscd {
 
-// Embree's rtcCollide of a scene with itself (Intel's ray tracing kernels, version 3) as broad phase.
+// Takes Embree's rtcCollide of a scene with itself (Intel's ray tracing kernels, version 3) as the broad
+// phase. Throws InputError if Embree has no device on this machine. The detector throws
+// std::runtime_error if Embree fails.
 Prepared make_embree(const Setup& setup);
 
 }  // namespace cscd

@@ -20,7 +20,7 @@ TEST(Embree, LosesNothingBeyondTheFloats) {
   test::expect_pairs_beyond_floats(make_embree);
 }
 
-// Of two parts that wait for each other, one would wait in vain if Embree kept oneTBB to one thread.
+// Two parts wait for each other. If Embree limited oneTBB to one thread, one of them would wait in vain.
 TEST(Embree, LeavesOtherThreadsAlone) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
   const test::Shape shape = test::box();

@@ -1,5 +1,5 @@
-// Debian builds FCL for any x86-64. With this machine's wider vectors Eigen would lay out FCL's classes
-// otherwise than the library does, and the two would write past each other.
+// Debian builds FCL for any x86-64 processor. If the compiler may use wider vectors, Eigen would lay out
+// FCL's classes differently here than in the library, and each would write past the other's objects.
 #define EIGEN_MAX_ALIGN_BYTES 16
 #include "baselines/fcl/fcl.h"
 
@@ -22,24 +22,26 @@
 
 // Idea: the general collision library that a user is likely to have, as a second opinion and as a competitor.
 //
-// What of it works: continuousCollide takes rigid motions of two objects and nothing else (fcl#412). The
-// deforming case is there as parts, undocumented and used here as they are: a BVHModel keeps the vertices of
-// the frame before once it is updated and then fits its volumes to both; MeshContinuousCollisionTraversalNode
-// tests two triangles over the interval; selfCollide descends one model against itself. They answer in pairs
-// of triangles with the earliest time of each.
+// The parts that work: continuousCollide takes rigid motions of two objects and nothing else (fcl#412). The
+// deforming case exists as parts that are undocumented and are used here as they are. A BVHModel that is
+// updated keeps the vertices of the frame before and fits its volumes to both frames.
+// MeshContinuousCollisionTraversalNode tests two triangles over the interval. selfCollide descends one model
+// against itself. The answer is a list of triangle pairs with the earliest time of each.
 //
 // Fidelity: FCL 0.7 of Debian. Its hierarchy (split at the mean of the longest axis), 16-DOPs in double,
-// traversal and elementary tests are its own; nothing is shared with the other strategies, and the elementary
-// test that they are given is not asked. Two things are added. The leaves are kept and tested after the
-// traversal, by FCL's own function, so that there are two stages to time. And each pair of triangles that it
-// reports is asked once more feature by feature, outside the clock, with the functions that it had called
-// itself, as contacts here are features. Reports that come of features with a common vertex alone drop out.
+// traversal and elementary tests are its own. Nothing is shared with the other strategies, and the elementary
+// test of the setup is not asked. Two things are added. First, the leaves are kept and tested after the
+// traversal, by FCL's own function, so that there are two stages to time. Second, each triangle pair that FCL
+// reports is asked about once more feature by feature, outside the clock, with the functions that FCL itself
+// called, because contacts here are feature pairs. A reported triangle pair drops out if it touches only in
+// features with a common vertex.
 //
-// Tuning: of FCL's own choices none; the start of an interval is written to the model directly, which saves a
-// refit; bottom-up refit; no early stop.
+// Tuning: none of FCL's own choices is changed. The start of an interval is written to the model directly,
+// which saves a refit; the refit is bottom-up; there is no early stop.
 //
-// A "no" proves nothing (guarantee heuristic): its cubics are tested without error bounds and dropped where
-// all coefficients are zero, its tests of features have absolute tolerances. Times are the middle of an
+// A dropped pair is not proven apart (guarantee heuristic). FCL's cubics are tested without error bounds and
+// are dropped if all coefficients are zero, and its feature tests have absolute tolerances. Times are the
+// middle of an interval of its root finder.
 // interval of its root finder.
 namespace cscd {
 namespace {
@@ -48,7 +50,7 @@ using Volume = fcl::KDOP<double, 16>;
 using Model = fcl::BVHModel<Volume>;
 using FclTraversal = fcl::detail::MeshContinuousCollisionTraversalNode<Volume>;
 
-// Keeps the leaves instead of testing them.
+// FCL's traversal, but it keeps the pairs of leaves instead of testing them.
 class Traversal : public FclTraversal {
  public:
   struct Leaves {
@@ -115,7 +117,7 @@ class FclDetector : public Detector {
   TriangleId triangle_at(int leaf) const { return TriangleId{model_.getBV(leaf).primitiveId()}; }
   bool adjacent(TriangleId a, TriangleId b) const { return share_vertex(mesh_.corners(a), mesh_.corners(b)); }
 
-  // Which features of the reported triangles touch, by the same functions.
+  // Finds the features of the reported triangles that touch, by FCL's own functions.
   void name_features(const Motion& motion, ContactSet& out) {
     met_.start_interval();
     for (const auto& reported : traversal_.pairs) {
@@ -130,7 +132,7 @@ class FclDetector : public Detector {
   }
   const TriangleMesh& mesh_;
   StageClock clock_;
-  std::vector<Vec3> positions_;  // as FCL takes them
+  std::vector<Vec3> positions_;  // [vertices]; the form in which FCL takes positions
   Model model_;
   Traversal traversal_;
   fcl::CollisionRequest<double> request_;

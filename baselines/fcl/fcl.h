@@ -6,8 +6,8 @@ namespace cscd {
 
 // The Flexible Collision Library's continuous mesh traversal of a model with itself, over refitted 16-DOPs
 // (Pan, Chitta and Manocha, "FCL: A General Purpose Library for Collision and Proximity Queries", ICRA 2012).
-// Asks its own elementary tests, whatever the setup names. Its `detect` throws InputError where a coordinate
-// lies beyond kFclFarthest (fcl_elementary.h).
+// The strategy asks its own elementary tests, whatever test the setup names. Its `detect` throws InputError
+// if a coordinate lies beyond kFclFarthest (fcl_elementary.h).
 Prepared make_fcl(const Setup& setup);
 
 }  // namespace cscd

@@ -1,4 +1,4 @@
-// See fcl.cpp: FCL's classes as the library lays them out.
+// Lays out FCL's classes as the library does; see fcl.cpp.
 #define EIGEN_MAX_ALIGN_BYTES 16
 #include "baselines/fcl/fcl_elementary.h"
 
@@ -6,9 +6,9 @@
 
 #include "core/elementary/question/query_scale.h"
 
-// FCL 0.7 of Debian, called as its continuous traversal calls it. Idea: roots of the coplanarity cubic by
-// interval Newton, then a test of the features at the root with absolute tolerances. A "no" proves nothing:
-// the cubic has no error bound, and one whose coefficients are all zero is given up.
+// FCL 0.7 of Debian, called as its continuous traversal calls it. Idea: find roots of the coplanarity cubic
+// by interval Newton, then test the features at the root with absolute tolerances. The answer "apart" proves
+// nothing: the cubic has no error bound, and a cubic whose coefficients are all zero is given up.
 namespace cscd {
 namespace {
 

@@ -12,7 +12,7 @@
 namespace cscd {
 namespace {
 
-// Two boxes that pass into each other, moved a little out of line so that nothing is parallel.
+// Two boxes pass into each other. They are moved a little out of line, so that nothing is parallel.
 TEST(Fcl, FindsWhatIsPlainToSee) {
   test::Shape upper = test::moved(test::box(), {0.3, 0.2, 1.5}, 0.9);
   for (Vec3& p : upper.positions) p.z() += 0.11 * p.x() - 0.07 * p.y();
@@ -31,13 +31,13 @@ TEST(Fcl, FindsWhatIsPlainToSee) {
     ASSERT_FALSE(found.contacts.empty());
     EXPECT_NEAR(found.contacts[0].time, truth.contacts[0].time, 1e-3);
     EXPECT_GT(*report.cull.bvot, report.cull.pctp);
-    // And back: nothing is left of the interval before.
+    // The way back leaves no contact of the interval before.
     fcl->detect(Motion(shape.positions, shape.positions), nullptr, found);
     EXPECT_TRUE(found.contacts.empty());
   }
 }
 
-// Where its cubics overflow it would search for seconds a pair.
+// If FCL's cubics overflowed, it would search for seconds a pair.
 TEST(Fcl, RefusesWhatOverflows) {
   test::Shape shape = test::together(test::box(), test::moved(test::box(), {0.5, 0.5, 0.5}));
   for (Vec3& p : shape.positions) p *= 1e120;
@@ -47,8 +47,8 @@ TEST(Fcl, RefusesWhatOverflows) {
   EXPECT_THROW(fcl->detect(Motion(shape.positions, shape.positions), nullptr, found), InputError);
 }
 
-// What it promises is nothing; what it does on random intervals is recorded here and must not pass unnoticed
-// should it change: most contacts are found, and some are not.
+// FCL promises nothing. The test records what it does on random intervals, so that a change is noticed: it
+// finds most contacts, but not all.
 TEST(Fcl, FindsMostContactsOfRandomIntervals) {
   const ElementaryTest& exact = *find_elementary_test("exact");
   std::size_t expected = 0, shared = 0, invented = 0;

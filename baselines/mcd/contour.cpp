@@ -9,7 +9,7 @@
 namespace cscd::mcd {
 namespace {
 
-// A difference of two projected points at both ends, and how far its coordinates may be off.
+// A difference of two projected points at both ends of the interval.
 struct Arrow {
   double start[2], end[2];
   double largest() const {
@@ -18,17 +18,17 @@ struct Arrow {
   }
 };
 
-// The sign of a quadratic in t, a sum of two products of components of two arrows, if it is certain for all t
-// in [0, 1]; `product` gives its polar form. With coordinates off by at most `off` and d the sum of the
-// largest, two products are off by at most 2 (d off + off^2) + 3 u d^2; the rest pays for the roundings of
-// the bound.
+// Returns the sign of a quadratic in t if it is certain for all t in [0, 1], else 0. The quadratic is a sum
+// of two products of components of two arrows, and `product` gives its polar form. Let `off` bound the error
+// of the arrows' coordinates, and d be the sum of the largest coordinates. Two products are off by at most 2
+// (d off + off^2) + 3 u d^2. The larger factors in the code also pay for the roundings of the bound.
 template <class Product>
 int certain_sign(const Arrow& a, const Arrow& b, double off, const Product& product) {
   const double c0 = product(a.start, b.start), c2 = product(a.end, b.end);
   const double c1 = (product(a.start, b.end) + product(a.end, b.start)) / 2;
   const double d = a.largest() + b.largest();
   const double error = 8 * d * off + 4 * off * off + 16 * kUnitRoundoff * d * d;
-  if (!(error > 1e-280 && error < 1e280)) return 0;  // underflow, overflow or NaN in between
+  if (!(error > 1e-280 && error < 1e280)) return 0;  // underflow, overflow or NaN on the way
   return (c0 > error && c1 > error && c2 > error) - (c0 < -error && c1 < -error && c2 < -error);
 }
 
@@ -63,9 +63,9 @@ void ContourTest::project(std::span<const VertexId> loop, const Vec3& direction,
     }
     largest = std::max({largest, p.start.cwiseAbs().maxCoeff(), p.end.cwiseAbs().maxCoeff()});
   }
-  // A coordinate is off by the roundings of two products of numbers up to |d_z| and `largest` and of their
-  // difference, 4 u in all, and 2 u more once it is drawn out to a box. The least positive double pays for
-  // products that are subnormal.
+  // A coordinate is off by the roundings of two products of numbers up to |d_z| and `largest` and of
+  // their difference, 4 u in all, and by 2 u more once it is drawn out to a box. The smallest positive
+  // double pays for subnormal products.
   slack_ =
       8 * kUnitRoundoff * std::abs(direction[z]) * largest + 4 * std::numeric_limits<double>::denorm_min();
 }
@@ -126,7 +126,7 @@ bool ContourTest::edges_apart(std::size_t a, std::size_t b) const {
   return side_certain(a, after(a), b, after(b)) || side_certain(b, after(b), a, after(a));
 }
 
-// Whether two points stay on one side of a moving line.
+// Returns whether points a and b certainly stay on one side of the moving line from `from` to `to`.
 bool ContourTest::side_certain(std::size_t from, std::size_t to, std::size_t a, std::size_t b) const {
   const auto arrow = [&](std::size_t i) {
     const Point &p = points_[from], &q = points_[i];
@@ -138,7 +138,7 @@ bool ContourTest::side_certain(std::size_t from, std::size_t to, std::size_t a, 
   return side != 0 && certain_sign(line, arrow(b), 3 * slack_, cross) == side;
 }
 
-// Whether two edges at a common vertex never lie on each other.
+// Returns whether the two edges at `corner` certainly never lie on each other.
 bool ContourTest::corner_open(std::size_t before, std::size_t corner, std::size_t after) const {
   const auto arrow = [&](std::size_t i) {
     const Point &p = points_[corner], &q = points_[i];

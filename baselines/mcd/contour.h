@@ -9,22 +9,23 @@
 
 namespace cscd::mcd {
 
-// The continuous contour test: whether a closed loop of moving vertices, projected along a direction, is a
-// simple curve at every t in [0, 1].
+// The continuous contour test: decides whether a closed loop of moving vertices, projected along a direction,
+// is a simple curve at every t in [0, 1].
 //
-// Coordinates in the plane are x - z d_x / d_z and the like, so what is projected on one point differs by a
-// multiple of the direction exactly. Each edge is boxed at both ends of the interval; two edges are apart
-// throughout if their boxes are apart at both ends on the same side, because all moves linearly. A hierarchy
-// over the loop finds the pairs that are not. Two of these that share no vertex are apart if one's line keeps
-// the other on one side at all t, two neighbours if they never point the same way from their common vertex:
-// both are signs of quadratics in t, certain when their Bernstein coefficients exceed a bound of the
-// rounding.
-//
-// True is a proof, false is none. Linear in the loop where it passes easily, quadratic at worst.
+// Coordinates in the plane are those of p - p_z d / d_z, times d_z. So points that are projected on one point
+// differ by an exact multiple of the direction. Each edge has boxes at both ends of the interval. Two edges
+// are apart throughout if their boxes are apart on the same side at both ends, because all points move
+// linearly. A hierarchy over the loop finds the pairs of edges for which that fails. Two of those edges that
+// share no vertex are apart if the line of one keeps the other on one side at all t. Two neighbouring edges
+// are apart but for their common vertex if they never point the same way from it. Both conditions are signs
+// of quadratics in t; a sign is certain if the Bernstein coefficients exceed a bound of the rounding.
 class ContourTest {
  public:
+  // Returns true only if the loop is certainly simple; false proves nothing. `loop` lists the vertices in
+  // order. The time is linear in the loop where the boxes settle most pairs, and quadratic at worst.
   bool simple(std::span<const VertexId> loop, const Vec3& direction, const Motion& motion);
 
+  // The number of tests of two boxes since restart().
   std::uint64_t box_tests() const { return box_tests_; }
   void restart() { box_tests_ = 0; }
 
@@ -32,7 +33,7 @@ class ContourTest {
   struct Point {
     double start[2], end[2];
   };
-  struct Box {  // at both ends: lower bounds along both axes, then along their negatives
+  struct Box {  // lower bounds along both axes, then along their negatives
     double start[4], end[4];
   };
   void project(std::span<const VertexId> loop, const Vec3& direction, const Motion& motion);
@@ -45,9 +46,9 @@ class ContourTest {
   bool corner_open(std::size_t before, std::size_t corner, std::size_t after) const;
   std::size_t after(std::size_t i) const { return i + 1 == points_.size() ? 0 : i + 1; }
 
-  std::vector<Point> points_;  // of the loop; edge i runs from point i to the next one
-  double slack_ = 0;           // by which a coordinate may be off
-  std::vector<Box> boxes_;     // of a binary tree over the edges in depth-first order
+  std::vector<Point> points_;  // [loop]; edge i runs from point i to the next one
+  double slack_ = 0;           // bound of a coordinate's error
+  std::vector<Box> boxes_;     // nodes of a binary tree over the edges, in depth-first order
   std::uint64_t box_tests_ = 0;
 };
 

@@ -6,17 +6,18 @@
 namespace cscd::mcd {
 namespace {
 
-// Scratch for one patch after the other: what is not marked with the patch's number is of an earlier one.
+// Scratch memory that is used for one patch after another. An entry that is not marked with the patch's
+// number belongs to an earlier patch. A *patch* here is the set of triangles below one node, or below two.
 struct Collector {
   struct EdgeUse {
     int patch = 0;
     int triangles = 0;
-    int direction = 0;  // triangles that run from the smaller index to the larger, less the others
+    int direction = 0;  // triangles that run towards the larger index, minus the others
     VertexId from{}, to{};
   };
   struct VertexUse {
     int patch = 0;
-    int contour_edges = 0;  // that leave it
+    int contour_edges = 0;  // that leave the vertex
     VertexId next{};
   };
   const TriangleMesh& mesh;
@@ -28,7 +29,7 @@ struct Collector {
   explicit Collector(const TriangleMesh& mesh_in)
       : mesh(mesh_in), edge(mesh.edge_count()), vertex(mesh.vertex_count()) {}
 
-  // Appends the contour to `out` if the triangles form a disc.
+  // Appends the contour of the triangles to `out` if they form a disc, else nothing.
   void add_contour(std::span<const TriangleId> triangles, std::vector<VertexId>& out) {
     ++patch;
     std::size_t vertices = 0, contour_edges = 0;
@@ -63,8 +64,9 @@ struct Collector {
       leaves.next = begin = use.to;
       ++contour_edges;
     }
-    // Each vertex of the contour has one way out of it, so walking from one of them may end in a loop that it
-    // is not part of only if another vertex is entered twice, and then the loop is shorter than the contour.
+    // Each vertex of the contour has one way out. So a walk from one of the vertices can end in a
+    // loop that does not contain that vertex only if another vertex is entered twice, and then the
+    // loop is shorter than the contour.
     const std::size_t size_before = out.size();
     VertexId at = begin;
     for (std::size_t i = 0; i < contour_edges; ++i) {
@@ -81,8 +83,8 @@ struct NodePair {
   auto operator<=>(const NodePair&) const = default;
 };
 
-// All pairs of nodes with an edge in common that a self-descent comes to: below the node where the ways to
-// its two triangles part, both one step down at a time.
+// Returns all pairs of nodes with a common edge to which a self-descent comes. They lie below the node at
+// which the ways to the edge's two triangles part; the descent goes down both ways one step at a time.
 std::vector<NodePair> neighbours(const TriangleMesh& mesh, const Tree& tree) {
   std::vector<NodeIndex> parent(tree.node_count(), -1), leaf(mesh.triangle_count());
   for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
@@ -102,7 +104,7 @@ std::vector<NodePair> neighbours(const TriangleMesh& mesh, const Tree& tree) {
   std::vector<NodeIndex> a, b;
   for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
     const std::span<const TriangleId> at = mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)});
-    if (at.size() != 2) continue;  // with more no disc, with fewer no neighbours
+    if (at.size() != 2) continue;  // with more, no disc; with fewer, no neighbours
     const auto [first, second] = std::minmax(leaf[+at[0]], leaf[+at[1]]);
     way_up(first, a);
     way_up(second, b);
@@ -123,7 +125,7 @@ std::vector<NodePair> neighbours(const TriangleMesh& mesh, const Tree& tree) {
 
 Discs::Discs(const TriangleMesh& mesh, const Tree& tree) {
   const auto nodes = static_cast<NodeIndex>(tree.node_count());
-  std::vector<TriangleId> triangles;  // in tree order: those below a node stand together
+  std::vector<TriangleId> triangles;  // in tree order, so that the triangles below a node stand together
   std::vector<std::size_t> leaves_before(tree.node_count() + 1);
   for (NodeIndex node = 0; node < nodes; ++node) {
     leaves_before[static_cast<std::size_t>(node)] = triangles.size();

@@ -8,25 +8,26 @@
 
 namespace cscd::mcd {
 
-// The nodes of a tree below which the triangles form a disc, the pairs of neighbours that form one together,
-// and the contours of both.
+// Finds the nodes of a tree below which the triangles form a disc, the pairs of neighbouring nodes whose
+// triangles form a disc together, and the contours of both.
 //
-// The test is of counts alone: every edge is at most two triangles' and these run along it in opposite
-// directions, the edges with one triangle form a single closed loop that visits no vertex twice, and
-// vertices - edges + triangles is 1. This leaves discs, and discs beside (or meeting in vertices with) closed
-// surfaces, among whose normals no half space holds them all: the normal cone refuses those.
+// The test only counts. Every edge belongs to at most two triangles, and two triangles run along it in
+// opposite directions. The edges with one triangle form a single closed loop that visits no vertex
+// twice. And vertices - edges + triangles is 1. This holds for discs, and for discs beside closed
+// surfaces (or meeting them in vertices). The normals of a closed surface fit into no half space, so the
+// normal cone refuses the latter.
 class Discs {
  public:
   Discs(const TriangleMesh& mesh, const Tree& tree);
 
-  // Corners of the contour in order, counter-clockwise seen from where the normals point to; empty where the
-  // node is no disc.
+  // Returns the vertices of a node's contour in order, counter-clockwise seen from where the normals point
+  // to. Empty if the triangles below the node form no disc.
   std::span<const VertexId> contour(NodeIndex node) const {
     return contour_number(static_cast<std::size_t>(node));
   }
 
-  // The same for two nodes with an edge in common, a before b, that a self-descent comes to together; empty
-  // for others.
+  // Returns the contour of two nodes together. The nodes must have a common edge, be reached together by a
+  // self-descent, and have a < b; for other nodes, and if they form no disc, the contour is empty.
   std::span<const VertexId> contour(NodeIndex a, NodeIndex b) const {
     const auto n = static_cast<std::size_t>(a);
     for (std::size_t i = first_partner_[n]; i < first_partner_[n + 1]; ++i)
@@ -38,9 +39,9 @@ class Discs {
   std::span<const VertexId> contour_number(std::size_t i) const {
     return std::span(vertices_).subspan(first_[i], first_[i + 1] - first_[i]);
   }
-  std::vector<std::size_t> first_partner_;  // of each node in partner_, one more at the end
-  std::vector<NodeIndex> partner_;          // with which the node forms a disc
-  std::vector<std::size_t> first_;          // of each contour: of the nodes, then of the partners; one more
+  std::vector<std::size_t> first_partner_;  // [nodes + 1]; start of each node's entries in partner_
+  std::vector<NodeIndex> partner_;          // node with which the node forms a disc
+  std::vector<std::size_t> first_;          // start of each contour, of nodes, then of partners; one more
   std::vector<VertexId> vertices_;
 };
 

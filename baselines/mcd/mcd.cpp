@@ -8,33 +8,33 @@
 #include "core/detect/compose.h"
 #include "core/hierarchy/descent.h"
 
-// Idea: a patch that faces one direction throughout the interval, and whose contour seen from there never
-// crosses itself, does not touch itself; no pair inside it has to be looked at (Volino and Magnenat-Thalmann
-// 1994; over an interval: Provot 1997 and Tang et al. 2009).
+// Idea: let a patch face one direction throughout the interval, and let its contour, seen from there, never
+// cross itself. Then the patch does not touch itself, and no pair inside it has to be tested (Volino and
+// Magnenat-Thalmann 1994; over an interval: Provot 1997 and Tang et al. 2009).
 //
-// What a "no" proves: every triangle below the node has n(t) . d > 0 for one d and all t, so the projection
-// along d keeps the patch's orientation; the patch is a disc; its projected contour is a simple curve at all
-// t. Then the sum of all angles leaves no room for a vertex around which the projection winds twice, every
-// point of the plane is covered as often as the contour winds round it, once or never, and the projection is
-// one to one: features without a common vertex do not touch. Nothing is asked of the rest of the mesh or of
-// the start, so the guarantee is `complete`, on open meshes too. All signs are certain against rounding; in
-// doubt the descent goes on.
+// Proof that a dropped pair is apart: every triangle below the node has n(t) . d > 0 for one d and all t, so
+// the projection along d keeps the patch's orientation. The patch is a disc, and its projected contour is a
+// simple curve at all t. Then the sum of all angles leaves no room for a vertex around which the projection
+// winds twice. Every point of the plane is covered as often as the contour winds round it, which is once or
+// never. So the projection is one to one, and features without a common vertex do not touch. The proof asks
+// nothing of the rest of the mesh or of the start, so the guarantee is `complete`, on open meshes too. All
+// signs are certain against rounding; if one is in doubt, the descent goes on.
 //
-// Fidelity: the paper's text could not be had; this follows what its successors and the code of its authors
-// tell of it. Cones are merged around both children, closer than by Provot's rule. The contour test boxes
-// projected edges at both ends instead of over the whole path, in a hierarchy over the contour. Patches are
-// the nodes of the tree that all strategies here share, and pairs of nodes with an edge in common, whose
-// contours are looked up; those that are no discs (rings, several pieces) are not tried and left to the
-// bounds. Representative triangles and
-// orphan sets of the same paper are the strategy `selfccd`; here, as in all strategies but that one, a
-// feature pair is tested once, whichever triangle pair brings it.
+// Fidelity: the paper's text could not be had; this follows what later papers and its authors' code tell
+// about it. Cones are merged around both children, which gives closer cones than Provot's rule. The contour
+// test has boxes of projected edges at both ends of the interval instead of over the whole path, in a
+// hierarchy over the contour. Patches are the nodes of the tree that all strategies here share, and pairs
+// of nodes with a common edge, whose contours are looked up. Patches that are no discs (rings, several
+// pieces) are not tried and are left to the bounds. The same paper's representative triangles and orphan
+// sets are the strategy `selfccd`. Here, as in all strategies but that one, a feature pair is tested once,
+// whichever triangle pair brings it.
 //
-// Cones are updated in `classify`: the time counts as `rv_update`, as the classes of triangles do for the
-// radial strategies, and not as refit, which the paper leaves out of its totals.
+// Cones are updated in `classify`, so their time counts as `rv_update`, as the classes of triangles do for
+// the radial strategies. It does not count as refit, which the paper leaves out of its totals.
 //
-// Tuning: normals in vector code; the contour test only where the cone holds; its pairs of boxes in a
-// hierarchy, the first that fails ends it. kFewest, below which the pairs themselves cost less than the
-// proof, was chosen on the rope out of 2, 4, 8 and 16.
+// Tuning: normals are computed in vector code. The contour is tested only if the cone holds, its pairs of
+// boxes are found by a hierarchy, and the first pair that fails ends the test. Below kFewest corners, testing
+// the pairs themselves costs less than the proof; the number was chosen on the rope out of 2, 4, 8 and 16.
 namespace cscd {
 namespace {
 
@@ -75,7 +75,7 @@ class McdCuller : public Culler {
   bool never_touches_itself(std::span<const VertexId> contour, const mcd::NormalCone& cone) {
     return contour.size() >= kFewest && cone.in_half_space() && contour_.simple(contour, cone.axis, *motion_);
   }
-  // Nor do two patches that are one together.
+  // Returns whether two patches together never touch themselves.
   bool neighbours_never_touch(NodeIndex a, NodeIndex b) {
     const std::span<const VertexId> contour = discs_.contour(a, b);
     return contour.size() >= kFewest && never_touches_itself(contour, merged(cones_[a], cones_[b]));
@@ -87,7 +87,7 @@ class McdCuller : public Culler {
   mcd::Discs discs_;
   mcd::NormalCones cones_;
   mcd::ContourTest contour_;
-  std::optional<Motion> motion_;  // of the interval
+  std::optional<Motion> motion_;  // of the present interval
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ Exact3 exact_normal(const Motion& motion, const Triangle& corner, const mpq_clas
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// Is the normal inside the cone, decided in rational arithmetic?
+// Returns whether the normal is inside the cone, decided in rational arithmetic.
 bool inside(const Exact3& n, const NormalCone& cone) {
   mpq_class along = 0, square = 0, axis_square = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -122,7 +122,7 @@ TEST(NormalCones, DegenerateTrianglesHaveNone) {
   EXPECT_EQ(spoilt, 2u) << "the two triangles at the edge that shrank to a point";
 }
 
-// The whole mesh as one node.
+// Returns the contour of the whole mesh as one node.
 std::vector<VertexId> contour_of_all(const std::vector<Triangle>& triangles, std::size_t vertices) {
   const TriangleMesh mesh(triangles, vertices);
   const std::vector<Vec3> positions(vertices, Vec3(0, 0, 0));
@@ -139,7 +139,7 @@ TEST(Discs, AreFoundByCountsAlone) {
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ((static_cast<int>(square[i]) + 1) % 4, static_cast<int>(square[(i + 1) % 4]))
         << "runs backwards";
-  // An interior vertex is not on the contour.
+  // A vertex in the interior is not on the contour.
   EXPECT_EQ(contour_of_all({corners(0, 1, 3), corners(1, 2, 3), corners(2, 0, 3)}, 4).size(), 3u);
 }
 
@@ -164,7 +164,8 @@ TEST(Discs, AreNot) {
   EXPECT_TRUE(none(holed, ball.positions.size())) << "with two it is a ring";
 }
 
-// Every pair of leaves at an edge is a square, and so is every pair of nodes that holds one on its two sides.
+// Two leaves with a common edge form a square, and other pairs of leaves have no contour. Many pairs of
+// larger nodes have longer contours.
 TEST(Discs, OfTwoNeighboursHaveOneContour) {
   const Shape shape = test::torus();
   const TriangleMesh mesh = shape.mesh();
@@ -234,7 +235,8 @@ TEST(ContourTest, LooksBetweenTheEnds) {
   EXPECT_FALSE(simple(lens, turned_over)) << "simple at both ends, a line in the middle";
 }
 
-// Loops around a circle in long common motion, seen from anywhere; then with one vertex pulled across.
+// Loops around a circle move far without changing shape and are seen from several directions.
+// Then one vertex is pulled across.
 TEST(ContourTest, OfLongLoopsIsQuickAndRight) {
   std::mt19937_64 random(5);
   for (const int count : {3, 4, 5, 17, 64, 301}) {
@@ -263,7 +265,7 @@ std::string contacts(Prepared prepared, const Motion& motion, Report& report) {
   return digest(found) + " " + std::to_string(found.contacts.size());
 }
 
-// Open ramps that wind over themselves, wavy sheets that fold, from gentle to wild.
+// Open ramps wind over themselves and are shaken and squeezed, from gently to wildly.
 TEST(Mcd, FindsAllContactsOfOpenSurfaces) {
   std::mt19937_64 random(9);
   std::size_t culled = 0, with_contacts = 0, both = 0;

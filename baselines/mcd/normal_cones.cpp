@@ -6,11 +6,11 @@
 namespace cscd::mcd {
 namespace {
 
-// Outside this range squares of normals could overflow, or lose more than a relative rounding.
+// Outside this range, squares of normals could overflow or lose more than a relative rounding.
 constexpr double kSmallArea = 1e-120, kLargeArea = 1e120;
 
 // Pays for every rounding between two vectors and the cosine of their angle: two lengths, a dot product, a
-// division, and an axis that is not quite of length 1; about 16 u.
+// division, and an axis whose length is not quite 1. Together these are about 16 u.
 constexpr double kCosineSlack = 32 * kUnitRoundoff;
 
 NormalCone cone(const Vec3& axis, double cosine) {
@@ -19,8 +19,8 @@ NormalCone cone(const Vec3& axis, double cosine) {
   return {axis, cosine, std::sqrt(1 - cosine * cosine + 4 * kUnitRoundoff) * (1 + 4 * kUnitRoundoff)};
 }
 
-// A lower bound of the cosine of the angle between an axis and whatever `child` contains; the angles of both
-// add up.
+// Returns a lower bound of the cosine of the angle between an axis and whatever `child` contains. That angle
+// is at most the sum of the angle between both axes and the half angle of `child`.
 double cosine_towards(const Vec3& axis, const NormalCone& child) {
   const double between = std::min(axis.dot(child.axis), 1.0) - kCosineSlack;
   if (!(between > 0)) return -1;
@@ -45,7 +45,8 @@ NormalCone cone_around(const std::array<Vec3, 3>& control, double area) {
 
 NormalCone merged(const NormalCone& a, const NormalCone& b) {
   if (!a.in_half_space() || !b.in_half_space()) return {};
-  // Nearer to the wider cone, by sines in place of angles: the smallest cone around both, nearly.
+  // The new axis lies nearer to the wider cone. Using sines in place of angles, this is nearly
+  // the smallest cone around both.
   const double apart = (a.axis - b.axis).norm();
   const double to_a = std::max(0.0, apart + a.sine - b.sine), to_b = std::max(0.0, apart + b.sine - a.sine);
   const Vec3 sum = to_a + to_b > 0 ? Vec3(to_a * a.axis + to_b * b.axis) : a.axis;
@@ -84,7 +85,7 @@ void NormalCones::update(const Tree& tree, const Motion& motion) {
       node_[static_cast<std::size_t>(lanes.node[l])] = cone_around(control, normal.area[l]);
     }
   }
-  // Children follow their parents.
+  // Children have larger numbers than their parents, so this visits them first.
   for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node)
     if (!tree.is_leaf(node))
       node_[static_cast<std::size_t>(node)] = merged((*this)[tree.left(node)], (*this)[tree.right(node)]);

@@ -9,38 +9,40 @@
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
 
-// Continuous normal cones (Tang, Curtis, Yoon and Manocha, TVCG 15(4), 2009): around every normal of a set of
-// triangles at every t in [0, 1].
+// Continuous normal cones (Tang, Curtis, Yoon and Manocha, TVCG 15(4), 2009). Such a cone contains every
+// normal of a set of triangles at every t in [0, 1].
 //
-// The normal of a moving triangle is a quadratic in t and lies in the hull of its three Bernstein control
-// vectors. A cone with a half angle below a right angle is convex, so it contains all normals when it
-// contains those three.
+// The normal of a moving triangle is a quadratic in t, so it lies in the hull of its three Bernstein
+// control vectors. A cone with a half angle below a right angle is convex, so it contains all
+// normals if it contains those three.
 namespace cscd::mcd {
 
-// Angles are kept as cosine and sine, rounded so that the angle is never too small: the cosine down, the sine
-// up.
+// A cone of directions. Its half angle is stored as cosine and sine, rounded so that the angle is never too
+// small: the cosine down, the sine up.
 struct NormalCone {
-  Vec3 axis = Vec3::Zero();  // of length 1, but for rounding that the cosine pays for
-  double cosine = -1;        // of the half angle; not positive where no cone below a right angle is known
+  Vec3 axis = Vec3::Zero();  // of length 1, up to a rounding that the cosine pays for
+  double cosine = -1;        // of the half angle; not positive if no cone below a right angle is known
   double sine = 1;
 
-  // Every normal has a positive dot product with the axis.
+  // Returns whether every normal has a positive dot product with the axis.
   bool in_half_space() const { return cosine > 0; }
 };
 
-// Around three control vectors, each off by a rounding error that 64 u `area` bounds.
+// Returns a cone around three control vectors (the middle one may be stored twice as large). Each of
+// them may be off by 64 u `area`.
 NormalCone cone_around(const std::array<Vec3, 3>& control, double area);
 
-// Around two cones. The axis between them is as good a choice as it is cheap; the angle is then measured to
-// both.
+// Returns a cone around two cones. Its axis lies between theirs, which is cheap and good enough; its half
+// angle is then measured to both.
 NormalCone merged(const NormalCone& a, const NormalCone& b);
 
-// The cone of every node of a tree.
+// The cones of all nodes of a tree.
 class NormalCones {
  public:
   NormalCones(const TriangleMesh& mesh, const Tree& tree);
 
-  // O(triangles), no allocation.
+  // Computes the cones for one interval. Linear in the number of triangles; allocates nothing. `tree` must
+  // be the tree of the constructor.
   void update(const Tree& tree, const Motion& motion);
 
   const NormalCone& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
@@ -50,8 +52,8 @@ class NormalCones {
     std::array<NodeIndex, kLanes> node;
     std::array<VertexLanes, 3> corner;
   };
-  std::vector<LeafLanes> lanes_;  // a short last one repeats its last leaf
-  std::vector<NormalCone> node_;
+  std::vector<LeafLanes> lanes_;  // the last one may repeat its last leaf
+  std::vector<NormalCone> node_;  // [nodes]
 };
 
 }  // namespace cscd::mcd

@@ -6,12 +6,13 @@
 namespace cscd {
 namespace {
 
-constexpr std::size_t kLongest = 64;  // of the words that are compared; the time grows with its square
+constexpr std::size_t kLongest = 64;  // length of the words that are compared; the time grows with its square
 
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows of the table of distances between the beginnings of a and all beginnings of b.
+  // Rows of the table of distances between the first i letters of a and the first j letters of b.
+  // The last three rows are enough.
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {

@@ -7,15 +7,17 @@
 
 namespace cscd {
 
-// How many letters must be left out, added, replaced, or swapped with their neighbour to make one word of the
-// other (the optimal string alignment distance, in bytes).
+// Returns the smallest number of edits that turn one word into the other. An edit leaves out,
+// adds or replaces one letter, or swaps two neighbouring letters (the optimal string
+// alignment distance, counted in bytes).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// The name that `word` was probably meant to be: the nearest one, the first of several, if at most a third of
-// the letters differ, and at least one may. Empty where no name is that near.
+// Returns the name that `word` was probably meant to be: the name with the smallest edit distance, and the
+// first of several such names. The distance may be at most a third of the length of `word`, or 1 if that is
+// more. Returns an empty view if no name is that near, or if `word` is longer than 64 letters.
 std::string_view closest_name(std::string_view word, std::span<const std::string_view> names);
 
-// "; did you mean NAME?", to be put behind what an error says; empty where no name is near.
+// Returns "; did you mean NAME?", to be appended to an error message, or an empty string if no name is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
 
 }  // namespace cscd

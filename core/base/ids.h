@@ -5,7 +5,8 @@
 
 namespace cscd {
 
-// Indices that must not be mixed up. Unary plus turns one into a plain index: positions[+vertex].
+// Indices as types of their own, so that they cannot be mixed up. Unary plus turns an id into a
+// plain index: positions[+vertex].
 enum class VertexId : std::int32_t {};
 enum class EdgeId : std::int32_t {};
 enum class TriangleId : std::int32_t {};

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostLinks = 40;  // as the system's own limit
+constexpr int kMostLinks = 40;  // the system's own limit
 
 fs::path follow_links(const fs::path& named) {
   fs::path path = named;
@@ -31,7 +31,8 @@ fs::path follow_links(const fs::path& named) {
   throw InputError("output " + named.string() + ": its links lead in a circle; choose another name");
 }
 
-// Renames, but never replaces. Where a file system cannot do that in one step, two names of one file do.
+// Renames a file but never replaces another. If the file system cannot do that in one step, the file is given
+// a second name, and then its first name is removed.
 bool rename_to_new(const char* from, const char* to) {
   if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
@@ -73,11 +74,12 @@ UnfinishedFile::UnfinishedFile(fs::path target, bool force) : target_(std::move(
 }
 
 void UnfinishedFile::make() {
-  // A short name of its own: the target's name may already be as long as the file system allows.
+  // The file has a short name of its own, because the target's name may already be as
+  // long as the file system allows.
   static std::atomic<unsigned> serial{0};
   path_ = target_.parent_path() /
           (".cscd-unfinished-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
-  registered_.emplace(path_);  // first, so that no signal comes in between
+  registered_.emplace(path_);  // before the file exists, so that no signal comes in between
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file_ < 0) fail("created");
   struct stat present {};

@@ -8,23 +8,24 @@
 
 namespace cscd {
 
-// Where an output goes once symbolic links have been followed.
+// The place an output goes to, once symbolic links have been followed.
 struct OutputTarget {
   std::filesystem::path path;  // the path behind all links; nothing may stand there yet
   // A character device or a pipe: it is written to as it is, and nothing ever takes its place.
   bool is_stream = false;
 };
 
-// Follows the links of `path`. Throws InputError for a folder, for what cannot be written to (a socket, a
-// disk), for links in a circle, and for a file that exists unless `force`.
+// Follows the symbolic links of `path` and returns their target. Throws InputError for an empty path, for a
+// folder, for a socket or a disk (they cannot be written to), for links that lead in a circle or cannot be
+// read, and, unless `force` is true, for a regular file that exists.
 OutputTarget find_output_target(const std::filesystem::path& path, bool force);
 
-// A file beside its target that gets the target's name when it is complete. Until then it is a temporary
-// (temporaries.h), and the destructor removes it.
+// A file in the folder of its target that is given the target's name when it is complete. Until then the file
+// is a temporary (temporaries.h), and the destructor removes it.
 class UnfinishedFile {
  public:
-  // Makes the file, empty. The errors of all members are InputErrors that name `target`. A file that replaces
-  // another one takes over its permissions.
+  // Creates the file, empty. If `force` is true and the target exists, the new file takes over its
+  // permissions. All members that fail throw an InputError that names `target`.
   UnfinishedFile(std::filesystem::path target, bool force);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
@@ -32,7 +33,8 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return path_; }
   void write(std::string_view content);
-  // Waits until the disk has it all, then names it. Unless forced, never replaces what has come in between.
+  // Waits until the disk has the whole content, then gives the file its target's name. Without `force`, it
+  // throws if a file of that name has appeared in the meantime, and leaves that file as it is.
   void finish();
 
  private:
@@ -44,7 +46,8 @@ class UnfinishedFile {
   std::optional<Temporary> registered_;
 };
 
-// Writes all of a text to a file descriptor. False, with errno, where that does not take it.
+// Writes all of `text` to a file descriptor. Returns false, and leaves the reason in errno, if the
+// descriptor does not take all of it.
 bool write_all(int descriptor, std::string_view text);
 
 }  // namespace cscd

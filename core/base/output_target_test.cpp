@@ -141,11 +141,12 @@ TEST_F(Output, SaysThatAFolderIsReadOnly) {
   EXPECT_NE(text.find("Permission denied"), std::string::npos) << text;
 }
 
-// What the child leaves in the folder that is ended by a signal in the middle.
+// Forks a child process that calls begin() and is then ended by a signal. Returns the number of the signal
+// that ended the child, or -1 if none did. The caller looks at what the child leaves in the folder.
 int end_child_by(int signal_number, const std::function<void()>& begin, int ignored = 0) {
   const pid_t child = fork();
   if (child == 0) {
-    if (ignored != signal_number) signal(signal_number, SIG_DFL);  // a background job ignores some
+    if (ignored != signal_number) signal(signal_number, SIG_DFL);  // a background job ignores some signals
     remove_temporaries_at_signals();
     begin();
     raise(signal_number);
@@ -179,7 +180,7 @@ TEST_F(Output, EndsTheHelperThatWritesIntoAFolder) {
     fs::create_directory(folder / "work");
     static const Temporary work(folder / "work");
     const pid_t process = fork();
-    if (process == 0) {  // writes on and on, as long as it lives
+    if (process == 0) {  // writes as long as it lives
       close(ends[0]);
       for (int i = 0;; ++i) put(folder / "work" / std::to_string(i), "frame");
     }

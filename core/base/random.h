@@ -10,7 +10,8 @@ namespace cscd {
 // The seed of whatever a preparation draws, so that the same input is always prepared alike.
 inline constexpr unsigned kPreparationSeed = 20140314;
 
-// Fisher-Yates by hand: std::shuffle may differ between standard libraries.
+// Puts the items into a random order (Fisher and Yates). Written out here, because std::shuffle may give
+// different orders in different standard libraries.
 template <class Item, class Random>
 void shuffle(std::vector<Item>& items, Random& random) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random() % i]);

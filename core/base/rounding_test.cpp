@@ -18,7 +18,7 @@ std::uint32_t bits_of(float x) {
   return std::bit_cast<std::uint32_t>(x);
 }
 
-// Is `bound` the largest float that is not above the finite number `exact`?
+// Returns whether `bound` is the largest float that is not above the finite number `exact`.
 ::testing::AssertionResult is_largest_float_below(float bound, const mpq_class& exact) {
   const auto at_most_exact = [&](float x) { return x == -kInf || (x < kInf && mpq_class(x) <= exact); };
   if (!at_most_exact(bound)) return ::testing::AssertionFailure() << bound << " is above " << exact.get_d();
@@ -28,8 +28,8 @@ std::uint32_t bits_of(float x) {
   return ::testing::AssertionSuccess();
 }
 
-// Doubles of every kind: uniform bit patterns, all magnitudes of float, floats and their neighbours,
-// midpoints between floats, ends of both ranges.
+// Returns doubles of every kind: uniform bit patterns, all magnitudes of float, floats and their neighbours,
+// midpoints between floats, and the ends of both ranges.
 std::vector<double> assorted_doubles(std::size_t random_count, unsigned seed) {
   std::vector<double> values = {0.0,
                                 1.0,
@@ -89,7 +89,7 @@ TEST(NextBelow, IsNextafterOnOneBitPatternIn61) {
   for (std::uint64_t pattern = 0; pattern <= 0xffffffff; pattern += 61) {
     const float x = std::bit_cast<float>(static_cast<std::uint32_t>(pattern));
     if (std::isnan(x)) continue;
-    // nextafter keeps the sign of a zero that it reaches from above: both give +0.
+    // If nextafter reaches a zero from above, the zero is +0, and so is that of next_below.
     ASSERT_EQ(bits_of(next_below(x)), bits_of(std::nextafter(x, -kInf))) << pattern;
     ++checked;
   }
@@ -118,7 +118,7 @@ TEST(FloatBelowSum, IsTheLargestFloatNotAboveTheExactSumOfAnyTwo) {
   }
 }
 
-// All pairs of the special values: sums that overflow float and double, subnormals, halfway cases.
+// All pairs of the special values: sums that overflow float and double, subnormals and halfway cases.
 TEST(FloatBelowSum, HoldsForEveryPairOfSpecialValues) {
   const std::vector<double> values = assorted_doubles(0, 0);
   for (const double x : values)
@@ -127,7 +127,8 @@ TEST(FloatBelowSum, HoldsForEveryPairOfSpecialValues) {
           << std::hexfloat << x << " + " << y;
 }
 
-// The hard cases: the double sum is a float (or a midpoint of two) but the exact sum lies a hair beside it.
+// The hard cases: the sum in doubles is a float, or a midpoint of two floats, but the
+// exact sum lies a hair beside it.
 TEST(FloatBelowSum, SeesWhatTheDoubleSumLost) {
   std::mt19937_64 random(4);
   int lost = 0;
@@ -145,7 +146,7 @@ TEST(FloatBelowSum, SeesWhatTheDoubleSumLost) {
       }
     }
   }
-  EXPECT_GT(lost, 100'000);  // the family does what it is for
+  EXPECT_GT(lost, 100'000);  // many of these sums lose the hair
 }
 
 TEST(FloatBelowSum, CancelsExactly) {

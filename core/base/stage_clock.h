@@ -6,11 +6,11 @@
 
 namespace cscd {
 
-// The stages of one interval, and of the one-time preparation before the first (Table 1 and Table 3 of the
-// paper).
+// The stages of one interval (refit to elementary) and of the preparation before the first interval
+// (distance_and_heat, decomposition); see Table 3 and Table 1 of the paper.
 enum class Stage { refit, rv_update, traversal, elementary, distance_and_heat, decomposition, count_ };
 
-// The one stage clock: at any moment it charges at most one stage.
+// Measures the time spent in each stage. At any moment the clock charges at most one stage.
 class StageClock {
  public:
   using Clock = std::chrono::steady_clock;

@@ -13,7 +13,7 @@ struct Team::Arena {
 };
 
 Team::Team(int threads) : threads_(static_cast<std::size_t>(threads)) {
-  if (threads > 1)  // oneTBB warns on standard error where it is asked for more than cores
+  if (threads > 1)  // oneTBB warns on standard error if it is asked for more threads than cores
     arena_ =
         std::make_unique<Arena>(Arena{tbb::task_arena(std::min(threads, tbb::info::default_concurrency()))});
 }

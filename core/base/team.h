@@ -7,11 +7,12 @@
 
 namespace cscd {
 
-// Threads that share out the parts of one piece of work. Which thread takes which part is left open: what
-// comes out must not depend on it. The one place that knows oneTBB (team.cpp).
+// A group of threads that share out the parts of one piece of work. The caller's result must not depend on
+// which thread does which part. The file team.cpp is the only place in the project that knows oneTBB.
 class Team {
  public:
-  // `threads`, the caller among them; at least 1. No more run at a time than the machine has cores.
+  // Makes a team of `threads` threads, the calling thread included; `threads` is at least 1. At most as many
+  // of them run at a time as the machine has cores.
   explicit Team(int threads = 1);
   ~Team();
   Team(Team&&) noexcept;
@@ -19,8 +20,9 @@ class Team {
 
   std::size_t threads() const { return threads_; }
 
-  // work(part, thread) once for each part below `parts`, `thread` being the number of the thread that does
-  // it, below threads(); returns when all are done. One thread does them in order. `work` must not throw.
+  // Calls work(part, thread) once for each part in [0, parts) and returns when all calls have returned.
+  // `thread` is the number of the thread that makes the call, in [0, threads()). A team of one thread does
+  // the parts in order. `work` must not throw.
   template <class Work>
   void each(std::size_t parts, const Work& work) const {
     if (threads_ == 1 || parts <= 1) {
@@ -32,8 +34,8 @@ class Team {
     });
   }
 
-  // work(first, last, part) on ranges that make up [0, count), in as many parts as ranges_of(count, least)
-  // says: none shorter than `least` unless it is the only one.
+  // Divides [0, count) into ranges_of(count, least) ranges and calls work(first, last, part) once for each.
+  // Every range has at least `least` members, unless there is only one range.
   template <class Work>
   void ranges(std::size_t count, std::size_t least, const Work& work) const {
     const std::size_t parts = ranges_of(count, least);
@@ -41,8 +43,9 @@ class Team {
       work(count * part / parts, count * (part + 1) / parts, part);
     });
   }
+  // Returns the number of ranges that ranges() makes: one for a team of one thread, else up to four a thread.
   std::size_t ranges_of(std::size_t count, std::size_t least) const {
-    const std::size_t most = threads_ == 1 ? 1 : 4 * threads_;  // they need not take equally long
+    const std::size_t most = threads_ == 1 ? 1 : 4 * threads_;  // ranges may take unequally long
     return std::clamp<std::size_t>(count / least, 1, most);
   }
 
@@ -55,7 +58,8 @@ class Team {
   std::unique_ptr<Arena> arena_;
 };
 
-// Runs `work` where a package that shares out its own work by oneTBB finds no other thread.
+// Runs `work` in an arena of one thread. A package that shares out its own work by oneTBB finds no other
+// thread there, so it works on the calling thread alone.
 void on_this_thread(const std::function<void()>& work);
 
 }  // namespace cscd

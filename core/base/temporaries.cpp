@@ -14,8 +14,9 @@
 
 namespace cscd {
 
-// Entries are never freed, so that a signal handler can walk the list at any moment. Whoever takes `path` out
-// of an entry owns the text: the handler, which removes the file, or the destructor, which frees the text.
+// Entries are never freed, so that a signal handler can walk the list at any moment. Whoever takes
+// `path` out of an entry owns the text: either the handler, which then removes the file, or the
+// destructor, which frees the text.
 struct Temporary::Entry {
   std::atomic<char*> path{nullptr};
   std::atomic<pid_t> owner{0};
@@ -26,10 +27,11 @@ struct Temporary::Entry {
 namespace {
 
 std::mutex guard;
-std::atomic<void*> first{nullptr};  // of the entries
+std::atomic<void*> first{nullptr};  // first entry of the list
 std::atomic<pid_t> helper{0};
 
-// What the kernel fills in for SYS_getdents64; opendir() allocates, which a signal handler must not.
+// The record that the kernel writes for SYS_getdents64. The system call is made directly, because opendir()
+// allocates memory, which a signal handler must not do.
 struct FolderEntry {
   std::uint64_t inode;
   std::int64_t offset;
@@ -54,7 +56,8 @@ void remove_plain_files_in(const char* folder) noexcept {
   close(handle);
 }
 
-// A helper that was killed a moment ago may still make a file in its folder, hence some attempts.
+// Removes a file, or a folder of plain files. A helper that was killed a moment ago may still make a file in
+// its folder, so this makes several attempts.
 void remove_one(const char* path) noexcept {
   constexpr int kAttempts = 50;
   constexpr timespec kBetween{0, 2'000'000};
@@ -66,8 +69,8 @@ void remove_one(const char* path) noexcept {
   }
 }
 
-// The handler was reset to the default when the signal came in, so the signal that is raised ends the process
-// as soon as this returns.
+// Handles a signal. The handler was reset to the default action when the signal came in, so raising the
+// signal again ends the process as soon as this function returns.
 void end_by(int signal) {
   remove_temporaries();
   raise(signal);
@@ -97,7 +100,7 @@ Temporary::~Temporary() {
   char* text = entry_->path.exchange(nullptr);
   std::free(text);
   const std::lock_guard lock(guard);
-  entry_->taken = text == nullptr;  // a handler still reads the text
+  entry_->taken = text == nullptr;  // an entry without text stays taken, as a handler still reads the text
 }
 
 TemporaryHelper::TemporaryHelper(int process) noexcept {
@@ -112,7 +115,7 @@ void remove_temporaries() noexcept {
   auto* entry = static_cast<Temporary::Entry*>(first.load());
   if (const pid_t process = helper.load(); process > 0 && entry != nullptr) kill(process, SIGKILL);
   for (; entry != nullptr; entry = entry->next) {
-    if (entry->owner.load() != self) continue;  // registered by the process that this one was forked from
+    if (entry->owner.load() != self) continue;  // registered by the process from which this one was forked
     if (const char* path = entry->path.exchange(nullptr); path != nullptr) remove_one(path);
   }
 }

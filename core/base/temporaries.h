@@ -5,8 +5,9 @@
 // Files and folders with unfinished output, which have to be gone when the process ends in the middle.
 namespace cscd {
 
-// Registers a file, or a folder of plain files, as unfinished for as long as this lives. If a signal or the
-// watchdog ends the process meanwhile, the file or folder is removed. The destructor removes nothing.
+// Registers a file, or a folder of plain files, as unfinished for as long as this object lives. If a signal
+// or the watchdog ends the process in that time, the file or folder is removed. The destructor ends the
+// registration and leaves the file in place. The constructor throws std::bad_alloc if memory runs out.
 class Temporary {
  public:
   explicit Temporary(const std::filesystem::path& path);
@@ -20,8 +21,8 @@ class Temporary {
   friend void remove_temporaries() noexcept;
 };
 
-// Names the process that writes into a temporary folder for as long as this lives: remove_temporaries() ends
-// that process first. One at a time.
+// Registers the process that writes into a temporary folder, for as long as this object lives.
+// remove_temporaries() kills that process first. At most one such object may exist at a time.
 class TemporaryHelper {
  public:
   explicit TemporaryHelper(int process) noexcept;
@@ -30,11 +31,12 @@ class TemporaryHelper {
   TemporaryHelper& operator=(const TemporaryHelper&) = delete;
 };
 
-// Removes all that this process has registered. Makes system calls only, so a signal handler may call it.
+// Removes all files and folders that this process has registered. It makes system calls only,
+// so a signal handler may call it.
 void remove_temporaries() noexcept;
 
-// From here on SIGINT, SIGTERM and SIGHUP remove the temporaries before they end the process. A signal that
-// the caller of the program ignores stays ignored.
+// Makes SIGINT, SIGTERM and SIGHUP remove the temporaries before they end the process. A signal that the
+// process was started to ignore stays ignored.
 void remove_temporaries_at_signals() noexcept;
 
 }  // namespace cscd

@@ -3,23 +3,25 @@
 #include "core/geometry/sideways.h"
 #include "core/geometry/triple_product_lanes.h"
 
-// Bit for bit what the scalar twins say of each pair. To turn an edge round or to exchange two edges changes
-// the sign of exact differences, and so that of a whole cubic, but no rounding; from which end the other
-// points are seen does. So that is the edge's first end, which has the smaller index; and of two edges that
-// of the first, which is the one with the smaller first end.
+// The result is, bit for bit, that of the scalar functions for each pair. Turning an edge round or exchanging
+// two edges changes the sign of exact differences, and so the sign of a whole cubic, but no rounding. The
+// point from which the other points are seen does affect rounding. So an edge is seen from its first end,
+// which has the smaller index. For two edges the points are seen from the first end of the first edge, which
+// is the edge whose first end has the smaller index.
 namespace cscd {
 namespace {
 
-// Lanes: the corners of the first triangle, or its edges, those of the second, two to spare.
+// The corners of two triangles and their edges, one a lane: lanes 0 to 2 belong to the first triangle, lanes
+// 3 to 5 to the second; the last two lanes are spare. Edge l runs from corner l to the next one.
 struct Features {
   VectorLanes corner;
   VectorLanes first_end, other_end;  // of edges
-  Sign8 first;                       // number of the vertex
+  Sign8 first;                       // index of the edge's first end
   VectorLanes edge;
-  Lane8 longest;  // component of each edge
+  Lane8 longest;  // largest component of each edge
 };
 
-// Of `v`, and from 8 on of `w`.
+// Lane l of the result is lane kFrom[l] of `v`, or lane kFrom[l] - 8 of `w`.
 template <int... kFrom>
 VectorLanes picked(const VectorLanes& v, const VectorLanes& w) {
   VectorLanes out;
@@ -63,14 +65,15 @@ Features features_of(const Motion& motion, const Triangle& a, const Triangle& b)
   return f;
 }
 
-// Four points of each of eight pairs, as the filter takes them.
+// The four points of each of eight feature pairs, as apart_sideways() takes them.
 struct Points {
-  VectorLanes of_first[2], of_second[2];  // edges, or the face but its third corner, and that and the vertex
+  VectorLanes of_first[2], of_second[2];  // two edges; or a face's corners and a vertex
 };
 
-// Which edges are the first and the second of the pairs at eight places, of whatever is known of edges.
-// Places 0 to 7: what vertices carry, with the edges at the first corner of their face; edge 0 of the first
-// triangle with edges 0 and 1 of the second. Places 8 to 14, and the last again: the other edges.
+// These functions choose, from any per-edge lanes, the first and the second edge of the pairs at eight
+// places. Low: places 0 to 5, a vertex and a face, represented by the two edges at the first corner of the
+// face; then places 6 and 7, edge 0 of the first triangle with edges 0 and 1 of the second. High: places 8 to
+// 14, all other pairs of edges, and the last place once more.
 constexpr auto kLowFirst = [](const auto& edges) { return picked<3, 3, 3, 0, 0, 0, 0, 0>(edges); };
 constexpr auto kLowSecond = [](const auto& edges) { return picked<5, 5, 5, 2, 2, 2, 3, 4>(edges); };
 constexpr auto kHighFirst = [](const auto& edges) { return picked<0, 1, 1, 1, 2, 2, 2, 2>(edges); };
@@ -95,7 +98,8 @@ unsigned never_coplanar(const Features& f, const First& first, const Second& sec
       certain_signs(cross(first(f.edge), second(f.edge), first(f.longest) * second(f.longest)), third));
 }
 
-// `exchanged`: where the second edge comes first.
+// Returns one bit for each of eight pairs: 1 if they certainly stay apart in their plane. `exchanged` marks
+// pairs of edges whose second edge is to be taken as the first.
 unsigned apart_in_plane(const Points& points, Sign8 exchanged, Sign8 vertex_face) {
   const auto& [one, two] = points;
   const VectorLanes from = chosen(exchanged, two[0], one[0]);

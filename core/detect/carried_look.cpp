@@ -5,26 +5,29 @@
 
 #include "core/geometry/triple_product16.h"
 
-// Whatever is certain here is what the filter says in double precision: a sign that exceeds its bound here
-// exceeds the much smaller one there, and where two certain signs are opposite here, nothing is certain
-// there. So it does not matter which points vectors start from or which edge comes first, as long as the
-// cubics and the directions are the same but for their sign.
+// Whatever this look finds certain, the filter finds in double precision too. A sign that exceeds its bound
+// here exceeds the much smaller bound there; and if two coefficients certainly have opposite signs here, the
+// cubic has no certain sign there. So the result does not depend on the points from which vectors start or on
+// the order of two edges, as long as the cubics and directions are the same up to their sign.
 namespace cscd {
 namespace {
 
-// What is beyond is not looked at: bounds stay finite where what they bound overflows. Of coordinates up to
-// M, nothing here is larger than the difference of two projections, 18432 M^4.
+// Larger coordinates are left to double precision, so that all bounds stay finite. With coordinates up to M,
+// the largest number here is the difference of two projections, 18432 M^4.
 constexpr float kLargest = 1e8F;
 
-// The corners of the first triangle, then those of the second, seen from the first of all at either end.
+// The corners of the first triangle, then those of the second. At each end of the interval, positions are
+// taken relative to the first triangle's first corner.
 struct Corners {
-  // Rows of four: x, y, z and 0 of four corners, then of two and of none.
+  // Rows of four numbers (x, y, z and 0), one row a corner: corners 0 to 3 in `first`,
+  // corners 4 and 5 (twice) in `last`.
   struct End {
     Float16 first, last;
   } end[2];
-  float largest;  // coordinate
+  float largest;  // absolute coordinate
 
-  // Of a coordinate: u of the largest, and what the difference in doubles lost.
+  // Returns a bound of a coordinate's error: u times the largest coordinate, and the
+  // rounding of the difference in doubles.
   float error() const { return 1.01F * 0x1p-24F * largest; }
 };
 
@@ -44,7 +47,7 @@ Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b) {
   return c;
 }
 
-// Of one corner a lane; of the sixteen lanes, the first fifteen are places.
+// Returns one corner in each lane. The first fifteen of the sixteen lanes stand for the places.
 template <int... kCorner>
 VectorLanes16 points(const Corners& c) {
   VectorLanes16 out;
@@ -66,8 +69,9 @@ VectorLanes16 chosen(const VectorLanes16& vertex_face, const VectorLanes16& edge
   return out;
 }
 
-// By bit 3 side + i, whether edge i of that triangle runs from its vertex with the smaller number: 1 where
-// edge i of the first and edge k of the second both do or both do not, else -1.
+// Signs that make edges run alike. An edge *runs upward* if it runs from its vertex with the smaller index.
+// Bit i of `up` says so for edge i of the first triangle, bit 3 + k for edge k of the second. The entry of a
+// place is 1 if both of its edges run upward or neither does, else -1. Vertex-face places have 1.
 constexpr auto kAlike = [] {
   std::array<std::array<float, kLanes16>, 64> alike{};
   for (unsigned up = 0; up < alike.size(); ++up)
@@ -87,21 +91,27 @@ Float16 alike(const Triangle& a, const Triangle& b) {
   return out;
 }
 
-// Of the test in sideways.h: certainly apart, and certainly not found apart.
+// Results of the test in sideways.h for sixteen pairs: pairs that it certainly finds apart, and pairs that it
+// certainly does not find apart.
 struct Sideways {
   Mask16 apart, kept;
 };
 
-// Rounding. d = `error` is at least u times the largest coordinate, so that a difference of two is off by
-// D = 4 d at most and not longer than S; twice its mean by 3 D. A difference of two of these is off by 8 D,
-// of that and one of them by 14 D = 56 d, the most of what stands in `along`. Call that e, and A and B the
-// largest components of the first two of `along`, X of that which m is across. Then the normal is off by
-//   2 e (A + B) + 4.1 u A B,
-// m, which is not larger than 4 A B X, by twice that times X, 4.1 e A B and 8.2 u A B X, and a projection by
-//   3 S of that, 12.1 A B X D, and 36 u A B X S for its own roundings.
-// Two projections and their difference, with u A B <= u (A + B)^2 / 4, u (A + B) <= 0.22 e and X <= 6 S: less
-// than 35 e S (X (A + B) + A B). A, B, S and X are meant with what they may be off by. 36 also pays for the
-// bound's own roundings.
+// Single-precision version of apart_sideways() for sixteen pairs.
+//
+// Rounding. Let u = 2^-24. d = `error` is at least u times the largest coordinate, so a difference of two
+// coordinates is off by at most D = 4 d; let S be the longest such difference. Twice its mean is off by 3 D.
+// A difference of two of these is off by 8 D, and a difference of that and a single one by 14 D = 56 d, which
+// is the most for anything in `along`. Call that e. Let A and B be the largest components of the first two
+// vectors in `along`, and X that of the vector to which m is perpendicular. Then the normal is off by
+//   2 e (A + B) + 4.1 u A B;
+// m, which is not larger than 4 A B X, is off by
+//   twice that times X, 4.1 e A B and 8.2 u A B X;
+// and a projection is off by
+//   3 S times the error of m, 12.1 A B X D, and 36 u A B X S for its own roundings.
+// For two projections and their difference, using u A B <= u (A + B)^2 / 4, u (A + B) <= 0.22 e and X <= 6 S,
+// the sum is less than 35 e S (X (A + B) + A B). Here A, B, S and X include their own errors. The factor 36
+// also pays for the roundings of the bound itself.
 Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
   const Float16 slack = all_lanes(56 * error);
   Float16 along[3][3];

@@ -11,7 +11,7 @@
 namespace cscd {
 namespace {
 
-// What the scalar twins of the filter keep of two triangles.
+// Returns the places of two triangles that the scalar functions of the filter keep.
 CarriedPlaces kept(const TriangleMesh& mesh, const Motion& motion, const TrianglePair& pair) {
   const auto drops = [](const auto& query) { return never_coplanar(query) || never_meet_in_plane(query); };
   unsigned places = 0;
@@ -25,13 +25,14 @@ CarriedPlaces kept(const TriangleMesh& mesh, const Motion& motion, const Triangl
   return static_cast<CarriedPlaces>(places);
 }
 
-using Six = std::array<MovingPoint, 6>;  // corners of one triangle, then of another
+using Six = std::array<MovingPoint, 6>;  // corners of one triangle, then of the other
 
 struct Tally {
   int open = 0, none = 0, some = 0;
 };
 
-// Triangles that `make` draws, their corners numbered in any order; at all places or at one.
+// Compares the look with the scalar functions on `count` pairs of triangles that make() draws. Their corners
+// are numbered in any order. Half of the calls are about all places, the other half about one place.
 template <class Make>
 Tally look(int count, const Make& make) {
   Tally tally;
@@ -66,7 +67,7 @@ Vec3 any(std::mt19937_64& random, double size = 1) {
   return {unit(random), unit(random), unit(random)};
 }
 
-// In another frame, so that no coordinate is more exact than others.
+// Returns the points in another coordinate frame, so that no coordinate is more exact than others.
 Six turned(std::mt19937_64& random, Six six) {
   const Vec3 shift = any(random, 10), x = any(random), y = any(random), z = x.cross(y);
   for (auto& point : six)
@@ -74,7 +75,7 @@ Six turned(std::mt19937_64& random, Six six) {
   return six;
 }
 
-// Near one another, and moving by about a third of their size.
+// Triangles lie near one another and move by about a third of their size.
 TEST(CarriedLook, TellsOfNearlyAllTrianglesWhatTheFilterKeeps) {
   const Vec3 far(12, -7, 31);
   const Tally tally = look(20'000, [&](std::mt19937_64& random) {
@@ -87,7 +88,8 @@ TEST(CarriedLook, TellsOfNearlyAllTrianglesWhatTheFilterKeeps) {
   EXPECT_GT(tally.some, 3000);
 }
 
-// Within a few of the bounds of single precision and of doubles from where the answer changes.
+// Points lie within a few of the bounds of single and of double precision from a
+// place where the answer changes.
 class NearlyTouching : public testing::TestWithParam<double> {
  protected:
   const double off = GetParam();
@@ -130,7 +132,7 @@ TEST_P(NearlyTouching, InOneLine) {
     return six;
   });
 }
-// A small triangle, and in its plane a long one with a corner on it.
+// A small triangle, and a long one in its plane with a corner on it.
 TEST_P(NearlyTouching, SmallBesideLong) {
   look(3000, [&](std::mt19937_64& random) {
     Six six;
@@ -145,7 +147,7 @@ TEST_P(NearlyTouching, SmallBesideLong) {
     return six;
   });
 }
-// Borders pass one another, straight on or askew.
+// Borders pass one another, straight or at an angle.
 TEST_P(NearlyTouching, AtBorders) {
   int count = 0;
   look(6000, [&](std::mt19937_64& random) {
@@ -160,8 +162,8 @@ TEST_P(NearlyTouching, AtBorders) {
   });
 }
 
-// What underflows or overflows in single precision is left open. Where projections overflow and what bounds
-// them does not, a look is wrong about few, hence many of them.
+// Sizes that underflow or overflow in single precision are left undecided. In the range where projections
+// overflow but their bounds do not, a look would be wrong about few triangles, so many triangles are tried.
 TEST(CarriedLook, LeavesOpenWhatIsBeyondItsRange) {
   for (const double scale : {1e-160, 1e-40, 1e-30, 1e-20, 1e-12, 1e-9, 3e-10, 1e-8, 1e8,  3e8,
                              3e9,    1e10,  1e12,  1e13,  1e14,  1e16, 1e18,  1e30, 1e40, 1e160}) {

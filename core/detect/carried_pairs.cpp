@@ -5,7 +5,8 @@
 namespace cscd {
 namespace {
 
-// By which corners are the same, bit 3 i + k for corner i of the first and corner k of the second.
+// The places that two triangles carry, by the corners that they have in common: bit 3 i + k of the index is 1
+// if corner i of the first triangle is corner k of the second.
 constexpr std::array<CarriedPlaces, 512> kCarriedBy = [] {
   std::array<CarriedPlaces, 512> all{};
   for (unsigned same = 0; same < all.size(); ++same) {

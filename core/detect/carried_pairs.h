@@ -16,7 +16,9 @@ namespace cscd {
 // first, and place 6 + 3 i + k is edge i of the first against edge k of the second.
 using CarriedPlaces = std::uint16_t;
 inline constexpr CarriedPlaces kAllCarried = 0x7fff;
+// Returns the places of the feature pairs that the two triangles carry: kAllCarried if they share no vertex.
 CarriedPlaces carried_by(const Triangle& a, const Triangle& b);
+// Returns the feature pair at one place, in [0, 15), of two triangles.
 inline FeaturePair carried(const TriangleMesh& mesh, const TrianglePair& pair, std::size_t place) {
   if (place < 3) return FeaturePair::of(mesh.corners(pair.a)[place], pair.b);
   if (place < 6) return FeaturePair::of(mesh.corners(pair.b)[place - 3], pair.a);
@@ -28,6 +30,7 @@ struct CarriedPairs {
   TrianglePair pair;
   CarriedPlaces places;
 };
+// Calls take(feature_pair) for each of them, in the order of their places.
 template <class Take>
 void for_each_carried(const TriangleMesh& mesh, const CarriedPairs& some, const Take& take) {
   for (unsigned rest = some.places; rest != 0; rest &= rest - 1)

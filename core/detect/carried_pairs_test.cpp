@@ -8,7 +8,8 @@
 namespace cscd {
 namespace {
 
-// Neighbours at an edge and at a corner, turned in every way, and strangers.
+// The pairs of triangles include neighbours at an edge and at a corner, turned in every way, and
+// triangles without a common vertex.
 TEST(CarriedPairs, AreWhatTwoTrianglesHaveWithoutACommonVertex) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
   std::size_t sizes[16] = {};
@@ -28,8 +29,8 @@ TEST(CarriedPairs, AreWhatTwoTrianglesHaveWithoutACommonVertex) {
       ASSERT_EQ(met, expected) << i << " and " << j;
       ++sizes[met.size()];
     }
-  EXPECT_GT(sizes[4], 0u);  // an edge in common
-  EXPECT_GT(sizes[9], 0u);  // a corner
+  EXPECT_GT(sizes[4], 0u);  // with a common edge
+  EXPECT_GT(sizes[9], 0u);  // with a common corner
   EXPECT_GT(sizes[15], 0u);
 }
 

@@ -12,11 +12,11 @@
 namespace cscd {
 namespace {
 
-// More than the error of a time (2^-50, core/elementary/exact/exact.h), so that all that touch at one time
-// are tested.
+// A slack that exceeds the error of a contact time (2^-50, core/elementary/exact/exact.h), so that all
+// feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
-// Of one kind, to be tested together.
+// Feature pairs of one kind, and their queries, that are tested together.
 template <class Query>
 struct Tests {
   std::vector<FeaturePair> pairs;
@@ -30,7 +30,7 @@ struct Tests {
   }
 };
 
-// Where pairs become contacts: triangle pairs in, contacts out.
+// Turns triangle pairs into contacts. It is the sink of the culler.
 class PairTester : public TrianglePairSink {
  public:
   PairTester(const Setup& setup, PairOptions options, StageClock& clock)
@@ -74,9 +74,10 @@ class PairTester : public TrianglePairSink {
     clock_.enter(Stage::traversal);
   }
 
-  // In the order in which they can touch, some at a time, up to the earliest contact so far.
+  // Tests triangle pairs in the order of the times before which they certainly do not touch, a few at a time,
+  // up to the earliest contact found so far.
   void test_in_order(const std::vector<TrianglePair>& block) {
-    constexpr std::size_t kTogether = 16;  // more would be asked in vain, fewer leave lanes of the test empty
+    constexpr std::size_t kTogether = 16;  // more would be tested in vain; fewer leave lanes idle
     const auto matters = [&](const Bounded& pair) { return pair.before <= earliest_ + kTimeSlack; };
     order_.clear();
     for (std::size_t first = 0; first < block.size(); first += kLanes16) {
@@ -98,7 +99,8 @@ class PairTester : public TrianglePairSink {
     }
   }
 
-  // Few of what each two triangles carry, hence by feature pair, not by triangle pair.
+  // Tests feature pairs of an assignment. They are filtered one by one and not by triangle pair, because few
+  // of a triangle pair's feature pairs are assigned to it.
   void test_assigned(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
@@ -167,15 +169,15 @@ class PairTester : public TrianglePairSink {
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   PairCounts counts_;
-  std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one may be carried by several
+  std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one pair may be carried repeatedly
   std::vector<FeaturePair> assigned_;     // to the block's triangle pairs
-  std::vector<FeaturePair> left_;         // of those, what the filter could not prove apart
-  FeaturePairSet met_;                    // met in this interval
-  Tests<MovingVertexFace> vertex_faces_;  // of what is left, what is met for the first time
+  std::vector<FeaturePair> left_;         // feature pairs that the filter could not prove apart
+  FeaturePairSet met_;                    // feature pairs met in this interval
+  Tests<MovingVertexFace> vertex_faces_;  // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
   struct Bounded {
-    float before;  // which the two certainly do not touch
+    float before;  // time before which the two certainly do not touch
     TrianglePair pair;
   };
   std::vector<Bounded> order_;

@@ -44,8 +44,8 @@ std::vector<TrianglePair> all_pairs(const TriangleMesh& mesh) {
   return pairs;
 }
 
-// An elementary test that counts how often it is asked about each query; vertices are told apart by x at t =
-// 0.
+// An elementary test that counts how often it is asked about each query. It tells
+// vertices apart by their x at t = 0.
 std::map<std::vector<double>, int> g_asked;
 const ElementaryTest kRecorder{
     "recorder",
@@ -62,8 +62,8 @@ const ElementaryTest kRecorder{
       return Answer{Verdict::apart, 0};
     }>};
 
-// In the plane z = 0, no two vertices with the same x. Mirrored within the interval, so that the filter
-// proves nothing.
+// Vertices in the plane z = 0, no two with the same x. The tests mirror them within the interval, so
+// that the filter proves nothing.
 std::vector<Vec3> flat(std::size_t vertices) {
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < vertices; ++i)
@@ -106,7 +106,7 @@ TEST(Compose, ExpandsAPairOfTrianglesIntoTheFeaturePairsThatShareNoVertex) {
     for (const auto& [query, times] : g_asked) {
       EXPECT_EQ(times, 1);
       ++(query.size() == 4 ? vertex_face : edge_edge);
-      // No vertex twice.
+      // No vertex occurs twice in a query.
       EXPECT_EQ(std::set<double>(query.begin(), query.end()).size(), query.size()) << e.name;
     }
     EXPECT_EQ(vertex_face, e.vertex_face) << e.name;
@@ -118,7 +118,7 @@ TEST(Compose, ExpandsAPairOfTrianglesIntoTheFeaturePairsThatShareNoVertex) {
   }
 }
 
-// Every feature pair of a mesh that shares no vertex.
+// Returns every feature pair of a mesh whose features share no vertex.
 std::vector<FeaturePair> all_feature_pairs(const TriangleMesh& mesh) {
   std::vector<FeaturePair> pairs;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
@@ -163,7 +163,7 @@ TEST(Compose, TestsEachFeaturePairOnceOverManyBlocks) {
   for (const auto& [query, times] : g_asked) ASSERT_EQ(times, 1);
 }
 
-// A crumpled sphere: contacts of all kinds.
+// A crumpled sphere has contacts of all kinds.
 struct Crumple {
   test::Shape shape = test::icosphere(1);
   TriangleMesh mesh = shape.mesh();
@@ -204,13 +204,13 @@ TEST(Compose, FindsWhatAskingAboutEveryFeaturePairFinds) {
       std::shuffle(pairs.begin(), pairs.end(), random);
       for (TrianglePair& pair : pairs)
         if (random() % 2) std::swap(pair.a, pair.b);
-      if (order == 1)  // in another number of blocks
+      if (order == 1)  // more blocks
         while (pairs.size() < 100'000) pairs.insert(pairs.end(), pairs.begin(), pairs.begin() + 3000);
     }
   }
 }
 
-// Saboteur: one triangle pair lost that alone carries a contact changes the digest.
+// Saboteur: if a triangle pair that alone carries a contact is lost, the digest changes.
 TEST(Compose, ALostTrianglePairIsNoticed) {
   const TriangleMesh mesh({test::corners(0, 1, 2), test::corners(3, 4, 5), test::corners(6, 7, 8)}, 9);
   const std::vector<Vec3> start = {{0, 0, 0},     {1, 0, 0}, {0, 1, 0}, {0.1, 0.1, 1}, {0.3, 0.1, 2},
@@ -227,7 +227,8 @@ TEST(Compose, ALostTrianglePairIsNoticed) {
   EXPECT_NE(digest(whole), digest(lost));
 }
 
-// Rule fresh-detector: one detector, any order of intervals, the answers of fresh detectors.
+// Rule fresh-detector: one detector that is used in any order of intervals gives
+// the answers of fresh detectors.
 TEST(Compose, KeepsNothingBetweenIntervals) {
   const Crumple a(1), b(2);
   const ElementaryTest& exact = *find_elementary_test("exact");
@@ -275,7 +276,7 @@ TEST(Compose, UndecidedPairsAreKept) {
 }
 
 TEST(Compose, RelativeBoxesAreForNonAdjacentPairsOnly) {
-  // Two adjacent triangles and a far one, all moving together.
+  // Two adjacent triangles and a far one move together.
   const TriangleMesh mesh({test::corners(0, 1, 2), test::corners(2, 1, 3), test::corners(4, 5, 6)}, 7);
   std::vector<Vec3> start = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {9, 0, 0}, {10, 0, 0}, {9, 1, 0}};
   std::vector<Vec3> end = start;

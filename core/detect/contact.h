@@ -28,7 +28,7 @@ struct FeaturePair {
   auto operator<=>(const FeaturePair&) const = default;
 };
 
-// Asks an elementary test about one feature pair of a mesh in motion.
+// Asks an elementary test about one feature pair of a moving mesh and returns its answer.
 Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
            const FeaturePair& pair);
 
@@ -37,6 +37,7 @@ Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& m
 struct Contact {
   FeaturePair pair;
   Verdict verdict;  // contact or undecided
+  // The earliest contact time, in [0, 1]; for `undecided`, a lower bound of it.
   double time;
 };
 
@@ -45,7 +46,7 @@ struct ContactSet {
   std::vector<Contact> contacts;
 
   void clear() { contacts.clear(); }
-  void sort();  // by time, then feature pair
+  void sort();  // by time, then by feature pair
 };
 
 // Keeps the contacts of the earliest time, and everything that is undecided.

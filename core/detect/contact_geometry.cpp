@@ -6,11 +6,12 @@
 namespace cscd {
 namespace {
 
-// Shorter than this share of the lengths that made it, a cross product is rounding.
+// A cross product that is shorter than this share of the lengths that made it consists of rounding.
 constexpr double kParallel = 1e-9;
 
+// A point of a feature.
 struct Located {
-  Vec3 at, start, velocity;  // at the time of contact; at the start; over the interval
+  Vec3 at, start, velocity;  // position at contact; position at the start; way over the interval
 };
 
 Located weighted(const MovingPoint* points, const double* weights, int count, double time) {
@@ -23,14 +24,16 @@ Located weighted(const MovingPoint* points, const double* weights, int count, do
   return sum;
 }
 
+// Returns where on a segment the point nearest to `point` lies, as a share of the way in [0, 1].
 double share_along(const Vec3& from, const Vec3& to, const Vec3& point) {
   const Vec3 way = to - from;
   const double length = way.squaredNorm();
   return length > 0 ? std::clamp(way.dot(point - from) / length, 0.0, 1.0) : 0.0;
 }
 
-// The weights of the point of a triangle that is nearest to p (Ericson, Real-Time Collision Detection, 2005,
-// section 5.1.5, by way of the sides where the projection falls outside).
+// Returns the barycentric weights of the point of a triangle that is nearest to p (Ericson,
+// Real-Time Collision Detection, 2005, section 5.1.5). If p projects outside the face, the
+// nearest point of a side is taken.
 std::array<double, 3> nearest_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double area = n.squaredNorm();
@@ -51,7 +54,7 @@ std::array<double, 3> nearest_weights(const Vec3& p, const Vec3& a, const Vec3& 
   });
 }
 
-// Shares along two segments at their nearest points (Ericson, section 5.1.9).
+// Returns the shares along the segments p q and r s at their nearest points (Ericson, section 5.1.9).
 std::array<double, 2> nearest_shares(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Vec3 u = q - p, v = s - r, w = p - r;
   const double a = u.squaredNorm(), b = u.dot(v), e = v.squaredNorm(), c = u.dot(w), f = v.dot(w);
@@ -62,8 +65,9 @@ std::array<double, 2> nearest_shares(const Vec3& p, const Vec3& q, const Vec3& r
   return {first, second};
 }
 
-// A direction and the side from which the first feature came: against its motion, or, where it does not move
-// along the direction, where it stood at the start.
+// Sets the normal and the relative speed. The normal points to the side from which the first feature came:
+// that is against its motion, or, if it does not move along `direction`, to where it stood at the start. If
+// `direction` is too short for its `scale`, the line between the starting points is taken instead.
 void set_normal(Vec3 direction, double scale, const Located& first, const Located& second,
                 ContactGeometry& out) {
   const Vec3 apart = first.start - second.start, velocity = first.velocity - second.velocity;

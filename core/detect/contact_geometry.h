@@ -30,6 +30,7 @@ struct ContactGeometry {
   std::optional<double> relative_speed;
 };
 
+// Returns the geometry of one contact of a moving mesh. `time` is the time of the contact, in [0, 1].
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
                                  double time);
 

@@ -11,7 +11,7 @@ namespace {
 
 using test::corners;
 
-// A triangle (0, 1, 2) and one far from it whose corner 3 does what a test asks.
+// A triangle (0, 1, 2), and another one whose corner 3 moves as a test asks.
 const TriangleMesh& mesh() {
   static const TriangleMesh two({corners(0, 1, 2), corners(3, 4, 5)}, 6);
   return two;
@@ -60,7 +60,8 @@ TEST(ContactGeometry, OfEdgesThatCross) {
   EXPECT_NEAR(*g.relative_speed, -4, 1e-12);
 }
 
-// Sliding in the plane of the face says nothing of the side; where both stood at the start does.
+// The vertex slides parallel to the face, so the motion does not tell its side;
+// the positions at the start do.
 TEST(ContactGeometry, TakesTheSideFromTheStartWhereNothingApproaches) {
   const std::vector<Vec3> start = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {9, 9, 9}, {9, 9, 8}};
   std::vector<Vec3> end = start;
@@ -71,7 +72,7 @@ TEST(ContactGeometry, TakesTheSideFromTheStartWhereNothingApproaches) {
 }
 
 TEST(ContactGeometry, OfWhatIsDegenerateStaysFinite) {
-  // A face without area, edges in one line, edges that are points, and all of it in one place.
+  // A face without area and edges in one line; edges that are points; all vertices in one place.
   const std::vector<std::vector<Vec3>> starts = {
       {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 0, 1}, {9, 0, 1}, {9, 9, 8}},
       {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
@@ -100,7 +101,7 @@ TEST(ContactGeometry, OfWhatIsDegenerateStaysFinite) {
   }
 }
 
-// Whatever touches, the same point is described from both sides.
+// The weights on both features describe the same point.
 TEST(ContactGeometry, WeightsOfBothSidesGiveTheSamePoint) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> some(-1, 1);

@@ -17,7 +17,7 @@ constexpr auto kVf = FeaturePair::Kind::vertex_face, kEe = FeaturePair::Kind::ed
 ContactSet some_contacts() {
   ContactSet set;
   std::mt19937 random(1);
-  for (int i = 0; i < 200; ++i)  // pairs are distinct, times are not
+  for (int i = 0; i < 200; ++i)  // pairs are different, times are not
     set.contacts.push_back(contact(i % 2 ? kVf : kEe, i, static_cast<int>(random() % 50) + 200,
                                    static_cast<double>(random() % 8) / 8));
   return set;
@@ -46,7 +46,7 @@ TEST(Digest, DoesNotDependOnTheOrderOfDetection) {
   }
 }
 
-// FNV-1a of nothing, and of forty zero bytes, by its definition.
+// The FNV-1a hash of no bytes, and that of forty zero bytes, computed from the definition.
 TEST(Digest, IsFnv1a) {
   EXPECT_EQ(digest({}), "cbf29ce484222325");
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -74,7 +74,7 @@ TEST(Digest, SeesEveryField) {
 }
 
 TEST(Ask, FindsTheFeaturesOfThePair) {
-  // Two triangles of the same strip; all coordinates differ.
+  // Two triangles without a common vertex. No two vertices have the same position.
   const TriangleMesh mesh({{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{3}, VertexId{4}, VertexId{5}}},
                           6);
   std::vector<Vec3> start, end;

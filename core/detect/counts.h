@@ -8,12 +8,12 @@ namespace cscd {
 // The sizes of the orientation classes in the interval, and the number of clusters in force.
 struct RadialCounts {
   std::uint64_t positive = 0, negative = 0, uncertain = 0;  // triangles
-  std::uint64_t clusters = 0;                               // mega clusters; atomic ones where nothing merges
+  std::uint64_t clusters = 0;  // mega clusters, or atomic clusters where a strategy merges none
 };
 
 // What the culling did in an interval.
 struct CullCounts {
-  std::optional<std::uint64_t> bvot = 0;  // bounding volume overlap tests; absent where a library keeps them
+  std::optional<std::uint64_t> bvot = 0;  // bounding volume overlap tests; absent where a library hides them
   std::uint64_t pctp = 0;                 // potentially colliding triangle pairs passed on
   std::optional<std::uint64_t>
       contour_box_tests;  // box tests of projected contours in the plane, which do not count as bvot

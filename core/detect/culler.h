@@ -11,11 +11,12 @@
 
 namespace cscd {
 
+// Two different triangles that may touch in the interval.
 struct TrianglePair {
   TriangleId a, b;
 };
 
-// Takes potentially colliding triangle pairs one by one and hands them on in blocks.
+// Takes potentially colliding triangle pairs one by one and hands them on in blocks of a fixed size.
 class TrianglePairSink {
  public:
   explicit TrianglePairSink(std::size_t block = 1 << 15) { block_.reserve(block); }
@@ -42,9 +43,9 @@ class TrianglePairSink {
   std::uint64_t count_ = 0;
 };
 
-// A culling strategy: which triangle pairs have to be looked at in an interval. Virtual calls happen three
-// times an interval, never per pair. Scratch is the culler's own and is reused; results depend on the
-// interval alone.
+// A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions
+// are called three times an interval, never once per pair. A culler owns its scratch memory and reuses it;
+// its results depend on the interval alone (rule fresh-detector, core/soundness.md).
 class Culler {
  public:
   virtual ~Culler() = default;
@@ -54,8 +55,10 @@ class Culler {
   // Computes orientation classes and clusters. Stage `rv_update`; returns false where the strategy has no
   // such stage. `bones` is null for a mesh without a rig.
   virtual bool classify(const Motion& /*motion*/, const Rig::Interval* /*bones*/) { return false; }
-  // Passes every pair that is not proven apart to the sink. Stage `traversal`.
+  // Passes every triangle pair that is not proven apart to `sink` and returns the culling counters, except
+  // pctp, which the caller takes from the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
+  // The orientation of the surface in the last interval, for pictures.
   virtual RadialView radial_view() const { return {}; }
 };
 

@@ -10,7 +10,8 @@
 
 namespace cscd {
 
-// Milliseconds of one interval. A stage that a strategy does not have is absent, not zero.
+// The time of each stage of one interval, in milliseconds. A stage that a strategy does not have is
+// absent; it is not counted as zero.
 struct StageTimes {
   double refit = 0;
   std::optional<double> rv_update;
@@ -31,6 +32,10 @@ struct Report {
 class Detector {
  public:
   virtual ~Detector() = default;
+  // Replaces the content of `out` by the contacts and undecided feature pairs of one interval, unsorted, and
+  // returns counters and times. All positions must be finite. `bones` holds the skeleton at both ends of the
+  // interval; it is null for a mesh without a rig. A detector logs nothing; it throws only where a package
+  // that it calls fails or refuses the positions (baselines/embree, baselines/fcl).
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
   virtual RadialView radial_view() const { return {}; }
 };

@@ -19,6 +19,7 @@ class FeaturePairSet {
  public:
   FeaturePairSet() : slots_(std::size_t{1} << (64 - shift_)) {}
 
+  // Empties the set.
   void start_interval() {
     size_ = 0;
     if (++epoch_ == kEpochs) {
@@ -43,8 +44,9 @@ class FeaturePairSet {
   static constexpr int kKeyBits = 2 * kIdBits;
   static constexpr std::uint64_t kEpochs = std::uint64_t{1} << (64 - kKeyBits);
 
-  // TriangleMesh allows 2^28 vertices and triangles, so there are at most 3 * 2^28 edges (of loose
-  // triangles). The last quarter of the 30-bit numbers is left for vertices as the first of a pair.
+  // TriangleMesh allows 2^28 vertices and 2^28 triangles, so a mesh has at most 3 * 2^28
+  // edges (if no triangles share one). That leaves the last quarter of the 30-bit numbers for
+  // the vertex of a vertex-face pair.
   static std::uint64_t key(const FeaturePair& pair) {
     constexpr std::uint64_t first_vertex = std::uint64_t{3} << 28;
     const bool vertex = pair.kind == FeaturePair::Kind::vertex_face;
@@ -53,7 +55,7 @@ class FeaturePairSet {
   }
   std::uint64_t& find(std::uint64_t entry) {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> shift_;  // the top bits depend on all of the key
+    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> shift_;  // the top bits depend on the whole key
     while (slots_[i] >> kKeyBits == epoch_ && slots_[i] != entry) i = (i + 1) & mask;
     return slots_[i];
   }
@@ -65,7 +67,7 @@ class FeaturePairSet {
       if (entry >> kKeyBits == epoch_) find(entry) = entry;
   }
 
-  int shift_ = 52;  // 64 less the binary logarithm of the table's size
+  int shift_ = 52;  // 64 minus the binary logarithm of the table's size
   std::vector<std::uint64_t> slots_;
   std::size_t size_ = 0;
   std::uint64_t epoch_ = 1;

@@ -7,8 +7,8 @@
 namespace cscd {
 namespace {
 
-constexpr std::int32_t kMaxId = (1 << 28) - 1;        // of a vertex or a triangle
-constexpr std::int32_t kMaxEdge = 3 * (1 << 28) - 1;  // of an edge: every triangle has three of its own
+constexpr std::int32_t kMaxId = (1 << 28) - 1;        // largest index of a vertex or a triangle
+constexpr std::int32_t kMaxEdge = 3 * (1 << 28) - 1;  // largest index of an edge, if no triangles share edges
 
 FeaturePair vf(std::int32_t vertex, std::int32_t triangle) {
   return FeaturePair::of(VertexId{vertex}, TriangleId{triangle});
@@ -23,8 +23,8 @@ TEST(FeaturePair, OfTwoEdgesDoesNotDependOnTheirOrder) {
   EXPECT_NE(vf(3, 8), vf(8, 3));
 }
 
-// Random streams over so many intervals that the interval's number wraps around several times; sizes that
-// make the table grow in the middle of an interval.
+// Random streams over so many intervals that the interval's number wraps round several times. Some are so
+// long that the table grows in the middle of an interval.
 TEST(FeaturePairSet, AgreesWithStdSetOverManyIntervals) {
   std::mt19937 random(1);
   FeaturePairSet set;
@@ -58,7 +58,7 @@ TEST(FeaturePairSet, GrowsWithoutForgetting) {
   for (std::int32_t i = 0; i < 100'000; ++i) ASSERT_FALSE(set.insert(ee(i + 1, i)));
 }
 
-// Pairs of the largest ids that a mesh may have, and of those that differ from them in one bit.
+// Pairs of the largest ids that a mesh may have, and of ids that differ from them in one bit.
 TEST(FeaturePairSet, DoesNotConfuseLargeIds) {
   std::set<FeaturePair> pairs;
   std::vector<std::int32_t> ids = {0, 1, 2, kMaxId, kMaxId - 1};

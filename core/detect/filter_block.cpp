@@ -13,7 +13,7 @@ namespace cscd {
 namespace {
 
 // The vertices between which the three vectors of eight coplanarity cubics run, as in
-// core/elementary/question/filter.h. The first and the third start at one vertex.
+// core/elementary/question/filter.h. The first and the third vector start at the same vertex.
 struct CubicLanes {
   VertexLanes origin, a_to, b_from, b_to, c_to;
 
@@ -41,7 +41,7 @@ struct CubicLanes {
   }
 };
 
-// The four points of eight pairs, as sideways.h takes them.
+// The four points of eight feature pairs, as apart_sideways() takes them.
 struct PointLanes {
   VertexLanes from, to[3];
   Sign8 vertex_face;
@@ -68,7 +68,8 @@ struct PointLanes {
   }
 };
 
-// Keeps pairs of which `dropped`, asked about eight at a time, says 0.
+// Asks `dropped` about eight feature pairs at a time, and calls keep(pair) for
+// every pair for which it says 0.
 template <class Lanes, class Dropped, class Keep>
 void for_each_left(const TriangleMesh& mesh, std::span<const FeaturePair> pairs, const Dropped& dropped,
                    const Keep& keep) {
@@ -99,8 +100,8 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left) {
-  // First what is left of many, then its features: a branch on what comes out of one pair keeps the next
-  // waiting.
+  // Filter many triangle pairs first, and append their feature pairs afterwards. A branch on the result of
+  // one triangle pair would make the next one wait.
   constexpr std::size_t kTogether = 64;
   for (; !pairs.empty(); pairs = pairs.subspan(std::min(kTogether, pairs.size()))) {
     std::array<CarriedPairs, kTogether> rest;

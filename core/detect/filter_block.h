@@ -17,8 +17,9 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left);
 
-// Drops pairs by the signs of rounded coefficients, as published (Tang et al. 2010): an ablation that may
-// drop features that touch. Pair by pair.
+// Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
+// et al. 2010), one pair at a time. It is an ablation that may drop features that touch (rule
+// certain-sign, core/soundness.md).
 void drop_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::vector<FeaturePair>& pairs);
 
 }  // namespace cscd

@@ -10,7 +10,7 @@
 namespace cscd {
 namespace {
 
-// Vertices far and near, large and small, some left in one plane.
+// Returns vertices of which some lie nearly or exactly in one plane.
 std::vector<Vec3> scattered(std::size_t count, std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Vec3> out;
@@ -35,7 +35,7 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
       for (std::int32_t i = 0; i < static_cast<std::int32_t>(mesh.vertex_count()); ++i) {
         pairs.push_back(FeaturePair::of(VertexId{i}, TriangleId{t}));
         pairs.push_back(FeaturePair::of(EdgeId{i}, EdgeId{t}));
-      }
+      }                              // at the other scales products leave the range
     pairs.resize(pairs.size() - 3);  // the last block is short
     for (const FeaturePair& pair : pairs) {
       const auto says = [](const auto& query) { return never_coplanar(query) || never_meet_in_plane(query); };
@@ -52,7 +52,8 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
   }
 }
 
-// By triangle pairs the same is left, whichever triangle comes first and however its corners are turned.
+// Filtering by triangle pairs leaves the same feature pairs, whichever triangle comes first and
+// however its corners are turned.
 TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
   const auto count = static_cast<std::int32_t>(mesh.triangle_count());
@@ -91,17 +92,17 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
       EXPECT_GT(dropped, coplanar - kept + 1000);
     }
     if (scale == 1) {
-      EXPECT_GT(coplanar, kept + 1000);  // others are apart in the plane
+      EXPECT_GT(coplanar, kept + 1000);  // the others are apart in their plane
     }
   }
 }
 
-// Without the error bound the sign of a rounding decides: features that touch are dropped.
+// Without the error bound, a rounding may decide the sign, and features that touch are dropped.
 TEST(FilterBlock, ThePlainSignDropsNoLessAndLosesContacts) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
   std::mt19937_64 random(11);
   std::vector<Vec3> start = scattered(mesh.vertex_count(), random);
-  for (Vec3& x : start) x.z() = 0.1 * x.x() + 0.3 * x.y();  // all in one plane, but for rounding
+  for (Vec3& x : start) x.z() = 0.1 * x.x() + 0.3 * x.y();  // all in one plane, up to rounding
   const Motion motion(start, start);
   std::vector<FeaturePair> touching, certain;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t)

@@ -11,12 +11,12 @@ namespace cscd {
 namespace {
 
 constexpr float kUnreached = std::numeric_limits<float>::infinity();
-// Above so many triangles a node is too wide for its extent to be of use.
+// Nodes with more triangles are too wide for their extent to be of use, and get none.
 constexpr std::size_t kLargestExtent = 512;
 
-// A lower bound of the distance of what two volumes hold, however that is rounded.
+// Returns a lower bound of the distance between the contents of two volumes, whatever its rounding.
 double gap(const Kdop16& a, const Kdop16& b) {
-  constexpr double axis = 1 - 1e-6, diagonal = 0.7071;  // a little less than 1 over the directions' lengths
+  constexpr double axis = 1 - 1e-6, diagonal = 0.7071;  // a little less than 1 / the directions' lengths
   double widest = 0;
   for (std::size_t k = 0; k < Kdop16::kDirections; ++k) {
     const double above = static_cast<double>(a.at_least[k]) + b.at_least[8 + k];
@@ -26,7 +26,7 @@ double gap(const Kdop16& a, const Kdop16& b) {
   return widest;
 }
 
-// The neighbours of each vertex along edges, with lengths in mean edges.
+// The neighbours of each vertex along edges, with lengths in mean edge lengths.
 struct EdgeGraph {
   struct Step {
     VertexId to;
@@ -64,7 +64,7 @@ Nearness::Nearness(const TriangleMesh& mesh, std::span<const Vec3> reference)
   find_extents(reference);
 }
 
-// Dijkstra from every vertex, up to kApartOnSurface.
+// Runs Dijkstra's algorithm from every vertex, up to paths of length kApartOnSurface.
 void Nearness::find_neighbours(std::span<const Vec3> reference) {
   const EdgeGraph graph(mesh_, reference, mean_edge_);
   std::vector<float> path(mesh_.vertex_count(), kUnreached);
@@ -154,7 +154,7 @@ bool Nearness::adjacent(TriangleId a, TriangleId b) const {
 struct Nearness::Search {
   const Nearness& in;
   std::span<const Vec3> x;
-  double bound;  // in the frame's units: only what is closer counts
+  double bound;  // in lengths of the scene; only a smaller distance counts
   std::optional<Pair> best;
 
   double distance(TriangleId a, TriangleId b) const {
@@ -188,7 +188,7 @@ struct Nearness::Search {
     } steps[4];
     std::size_t count = 0;
     for (int i = 0; i < (leaf_a ? 1 : 2); ++i)
-      for (int j = 0; j < (leaf_b ? 1 : 2); ++j) {  // nearest first
+      for (int j = 0; j < (leaf_b ? 1 : 2); ++j) {  // sorted, nearest first
         const Step step{of_a[i], of_b[j], gap_of(of_a[i], of_b[j])};
         std::size_t at = count++;
         for (; at > 0 && steps[at - 1].gap > step.gap; --at) steps[at] = steps[at - 1];
@@ -199,7 +199,7 @@ struct Nearness::Search {
 
   void leaves(TriangleId a, TriangleId b) {
     if (in.adjacent(a, b)) return;
-    if (b < a) std::swap(a, b);  // a distance may round otherwise the other way round
+    if (b < a) std::swap(a, b);  // the distance may round differently for exchanged triangles
     const double found = distance(a, b);
     if (found >= bound) return;
     bound = found;
@@ -210,8 +210,9 @@ struct Nearness::Search {
 std::optional<Nearness::Pair> Nearness::closest(std::span<const Vec3> positions) {
   bounds_.refit(Motion(positions, positions));
   Search search{*this, positions, kFarthest * mean_edge_, std::nullopt};
-  // What was closest in the last frame bounds this one. A little above it, so that this pair is found again
-  // on the search's own way, and the answer depends on this frame alone.
+  // The closest pair of the last frame bounds the distance in this one. The bound is a little above that
+  // pair's distance, so that the search finds the pair by itself if it is still the closest. So the answer
+  // depends on this frame alone (rule fresh-detector).
   if (last_) {
     const double known = search.distance(last_->a, last_->b);
     search.bound = std::min(search.bound, std::nextafter(known, std::numeric_limits<double>::infinity()));

@@ -10,42 +10,47 @@
 
 namespace cscd {
 
-// Lengths below are in mean edge lengths of the reference pose.
+// Lengths in this file are in mean edge lengths of the reference pose, unless stated otherwise.
 //
-// Two triangles count as apart on the surface when every path along edges of the reference pose, from any
-// corner of one to any of the other, is longer than this; triangles of different components always do. Not
-// counted in rings, as those stand close on some meshes. Four times kNear: on the reference pose itself only
-// a fold or a wedge sharper than about 29 degrees brings two such triangles that near, never one smooth limb,
-// however thin.
+// Two triangles are *apart on the surface* if every path along edges of the reference pose, from any corner
+// of one to any corner of the other, is longer than this. Triangles of different components always are.
+// Lengths are used, and not rings of triangles, because many rings fit into a short length on some meshes.
+//
+// The value is four times kNear: in the reference pose itself, only a fold or a wedge sharper than about 29
+// degrees brings two such triangles within kNear of each other; a smooth limb, however thin, does not.
 inline constexpr double kApartOnSurface = 8;
-// Closer than this is a near-contact.
+// Two triangles that are apart on the surface and closer than this in space are a near-contact.
 inline constexpr double kNear = 2;
-// Larger distances are not told apart: from here on, triangles a little more than kApartOnSurface from each
-// other on flat surface begin to be the closest ones, and say nothing.
+// Larger distances are not measured. From this distance on, the closest triangles would be
+// neighbours on a flat piece of the surface, a little more than kApartOnSurface from each other, and
+// they say nothing about contact.
 inline constexpr double kFarthest = 4;
 
-// Finds the closest two triangles of a frame that are apart on the surface.
+// Finds the closest two triangles of a frame among those that are apart on the surface.
 class Nearness {
  public:
-  // Throws InputError if all edges of the reference pose have length 0. About 2 s and 100 MB at 48,000
-  // triangles.
+  // Measures the paths along the surface in the reference pose (`reference`: [vertices]). This takes about 2
+  // seconds and 100 MB for a mesh of 48,000 triangles. `mesh` must outlive the object. Throws InputError if
+  // all edges of the reference pose have length 0.
   Nearness(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
   struct Pair {
     TriangleId a, b;
     double distance;  // in mean edge lengths; 0 where they cross
   };
-  // Nothing if no two are closer than kFarthest. Branch and bound over the hierarchy.
+  // Returns the closest two triangles in these positions ([vertices]), or nullopt if no two are closer than
+  // kFarthest. The search is branch and bound over the hierarchy.
   std::optional<Pair> closest(std::span<const Vec3> positions);
 
+  // The mean edge length of the reference pose, in lengths of the scene.
   double mean_edge() const { return mean_edge_; }
 
  private:
-  struct Neighbour {  // a vertex within kApartOnSurface, and the path to it
+  struct Neighbour {  // a vertex within kApartOnSurface, and the length of the path to it
     VertexId vertex;
     float path;
   };
-  // Any corner of the node's triangles is within `reach` of `centre` along the surface.
+  // Every corner of a node's triangles is within `reach` of `centre` along the surface.
   struct Extent {
     VertexId centre{0};
     float reach;
@@ -62,9 +67,9 @@ class Nearness {
   SweptBounds bounds_;
   double mean_edge_ = 0;
   std::vector<std::size_t> first_neighbour_;  // of vertex v: neighbours_[first[v] .. first[v + 1])
-  std::vector<Neighbour> neighbours_;         // of larger index, in order
-  std::vector<Extent> extents_;               // of each node
-  std::optional<Pair> last_;                  // of the frame before: a first bound for the next
+  std::vector<Neighbour> neighbours_;  // neighbours with a larger index than the vertex, in ascending order
+  std::vector<Extent> extents_;        // [nodes]
+  std::optional<Pair> last_;           // the answer for the last frame: a first bound for the next
 };
 
 }  // namespace cscd

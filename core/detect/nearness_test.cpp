@@ -18,7 +18,7 @@ TriangleCorners corners_of(const Shape& shape, std::size_t triangle, const std::
   return {x[+c[0]], x[+c[1]], x[+c[2]]};
 }
 
-// The definition, word by word.
+// The definition of nearness, computed directly.
 struct ByDefinition {
   const Shape& shape;
   double mean_edge = 0;
@@ -54,8 +54,8 @@ struct ByDefinition {
   }
 };
 
-// A tube whose axis is wound round a circle of `radius`, turning by `turns` from end to end while it rises by
-// `rise`.
+// Returns the positions of a tube whose axis is wound round a circle: `turns` turns from end to end,
+// while the tube rises by `rise`.
 std::vector<Vec3> wound(const Shape& tube, double length, double turns, double rise) {
   std::vector<Vec3> x;
   const double radius = length / (2 * std::numbers::pi * turns);
@@ -108,8 +108,8 @@ TEST(Nearness, DependsOnTheFrameAloneNotOnTheFramesBefore) {
   }
 }
 
-// A distance may round otherwise the other way round: a bound from the last frame must not shut its own pair
-// out.
+// A distance may round differently if the two triangles are exchanged. A bound from the last frame
+// must not exclude its own pair.
 TEST(Nearness, FindsThePairOfTheFrameBeforeAgain) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> near_middle(-1, 1);
@@ -130,7 +130,7 @@ TEST(Nearness, FindsThePairOfTheFrameBeforeAgain) {
   EXPECT_GT(found, 400);
 }
 
-// Spikes of four sides and seven rings on a plate: what the urchin has.
+// Spikes of four sides and seven rings on a plate, like those of the urchin.
 TEST(Nearness, NeighbouringSpikesCountASpikesOwnSidesDoNot) {
   Shape both;
   for (const double x : {0.0, 0.5}) {
@@ -141,7 +141,7 @@ TEST(Nearness, NeighbouringSpikesCountASpikesOwnSidesDoNot) {
     both = test::together(std::move(both), spike);
   }
   const int one = 4,
-            other = 8 * 4 + 2 + 4;  // a vertex low on either spike: one web of two triangles joins them
+            other = 8 * 4 + 2 + 4;  // low vertices; a web of two triangles joins the spikes
   both.triangles.push_back(test::corners(one, other, other + 1));
   both.triangles.push_back(test::corners(one, other + 1, one + 1));
   const TriangleMesh mesh = both.mesh();

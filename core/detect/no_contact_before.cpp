@@ -8,18 +8,18 @@
 namespace cscd {
 namespace {
 
-// Sixteen pairs: the corners of the first triangles, then those of the second, seen from the first of all at
-// either end.
+// Sixteen triangle pairs: the corners of the first triangles, then those of the second. At each end of the
+// interval, positions are taken relative to the first triangle's first corner.
 struct PairCorners {
   VectorLanes16 corner[6];
 };
 
-using Rows = std::array<Float4, kLanes16>;  // x, y, z and 0 of each pair
+using Rows = std::array<Float4, kLanes16>;  // x, y, z and 0 of each triangle pair
 
 void transpose(const Rows& rows, Float16 (&out)[3]) {
-  Float16 four[4];  // pairs each
+  Float16 four[4];  // four triangle pairs each
   std::memcpy(four, rows.data(), sizeof four);
-  const auto both = [](Float16 a, Float16 b) {  // x of eight pairs, then y
+  const auto both = [](Float16 a, Float16 b) {  // x of eight triangle pairs, then y
     return shuffled<0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29>(a, b);
   };
   const auto last = [](Float16 a, Float16 b) {
@@ -52,17 +52,22 @@ PairCorners corners_of(const TriangleMesh& mesh, const Motion& motion, std::span
   return out;
 }
 
-// When straight lines from `start` to `end` meet 0, from above.
+// Returns the time at which the straight line from `start` to `end` falls to 0: a little less than that time,
+// 2 if the line stays above 0, and 0 if it starts at 0 or below.
 Float16 meets_zero(Float16 start, Float16 end) {
   const Float16 share = (1 - 0x1p-20F) * (start / (start - end)), zero = {}, never = all_lanes(2);
   return select(start > 0, select(end > 0, never, share), zero);
 }
 
-// Rounding. u = 2^-24; coordinates are at most M and off by at most d = 1.01 u M: u of themselves, and what
-// the difference in doubles lost. A direction is what it is; its components are at most N. A projection is
-// off by 3 d N, and by 9 u M N for its own roundings; the gap between two by twice that and 6 u M N. That is
-// less than 31 u M N; 32 also pay for the roundings of this bound. Where it is below kTiny products might
-// underflow, above kHuge they might overflow. A time is of numbers that are then exact, with few roundings.
+// Returns a time before which the triangles of each pair certainly do not touch, judged along one direction.
+// No coordinate exceeds `reach`.
+//
+// Rounding. Let u = 2^-24 and M = `reach`. Coordinates are off by at most d = 1.01 u M: by u times
+// themselves, and by the rounding of the difference in doubles. The direction counts as exact; let N be its
+// largest component. A projection is off by 3 d N, and by 9 u M N for its own roundings. The gap between two
+// projections is off by twice that and 6 u M N. That is less than 31 u M N; the factor 32 also pays for the
+// roundings of this bound. Below kTiny products might underflow and above kHuge they might overflow, and
+// nothing is known. The time is then computed from numbers that count as exact, with few roundings.
 Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3], Float16 reach) {
   constexpr float kTiny = 1e-30F, kHuge = 1e30F;
   const Float16 error =

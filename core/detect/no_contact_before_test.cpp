@@ -24,14 +24,14 @@ class AllPairs : public Culler {
   std::int32_t count_;
 };
 
-// Two noisy balls that run into each other, or a lattice whose features touch by the dozen at one instant,
-// now and then at the start.
+// Two noisy balls that run into each other, or two boxes whose features touch by the dozen at one
+// instant, sometimes at the start.
 struct Crash {
   test::Shape shape;
   TriangleMesh mesh;
   std::vector<Vec3> end;
 
-  // `size`: of what is 2 across.
+  // `size` scales a scene whose bodies are about 2 across.
   explicit Crash(unsigned seed, double size = 1)
       : shape(seed % 4 == 0 ? test::together(test::box({-1, -1, -1}, {1, 1, 1}),
                                              test::box({seed % 8 == 0 ? 1.0 : 2.0, -1, -1}, {4, 1, 1}))
@@ -58,7 +58,7 @@ ContactSet sorted_answer(Detector& detector, const Crash& crash, std::uint64_t* 
   return found;
 }
 
-// All pairs of triangles that carry a feature pair.
+// Returns all triangle pairs that carry a feature pair.
 std::vector<TrianglePair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
   const bool vertex = pair.kind == FeaturePair::Kind::vertex_face;
   const TriangleId face[] = {TriangleId{pair.b}};
@@ -97,7 +97,8 @@ TEST(FirstOnly, NothingTouchesBeforeTheBoundAndTheBoundIsOfUse) {
   }
 }
 
-// Mutations: it stops at the first contact it finds, or is not reset between intervals.
+// Mutations: the detector stops at the first contact that it finds; the earliest time
+// is not reset between intervals.
 TEST(FirstOnly, ReportsTheContactsOfTheEarliestTimeForFewerTests) {
   const ElementaryTest& exact = *find_elementary_test("exact");
   std::uint64_t tests_for_all = 0, tests_for_first = 0;

@@ -7,8 +7,9 @@
 
 namespace cscd {
 
-// All triangle pairs whose bounds overlap, by one descent of one hierarchy; or, where `kAdjacent` is false,
-// only those without a common vertex. A "no" is a proof because the bounds are rounded outward.
+// Passes on all triangle pairs whose swept bounds overlap, found by one descent of one hierarchy. If
+// `kAdjacent` is false, it passes on only pairs without a common vertex. Dropping the others is proven,
+// because the bounds are rounded outward (rule outward-rounding, core/soundness.md).
 template <class Volume, bool kAdjacent = true>
 class PlainCuller : public Culler {
  public:

@@ -17,12 +17,13 @@ namespace cscd {
 // start, at least one feature pair that attains the earliest contact time is passed on; later contacts may be
 // missing. `heuristic`: nothing.
 enum class Guarantee { complete, first_contact, heuristic };
+// Returns the name of the enumerator.
 std::string_view to_string(Guarantee guarantee);
 
-// What a strategy is made for. The referenced objects must outlive the detector.
+// The input for which a detector is made. The referenced objects must outlive the detector.
 struct Setup {
   const TriangleMesh& mesh;
-  std::span<const Vec3> reference;  // vertex positions of the reference pose (frame 0)
+  std::span<const Vec3> reference;  // [vertices]; positions in the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
   const ElementaryTest& elementary;
   // The number of threads that answer one interval, the caller's included; at least 1. Strategies that cannot
@@ -36,7 +37,7 @@ struct Setup {
   bool first_only = false;
 };
 
-// One-time work before the first interval, as in Table 1 of the paper.
+// Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).
 struct Preparation {
   std::optional<double> distance_and_heat_ms;  // distance field and heat diffusion
   std::optional<double> decomposition_ms;      // clusters from heat weights, observers
@@ -66,7 +67,7 @@ enum class Role {
 // One row of the catalogue of strategies.
 struct Strategy {
   std::string_view name;
-  std::string_view source;  // paper or package, in a line
+  std::string_view source;  // paper or package, in one line
   Guarantee guarantee;
   Needs needs;
   Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs

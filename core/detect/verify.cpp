@@ -45,14 +45,15 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
   Verification result;
   result.reference_contacts = expected.size();
 
-  // Both are the referee's answers: a contact that the complete reference lacks is the reference's loss.
+  // Both sets are the referee's answers, so a contact that the complete reference
+  // lacks is a fault of the reference.
   std::vector<Contact> missing, surplus;
   std::set_difference(expected.begin(), expected.end(), found.begin(), found.end(),
                       std::back_inserter(missing), by_pair);
   std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(),
                       std::back_inserter(surplus), by_pair);
   result.found_contacts = expected.size() - missing.size();
-  // Both asked the same test, so a pair has one time.
+  // Both sets come from the same elementary test, so a feature pair must have the same time in both.
   const auto wrong = std::find_if(found.begin(), found.end(), [&](const Contact& contact) {
     const auto same = std::lower_bound(expected.begin(), expected.end(), contact, by_pair);
     return same != expected.end() && same->pair == contact.pair && same->time != contact.time;

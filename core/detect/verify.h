@@ -26,19 +26,20 @@ struct Verification {
 Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
                     bool starts_embedded);
 
-// How an inexact elementary test did on the pairs that a complete culler passed on, the referee having
-// answered the same pairs.
+// How an inexact elementary test answered the feature pairs that a complete culler passed on, compared with
+// the referee's answers for the same pairs.
 struct Accuracy {
-  std::uint64_t misses = 0;        // contact by the referee, apart by the test
-  std::uint64_t false_alarms = 0;  // apart by the referee, contact by the test
+  std::uint64_t misses = 0;        // the referee says contact, the test says apart
+  std::uint64_t false_alarms = 0;  // the referee says apart, the test says contact
   std::uint64_t undecided = 0;
-  double largest_time_error = 0;  // over pairs that both call contact
+  double largest_time_error = 0;  // in intervals, over pairs that both call a contact
 
   void add(const Accuracy& other);
 };
 Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test);
 
-// A pair that one of them calls a contact and the other apart; a missing time means apart.
+// A feature pair that one of the referee and the test calls a contact and the other
+// apart. A missing time means apart.
 struct Difference {
   FeaturePair pair;
   std::optional<double> truth, said;

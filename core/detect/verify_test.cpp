@@ -17,7 +17,7 @@ ContactSet set_of(std::vector<Contact> contacts) {
   return set;
 }
 
-// Two pairs attain the first time.
+// Two feature pairs attain the earliest time.
 const ContactSet kReference = set_of({ee(3, 4, 0.25), vf(9, 1, 0.25), ee(1, 2, 0.5), vf(1, 2, 0.75)});
 constexpr auto kAll = {Guarantee::complete, Guarantee::first_contact, Guarantee::heuristic};
 
@@ -33,7 +33,7 @@ TEST(Verify, EqualSetsPassUnderEveryGuarantee) {
     }
 }
 
-// Rule fair-comparison (a).
+// Rule fair-comparison, part (a): a complete strategy must report every contact.
 TEST(Verify, CompleteMustNotLoseAnyPair) {
   for (std::size_t lost = 0; lost < 4; ++lost)
     for (const bool embedded : {false, true}) {
@@ -53,7 +53,7 @@ TEST(Verify, AFailureNamesThePairAndTheTime) {
   EXPECT_NE(v.failure.find("vertex 1, triangle 2 at t = 0.75"), std::string::npos) << v.failure;
 }
 
-// Rule fair-comparison (b).
+// Rule fair-comparison, part (b): a first_contact strategy must report one contact of the earliest time.
 TEST(Verify, FirstContactMayLoseLaterPairsAndAllButOneOfTheFirst) {
   for (const Contact& kept : {ee(3, 4, 0.25), vf(9, 1, 0.25)}) {
     const Verification v = verify(kReference, set_of({kept}), Guarantee::first_contact, true);
@@ -92,12 +92,12 @@ TEST(Verify, APairThatTheReferenceLacksFailsUnderEveryGuarantee) {
       EXPECT_FALSE(verify(kReference, more, guarantee, embedded).ok);
       EXPECT_FALSE(verify({}, more, guarantee, embedded).ok);
       EXPECT_FALSE(verify(kReference, twice, guarantee, embedded).ok);
-      // The same numbers as the other kind of pair are another pair.
+      // A pair of the other kind with the same numbers is a different pair.
       EXPECT_FALSE(verify(set_of({vf(1, 2, 0.5)}), set_of({ee(1, 2, 0.5)}), guarantee, embedded).ok);
     }
 }
 
-// Both ran the same exact test: a pair in both sets has one time.
+// Both sets come from the same exact test, so a pair that is in both must have one time.
 TEST(Verify, AWrongTimeFailsUnderEveryGuarantee) {
   ContactSet wrong = kReference;
   wrong.contacts.back().time = 0.8125;
@@ -119,13 +119,13 @@ TEST(CompareElementary, CountsEveryKindOfAnswer) {
       set_of({vf(1, 1, 0.5), vf(2, 2, 0.5), vf(3, 3, 0.5), ee(4, 5, 0.5), ee(8, 9, 0.5)});
   const ContactSet claims = set_of({
       vf(1, 1, 0.5),                      // right
-      vf(2, 2, 0.375),                    // right, another time
+      vf(2, 2, 0.375),                    // right, but at another time
       vf(3, 3, 0.1, Verdict::undecided),  // could not tell
                                           // ee(4, 5) and ee(8, 9) missed
       vf(6, 6, 0.0),                      // false alarm
       ee(1, 2, 0.0),                      // false alarm
       ee(4, 6, 0.9),                      // false alarm
-      ee(6, 7, 0.0, Verdict::undecided),  // could not tell about what is apart
+      ee(6, 7, 0.0, Verdict::undecided),  // could not tell about features that are apart
   });
   const Accuracy a = compare_elementary(truth, claims);
   EXPECT_EQ(a.misses, 2u);

@@ -22,14 +22,15 @@ struct MovingVector {
   double largest() const { return std::max(start.cwiseAbs().maxCoeff(), end.cwiseAbs().maxCoeff()); }
 };
 
-// Bernstein coefficients on [0, 1], each within `error` of the exact one for the exact input. `error` is
-// infinite where nothing is known (underflow or overflow in between). Of one cubic or of several side by
-// side.
+// The Bernstein coefficients of a cubic on [0, 1]. Each is within `error` of the exact coefficient for the
+// exact input. `error` is infinite if nothing is known, because a product on the way underflowed or
+// overflowed. `Real` is a double for one cubic, or lanes for several cubics side by side.
 template <class Real>
 struct BernsteinCubicOf {
   Real c[4];
   Real error;
 
+  // The value of the cubic at t.
   Real at(Real t) const {
     const Real s = 1 - t;
     return s * s * (s * c[0] + 3 * t * c[1]) + t * t * (3 * s * c[2] + t * c[3]);
@@ -37,12 +38,13 @@ struct BernsteinCubicOf {
 };
 using BernsteinCubic = BernsteinCubicOf<double>;
 
-// Below kTinyProduct, products in between may be subnormal and lose more than a relative rounding; above
-// kHugeProduct they may overflow.
+// Bounds for the size of products on the way. Below kTinyProduct a product may be subnormal and lose more
+// than a relative rounding; above kHugeProduct it may overflow.
 inline constexpr double kTinyProduct = 1e-280, kHugeProduct = 1e300;
 inline constexpr double kTripleProductError = 72 * kUnitRoundoff;
 
-// a(t) x b(t): control vectors on [0, 1], the middle one twice, and the product of the largest components.
+// The cross product a(t) x b(t) of two moving vectors: its three control vectors on [0, 1], of which the
+// middle one is stored twice as large, and the product of the largest components of a and b.
 struct MovingNormal {
   Vec3 at[3];
   double area;
@@ -52,13 +54,14 @@ inline MovingNormal moving_cross(const MovingVector& a, const MovingVector& b) {
           a.largest() * b.largest()};
 }
 
-// (a x b) . c. Each component of a, b and c may carry one rounding (a difference of two doubles), and in
-// addition those of c may be off by `c_slack` in absolute terms.
+// Returns the cubic (a x b) . c. Each component of a, b and c may carry one rounding (it is a difference of
+// two doubles). In addition, the components of c may be off by `c_slack`, an absolute bound.
 //
 // Error bound: with A, B, C the largest components, every coefficient is a sum of products a_i b_j c_k whose
 // absolute values sum to at most 6 A B C. The longest chain has 11 roundings (3 inputs; multiply, subtract
 // and add in the crosses; multiply and two additions in the dot; one addition; one division), so the error is
-// at most gamma_11 * 6 A B C < 67 u A B C. 72 also pays for the roundings of the bound itself.
+// at most gamma_11 * 6 A B C < 67 u A B C, with u = kUnitRoundoff. The factor 72 also pays for the
+// roundings of the bound itself.
 inline BernsteinCubic triple_product(const MovingNormal& n, const MovingVector& c, double c_slack = 0) {
   const double volume = n.area * c.largest();
   const bool known =

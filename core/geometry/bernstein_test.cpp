@@ -22,7 +22,7 @@ mpq_class triple(const Exact& a, const Exact& b, const Exact& c) {
          (a[0] * b[1] - a[1] * b[0]) * c[2];
 }
 
-// Three moving vectors as differences of points, the way the code is used.
+// Three moving vectors as differences of points, as in the code that uses them.
 struct Points {
   Vec3 from_start[3], from_end[3], to_start[3], to_end[3];
 
@@ -30,7 +30,7 @@ struct Points {
   BernsteinCubic cubic(double c_slack = 0) const {
     return triple_product(vector(0), vector(1), vector(2), c_slack);
   }
-  // Coefficients for the exact differences, plus `shift[0]` and `shift[1]` on c.
+  // The coefficients for the exact differences, with `shift_start` and `shift_end` added to c.
   std::array<mpq_class, 4> exact(const Exact& shift_start = {}, const Exact& shift_end = {}) const {
     Exact v[3][2];
     for (int i = 0; i < 3; ++i) {
@@ -65,7 +65,8 @@ Points random_points(Random& random, double scale, const Vec3& offset) {
   return p;
 }
 
-// All in one plane but for one coordinate's last bits: the exact coefficients are rounding noise.
+// All points lie in one plane up to the last bits of their coordinates, so the exact
+// coefficients are rounding noise.
 Points nearly_coplanar(Random& random, double offset) {
   Points p = random_points(random, 1, {offset, -offset, offset});
   const Vec3 u = any_vector(random), w = any_vector(random);
@@ -75,7 +76,7 @@ Points nearly_coplanar(Random& random, double offset) {
   return p;
 }
 
-// Vectors with components of equal size and signs that make the products cancel.
+// Vectors whose components have equal sizes and such signs that the products cancel.
 Points cancelling(Random& random, double scale) {
   Points p;
   const auto pick = [&] { return scale * ((random() & 1) ? 1.0 : -1.0) * (1 + uniform(random) * 0x1p-45); };
@@ -134,7 +135,7 @@ TEST(TripleProduct, CoefficientsAreWithinTheClaimedError) {
     EXPECT_EQ(known == 0, std::string(family.name) == "too small") << family.name;
     worst = std::max(worst, worst_here);
   }
-  // Not absurdly loose: some input comes within a factor of 50.
+  // The bound is not absurdly loose: some input comes within a factor of 50.
   EXPECT_GT(worst, 0.02);
   RecordProperty("worst error over bound", std::to_string(worst));
 }
@@ -160,7 +161,8 @@ TEST(TripleProduct, SlackOfTheThirdVectorIsCovered) {
   EXPECT_GT(worst, 0.3);
 }
 
-// |a| = |b| = 1 in the largest component and the crossing terms add up: the constant 6 is attained.
+// The largest components of a and b are 1, and the three components of a x b sum to at most 6 in size.
+// The code's factor 7 covers that.
 TEST(TripleProduct, SlackAttainsSixTimesTheArea) {
   const MovingVector a{{1, -1, 1}, {1, -1, 1}}, b{{1, 1, -1}, {1, 1, -1}};
   const Vec3 n = a.start.cross(b.start);
@@ -192,7 +194,7 @@ TEST(CertainSign, NeverContradictsTheExactSign) {
   }
 }
 
-// The smallest values that still count as certain stand one error beyond zero, on either side.
+// Coefficients that are just beyond the error on either side still count as certain.
 TEST(CertainSign, NeedsMoreThanTheError) {
   for (const int sign : {1, -1}) {
     for (int k = 0; k < 4; ++k) {
@@ -208,7 +210,7 @@ TEST(CertainSign, NeedsMoreThanTheError) {
   }
 }
 
-// Rule error-bound: what overflowed is not known.
+// Rule error-bound: if something overflowed, nothing is known.
 TEST(CertainSign, NotANumberAndInfinityAreNeverCertain) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const double sign : {1.0, -1.0})
@@ -226,7 +228,7 @@ TEST(CertainSign, NotANumberAndInfinityAreNeverCertain) {
     }
 }
 
-// Rule error-bound: the cross product overflows although the product of all three sizes is moderate.
+// Rule error-bound: the cross product overflows, although the product of all three sizes is moderate.
 TEST(CertainSign, IsNotMisledByAnOverflowThatASmallThirdVectorHides) {
   const double big = 1.2e154, small = 1e-20;
   Random random(4);
@@ -266,7 +268,7 @@ TEST(TripleProduct, NotANumberInAnyInputLeavesNothingCertain) {
   }
 }
 
-// Rule certain-sign: coplanar throughout, in every way that makes the cubic zero.
+// Rule certain-sign: the points are coplanar throughout, in every way that makes the cubic zero.
 TEST(CertainSign, ZeroCubicIsNotCertain) {
   const MovingVector x{{1, 0, 0}, {2, 0, 0}}, y{{0, 1, 0}, {0, 3, 0}}, z{{0, 0, 1}, {0, 0, 1}};
   const MovingVector zero{Vec3::Zero(), Vec3::Zero()};
@@ -277,7 +279,7 @@ TEST(CertainSign, ZeroCubicIsNotCertain) {
   EXPECT_EQ(certain_sign(triple_product(zero, y, z)), 0);
   EXPECT_EQ(certain_sign(triple_product(x, y, zero)), 0);
   EXPECT_EQ(certain_sign(BernsteinCubic{{0, 0, 0, 0}, 0}), 0);
-  // Zero at one end only.
+  // The cubic is zero at one end only.
   EXPECT_EQ(certain_sign(triple_product(x, y, {{0, 0, 0}, {0, 0, 1}})), 0);
   EXPECT_EQ(certain_sign(triple_product(x, y, {{0, 0, -1}, {0, 0, 0}})), 0);
 }

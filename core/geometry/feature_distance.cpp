@@ -26,7 +26,7 @@ double squared_segment_distance(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   return (r + s * p - t * q).squaredNorm();
 }
 
-// Over the face where the point projects into it, else to the nearest edge.
+// Measures to the face if the point projects into it, else to the nearest edge.
 double squared_point_triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double area = n.squaredNorm();

@@ -7,12 +7,12 @@ namespace {
 
 TEST(FeatureDistance, PointAndTriangle) {
   const Vec3 a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
-  EXPECT_EQ(squared_point_triangle_distance({1, 1, 2}, a, b, c), 4);     // over the face
+  EXPECT_EQ(squared_point_triangle_distance({1, 1, 2}, a, b, c), 4);     // above the face
   EXPECT_EQ(squared_point_triangle_distance({1, -2, 0}, a, b, c), 4);    // beside an edge
   EXPECT_EQ(squared_point_triangle_distance({-3, -4, 0}, a, b, c), 25);  // off a corner
   EXPECT_EQ(squared_point_triangle_distance({1, 2, 0}, a, b, c), 0);
   EXPECT_EQ(squared_point_triangle_distance({5, 3, 0}, a, b, b), 10);  // collapsed to an edge
-  EXPECT_EQ(squared_point_triangle_distance({3, 4, 0}, a, a, a), 25);  // and to a point
+  EXPECT_EQ(squared_point_triangle_distance({3, 4, 0}, a, a, a), 25);  // collapsed to a point
 }
 
 TEST(FeatureDistance, Segments) {

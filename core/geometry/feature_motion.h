@@ -5,8 +5,8 @@
 
 namespace cscd {
 
-// The two kinds of elementary query. Features are closed: corners and edges belong to a face, ends to an
-// edge.
+// The two kinds of elementary query: a moving vertex and a moving face, and two moving edges. Features are
+// closed: a face contains its corners and edges, and an edge contains its ends.
 struct MovingVertexFace {
   MovingPoint vertex, corner[3];
 };

@@ -17,9 +17,10 @@ struct Vector {
 template <class Number, std::size_t kBytes>
 using VectorOf = typename internal::Vector<Number, kBytes>::Type;
 
-// Numbers in 64 bytes as two vectors, for processors without registers of that size: a vector type that fits
-// no register gcc keeps in memory, and compares, selects and shuffles it number by number. Written like a
-// vector type; what those have no operator for stands in lanes_of.h.
+// Numbers in 64 bytes as two vectors of 32 bytes each, for processors without registers of 64 bytes.
+// (gcc keeps a vector type that fits no register in memory, and compares, selects and shuffles it
+// number by number.) The class has the operators of a vector type; functions for which vector types
+// have no operator stand in lanes_of.h.
 template <class Number>
 struct alignas(64) Halves {
   using Half = VectorOf<Number, 32>;
@@ -32,14 +33,14 @@ struct alignas(64) Halves {
 
   Halves() = default;
   Halves(Half low_half, Half high_half) : low(low_half), high(high_half) {}
-  Halves(Number all) : low(all - Half{}), high(low) {}  // 0 + -0 would be 0
-  // The first numbers; the rest is 0.
+  Halves(Number all) : low(all - Half{}), high(low) {}  // a zero keeps its sign; 0 + -0 would be 0
+  // Takes the first numbers; the remaining ones are 0.
   template <class... Numbers>
   requires(sizeof...(Numbers) > 1 && (std::is_arithmetic_v<Numbers> && ...)) constexpr Halves(Numbers... n)
       : Halves(std::array<Number, kCount>{static_cast<Number>(n)...},
                std::make_index_sequence<kCount / 2>{}) {}
 
-  // Vectors may be read and written as their numbers.
+  // Access to single numbers. Compilers allow a vector to be read and written as an array of its numbers.
   Number& operator[](std::size_t lane) { return reinterpret_cast<Number*>(this)[lane]; }
   Number operator[](std::size_t lane) const { return reinterpret_cast<const Number*>(this)[lane]; }
 
@@ -73,7 +74,9 @@ struct alignas(64) Halves {
 
 namespace internal {
 
-// One half out of four, at once if it takes from two of them, else first from either two.
+// Returns one half whose numbers come from four halves. kFrom[lane] counts the numbers of a, b, c and d in
+// turn. One shuffle suffices if the numbers come from at most two of the halves. Otherwise a and b are
+// shuffled, then c and d, and then both results.
 template <std::array kFrom, class Half, int... kLane>
 Half shuffled_half(Half a, Half b, Half c, Half d, std::integer_sequence<int, kLane...>) {
   constexpr int kCount = sizeof...(kLane);
@@ -97,6 +100,7 @@ Half shuffled_half(Half a, Half b, Half c, Half d, std::integer_sequence<int, kL
 
 }  // namespace internal
 
+// Lane l of the result is lane kFrom[l] of a and b, where b's lanes are numbered after those of a.
 template <int... kFrom, class Number>
 Halves<Number> shuffled(Halves<Number> a, Halves<Number> b) {
   constexpr std::size_t kCount = sizeof...(kFrom) / 2;
@@ -111,6 +115,7 @@ Halves<Number> shuffled(Halves<Number> a, Halves<Number> b) {
           internal::shuffled_half<part(kCount)>(a.low, a.high, b.low, b.high, kLanes)};
 }
 
+// Lane by lane: a where the comparison is true, else b.
 template <class Number>
 Halves<Number> select(typename Halves<Number>::Comparison where, Halves<Number> a, Halves<Number> b) {
   return {where.low ? a.low : b.low, where.high ? a.high : b.high};

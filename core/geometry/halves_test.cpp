@@ -8,14 +8,15 @@
 #include "core/geometry/lanes.h"
 #include "core/geometry/shorts32.h"
 
-// Halves on every machine, and what the machine uses, against one number at a time.
+// Compares Halves, and the vector type that this machine uses, with single numbers.
 namespace cscd {
 namespace {
 
 template <class Vector>
 using NumberOf = std::remove_cvref_t<decltype(Vector{}[0])>;
 
-// Few values, so that equal ones meet, and for floating point those at which comparisons differ from order.
+// Returns few different values, so that equal ones meet. For floating point they include values whose
+// comparison is special: NaN, -0 and infinities.
 template <class Vector>
 Vector drawn(std::mt19937& random) {
   using Number = NumberOf<Vector>;
@@ -46,7 +47,7 @@ class Vectors : public testing::Test {
   using Number = NumberOf<Vector>;
   static constexpr std::size_t kCount = sizeof(Vector) / sizeof(Number);
 
-  // `expected`: of a lane's numbers.
+  // expected(a, b) gives a lane's result from the lane's numbers.
   template <class Result, class Expected>
   void expect(const Result& result, const Expected& expected) const {
     for (std::size_t l = 0; l < kCount; ++l)
@@ -110,7 +111,7 @@ TYPED_TEST(Vectors, CompareAndSelectLaneByLane) {
     this->expect(a != b, [](Number x, Number y) { return -(x != y); });
     this->expect(select(a < b, a, b), [](Number x, Number y) { return x < y ? x : y; });
     this->expect(select((a < b) | (a == b), b, a), [](Number x, Number y) { return x <= y ? y : x; });
-    // Of 0 and -0, and where one is no number, either may be taken.
+    // Either of 0 and -0 may be taken, and either number if one of them is NaN.
     const TypeParam least = smaller(a, b), most = larger(a, b);
     for (std::size_t l = 0; l < this->kCount; ++l) {
       if (a[l] != a[l] || b[l] != b[l]) continue;
@@ -144,7 +145,8 @@ TYPED_TEST(Vectors, KeepAndConvertTheirNumbers) {
   }
 }
 
-// From one half, from two of both or of one operand, and from three and four.
+// The shuffles take from one half, from two halves of both operands or of one,
+// and from three and four halves.
 TEST(Shuffles, TakeFromAnyHalves) {
   const auto expect = []<int... kFrom>(std::integer_sequence<int, kFrom...>, auto a, auto b) {
     constexpr int kCount = sizeof...(kFrom);
@@ -188,12 +190,12 @@ TEST(Lanes16, ComparisonsGiveOneBitALane) {
     for (std::size_t l = 0; l < kLanes16; ++l) ASSERT_EQ(floats >> l & 1, a[l] > b[l]) << l;
     for (std::size_t l = 0; l < kLanes16; ++l) ASSERT_EQ(integers >> l & 1, f[l] == g[l]) << l;
     for (std::size_t l = 0; l < kLanes; ++l) ASSERT_EQ(signs >> l & 1, static_cast<unsigned>(e[l])) << l;
-    ASSERT_EQ(bits_of(e), bits_of(-e));  // a sign of either kind counts
+    ASSERT_EQ(bits_of(e), bits_of(-e));  // a lane may be 1 or -1
   }
 }
 
-// Also of zeros and of what is no number, bit for bit: scalar twins rely on it. Mutation: arguments
-// exchanged.
+// smaller() and larger() give the same for lanes as for single numbers, with zeros and NaN too: vector code
+// relies on that to equal its scalar counterpart bit for bit. Mutation: the arguments are exchanged.
 template <class Lanes>
 void expect_order_of_one_number() {
   using Number = std::remove_cvref_t<decltype(Lanes{}[0])>;

@@ -19,14 +19,14 @@ struct alignas(2 * N * sizeof(float)) Slabs {
   float at_least[2 * N];
 };
 
-// Eight directions: x, y, z, x+y, x+z, y+z, x-y, x-z, the usual reading of "16-DOP": the 18-DOP of Klosowski
-// et al. 1998 without its last pair. One cache line.
+// A 16-DOP of eight directions: x, y, z, x+y, x+z, y+z, x-y and x-z. This is the usual reading of "16-DOP":
+// the 18-DOP of Klosowski et al. 1998 without its last pair of planes. It fills one cache line.
 using Kdop16 = Slabs<8>;
 
-// x, y, z, and a direction of length zero that makes it half a cache line.
+// An axis-aligned box. Its fourth direction has length zero and pads the box to half a cache line.
 using Aabb = Slabs<4>;
 
-// Smallest volume that contains both.
+// Returns the smallest volume that contains both.
 template <std::size_t N>
 Slabs<N> united(const Slabs<N>& a, const Slabs<N>& b) {
   Slabs<N> both;
@@ -35,7 +35,8 @@ Slabs<N> united(const Slabs<N>& a, const Slabs<N>& b) {
   return both;
 }
 
-// Closed volumes: touching counts. False proves that nothing inside a touches anything inside b.
+// Returns false only if nothing inside a touches anything inside b, which is then proven. Volumes are
+// closed: volumes that touch overlap.
 template <std::size_t N>
 bool overlap(const Slabs<N>& a, const Slabs<N>& b) {
   int apart = 0;
@@ -46,7 +47,7 @@ bool overlap(const Slabs<N>& a, const Slabs<N>& b) {
   return apart == 0;
 }
 
-// The bound of one point.
+// Returns the bounds of one point.
 inline Kdop16 kdop_of(const Vec3& p) {
   const double x = p.x(), y = p.y(), z = p.z();
   return {{float_below(x), float_below(y), float_below(z), float_below_sum(x, y), float_below_sum(x, z),
@@ -55,7 +56,7 @@ inline Kdop16 kdop_of(const Vec3& p) {
            float_below_sum(-x, -z), float_below_sum(-y, -z), float_below_sum(-x, y), float_below_sum(-x, z)}};
 }
 
-// The bound of a point's whole path: its two ends, as the path is straight.
+// Returns the bounds of a point's whole path. The path is straight, so its two ends decide.
 inline Kdop16 kdop_of(const MovingPoint& p) {
   return united(kdop_of(p.start), kdop_of(p.end));
 }

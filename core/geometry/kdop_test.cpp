@@ -33,7 +33,7 @@ std::vector<Vec3> assorted_points() {
     for (int i = 0; i < 300; ++i)
       points.push_back(scale * Vec3(unit(random), unit(random), unit(random)) +
                        (i % 3 == 0 ? Vec3(1e4 * scale, 0, 0) : Vec3(0, 0, 0)));
-  // Coordinates that are floats: most projections lie on the grid of floats or beside it by little.
+  // Coordinates that are floats: most projections lie on the grid of floats or very near to it.
   for (int i = 0; i < 300; ++i)
     points.push_back(Vec3(static_cast<float>(unit(random)), std::ldexp(static_cast<float>(unit(random)), -20),
                           static_cast<float>(unit(random))));
@@ -74,7 +74,7 @@ TEST(Kdop, ABoxIsItsFirstThreeDirections) {
   }
 }
 
-// Saboteur: any single bound drawn in by one unit in the last place is noticed.
+// Saboteur: if any single bound is drawn in by one unit in the last place, the test notices.
 TEST(Kdop, AnyBoundDrawnInByOneUlpLosesThePath) {
   const std::vector<Vec3> points = assorted_points();
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -108,10 +108,10 @@ TEST(Kdop, UnitedIsTheSmallestThatContainsBoth) {
   }
 }
 
-// The interval along direction k of a volume, in rationals.
+// Returns whether two volumes overlap along all directions, decided in rational arithmetic.
 bool overlap_exactly(const Kdop16& a, const Kdop16& b) {
   for (std::size_t k = 0; k < 8; ++k) {
-    const auto apart = [&](const Kdop16& low, const Kdop16& high) {  // low ends before high begins?
+    const auto apart = [&](const Kdop16& low, const Kdop16& high) {  // does `low` end before `high` begins?
       const float begins = high.at_least[k], ends = low.at_least[8 + k];
       if (begins == -kInf || ends == -kInf) return false;
       return mpq_class(begins) + mpq_class(ends) > 0;
@@ -157,7 +157,7 @@ TEST(Kdop, EachDirectionAloneSeparates) {
   }
 }
 
-// Beyond the range of float a bound says nothing, and must not separate.
+// Beyond the range of float a bound says nothing and must not separate volumes.
 TEST(Kdop, VolumesBeyondFloatStillOverlapThemselves) {
   for (const double far : {1e39, 1e300, DBL_MAX}) {
     const Kdop16 a = kdop_of(Vec3(far, far, -far)), b = kdop_of(Vec3(-far, far, far));

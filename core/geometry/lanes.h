@@ -11,12 +11,12 @@
 
 namespace cscd {
 
-// Eight numbers side by side.
+// Eight doubles, or eight 64-bit integers, side by side.
 inline constexpr std::size_t kLanes = 8;
 using Lane8 = LanesOf<double>;
 using Sign8 = LanesOf<std::int64_t>;
 
-// For code that is written once for one number and for eight: what a comparison gives.
+// The type of a comparison's result, for code that is written once for one number and for eight.
 template <class Real>
 struct ComparisonOf {
   using Mask = bool;
@@ -36,7 +36,7 @@ inline Lane8 absolute(Lane8 a) {
 }
 
 #ifdef __FMA__
-// a b + c, rounded once.
+// Returns a b + c, rounded once.
 inline double rounded_once(double a, double b, double c) {
   return std::fma(a, b, c);
 }
@@ -52,7 +52,7 @@ inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
 }
 #endif
 
-// One bit a lane: where it is not 0.
+// Returns one bit for each lane: 1 if the lane is not 0.
 inline unsigned bits_of(Sign8 lanes) {
 #ifdef __AVX512F__
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(lanes), reinterpret_cast<__m512i>(lanes));

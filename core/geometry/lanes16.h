@@ -25,7 +25,8 @@ using Int8 = HalfOf<std::int32_t>;
 using Mask16 = std::uint16_t;  // one bit a lane
 using Places16 = std::array<std::uint8_t, kLanes16>;
 
-// The same in all lanes. (x - 0 is x, which compilers know; x + 0 is not where x is -0, so they would add.)
+// Returns x in all lanes. (Compilers know that x - 0 is x, and leave the subtraction out. They cannot leave
+// out x + 0, because it is not x if x is -0.)
 inline Float16 all_lanes(float x) {
   return x - Float16{};
 }
@@ -73,7 +74,7 @@ inline Float16 product_minus(Float16 a, Float16 b, Float16 c) {
 // Returns the larger of the two absolute values in each lane.
 inline Float16 larger_size(Float16 a, Float16 b) {
 #ifdef __AVX512DQ__
-  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: its sign cleared
+  return _mm512_maskz_range_ps(0xffff, a, b, 0b1011);  // 11: the larger in size; 10: without its sign
 #else
   return larger(absolute(a), absolute(b));
 #endif
@@ -143,12 +144,13 @@ float folded(Float16 v, const Operation& operation) {
 // Lane l of the result is lane place[l] of v.
 inline Float16 permuted(Float16 v, const Places16& place) {
 #ifdef __AVX512F__
-  // With masks of ones, as gcc 12 warns of the forms without (GCC bug 105593).
+  // The intrinsics take masks of ones, because gcc 12 warns about the forms without a mask (GCC bug 105593).
   __m128i bytes;
   std::memcpy(&bytes, place.data(), sizeof bytes);
   return _mm512_maskz_permutexvar_ps(0xffff, _mm512_maskz_cvtepu8_epi32(0xffff, bytes), v);
 #elif defined(__AVX2__)
-  // Out of each half by the last three bits; which half by the fourth, moved to where a blend looks.
+  // Permute each half by the last three bits of the place, then choose the half by the fourth bit, moved to
+  // the sign bit, where a blend reads it.
   const auto half = [&](const std::uint8_t* places) {
     const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places)));
     return _mm256_blendv_ps(_mm256_permutevar8x32_ps(v.low, lanes), _mm256_permutevar8x32_ps(v.high, lanes),

@@ -8,9 +8,10 @@
 
 #include "core/geometry/halves.h"
 
-// Numbers side by side in 64 bytes: one AVX-512 register, else two halves. Operators work lane by lane, also
-// with one number for all lanes; comparisons give -1 for true and 0 for false in each lane; v[l] is a lane.
-// What vector types have no operator for, or none that both forms share, stands here and in halves.h.
+// Numbers side by side in 64 bytes: one AVX-512 register, or two halves. Each number stands in a *lane*, and
+// v[l] is lane l. Operators work lane by lane, also with one number for all lanes. Comparisons give -1 for
+// true and 0 for false in each lane. Functions for which vector types have no operator, or none that both
+// forms share, stand here and in halves.h.
 namespace cscd {
 
 #ifdef __AVX512F__
@@ -28,14 +29,14 @@ concept InHalves = requires {
   typename T::Half;
 };
 
-// a where the comparison is true, else b. Also of one number.
+// Returns a where the comparison is true, else b. Lanes and single numbers both work.
 template <class Mask, class Number>
 Number select(Mask where, Number a, Number b) {
   return where ? a : b;
 }
 
-// Also of one number. (Not by select: compilers see a minimum only where comparison and choice stand
-// together.)
+// Return the smaller, or larger, of a and b, for lanes and for single numbers. They do not call select(),
+// because compilers recognise a minimum only where the comparison and the choice stand together.
 template <class Number>
 Number smaller(Number a, Number b) {
   return a < b ? a : b;
@@ -46,8 +47,8 @@ Number larger(Number a, Number b) {
 }
 
 #ifdef __AVX512F__
-// In registers of this size gcc sees no minimum even there. (With masks of ones, as gcc 12 warns of the forms
-// without: GCC bug 105593.)
+// For registers of 64 bytes gcc does not recognise a minimum even in that form. The intrinsics take masks of
+// ones, because gcc 12 warns about the forms without a mask (GCC bug 105593).
 inline LanesOf<float> smaller(LanesOf<float> a, LanesOf<float> b) {
   return _mm512_maskz_min_ps(0xffff, a, b);
 }
@@ -62,17 +63,17 @@ inline LanesOf<double> larger(LanesOf<double> a, LanesOf<double> b) {
 }
 #endif
 
-// Lane l of the result is lane kFrom[l] of both, those of b after those of a.
+// Lane l of the result is lane kFrom[l] of a and b, where b's lanes are numbered after those of a.
 template <int... kFrom, class Vector>
 Vector shuffled(Vector a, Vector b) {
   return __builtin_shufflevector(a, b, kFrom...);
 }
 
-// Two vectors as one of twice the size.
+// Joins two vectors to one of twice the size.
 template <class To, class Half>
 To joined(Half low, Half high) {
 #ifdef __AVX512F__
-  // (Of a shuffle gcc makes one of two registers; this may take the second half from memory.)
+  // gcc would compile a shuffle to an instruction on two registers; this one may take `high` from memory.
   if constexpr (sizeof(To) == sizeof(__m512d))
     return reinterpret_cast<To>(_mm512_maskz_insertf64x4(
         0xff, _mm512_castpd256_pd512(reinterpret_cast<__m256d>(low)), reinterpret_cast<__m256d>(high), 1));
@@ -87,7 +88,7 @@ To joined(Half low, Half high) {
   }
 }
 
-// The same bits.
+// Returns the same bits as another type.
 template <class To, class From>
 To bits_as(From v) {
   if constexpr (InHalves<From>) {
@@ -98,7 +99,8 @@ To bits_as(From v) {
   }
 }
 
-// The same numbers, rounded if need be. One of both may be a half.
+// Returns the same numbers as another type, rounded if need be. Either type may
+// be one that fills half a vector.
 template <class To, class From>
 To converted(From v) {
   if constexpr (InHalves<From> && InHalves<To>) {

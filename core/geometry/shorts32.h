@@ -11,8 +11,8 @@
 
 namespace cscd {
 
-// Thirty-two 16-bit integers side by side: sixteen pairs. What the vector types lack stands here twice, as in
-// lanes16.h.
+// Thirty-two 16-bit integers side by side. They form sixteen *pairs*: pair l holds numbers 2 l and 2 l + 1.
+// Operations that vector types lack are written several times, as in lanes16.h.
 using Short32 = LanesOf<std::int16_t>;
 using Mask32 = std::uint32_t;
 
@@ -22,7 +22,8 @@ inline Mask32 above(Short32 a, Short32 b) {
   return _mm512_cmpgt_epi16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
 #elif defined(__AVX2__) && !defined(__AVX512F__)
   const auto lanes = a > b;
-  // Bytes of quarters of both halves by turns.
+  // The instruction packs quarters of both halves in turn; the permutation puts
+  // them into the order of the lanes.
   const __m256i bytes =
       _mm256_packs_epi16(reinterpret_cast<__m256i>(lanes.low), reinterpret_cast<__m256i>(lanes.high));
   return static_cast<Mask32>(_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, 0b11011000)));
@@ -34,9 +35,10 @@ inline Mask32 above(Short32 a, Short32 b) {
 #endif
 }
 
-// Pair l holds scale a[l] and scale b[l], both rounded to the nearest integer, which 16 bits must hold.
+// Pair l of the result holds scale * a[l] and scale * b[l], both rounded to the nearest
+// integer, which must fit into 16 bits.
 inline Short32 rounded_pairs(Float16 a, Float16 b, float scale) {
-  // Floats of this size are integers, and their last 16 bits are those of the integer.
+  // A float near 1.5 * 2^23 is an integer, and its last 16 bits are those of the integer added to 1.5 * 2^23.
   constexpr float kShift = 0x1.8p23F;
   const auto shifted = [&](Float16 v) {
     return bits_as<Int16>(product_plus(v, all_lanes(scale), all_lanes(kShift)));
@@ -54,7 +56,7 @@ inline Short32 all_pairs(const Short32& v, std::size_t pair) {
 
 // Pair l of the result is pair place[l] of v.
 inline Short32 permuted_pairs(Short32 v, const Places16& place) {
-  return bits_as<Short32>(permuted(bits_as<Float16>(v), place));  // which moves bits, whatever they are
+  return bits_as<Short32>(permuted(bits_as<Float16>(v), place));  // permuted() moves bits, whatever they mean
 }
 
 // Exchanges the two numbers of each pair.
@@ -76,15 +78,16 @@ inline Mask16 first_of_pairs(Mask32 bits) {
 #endif
 }
 
-// The larger and the smaller halves of the pairs exchanged: pairs 8 to 15 before 0 to 7.
+// Exchanges the two halves of v: pairs 8 to 15 come before pairs 0 to 7.
 inline Short32 swapped(Short32 v) {
   const auto pairs = bits_as<Int16>(v);
   return bits_as<Short32>(shuffled<8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7>(pairs, pairs));
 }
 
-// Where bit kBit of l is not set, pair l of `own` is pair l of a, else of b; beside it, `other` has the pair
-// of the same one whose number differs in that bit. So the smaller of both is what two shuffles would bring
-// together, for one shuffle and a blend.
+// One step of a reduction over two rows. Where bit kBit of l is 0, pair l of `own` is pair l of a, and where
+// the bit is 1, pair l of b. Pair l of `other` comes from the same row, from the pair whose number differs
+// from l in that bit. So the smaller of `own` and `other` holds the minimum of two pairs of one row. Shuffles
+// alone would need two of them to bring these pairs together; this form needs one shuffle and a blend.
 struct Neighbours {
   Short32 own, other;
 };
@@ -102,7 +105,7 @@ inline Neighbours neighbours(Short32 a, Short32 b) {
 // Takes eight rows of numbers at most 32767 in size. Pair r of the result is the smallest pair of row r, and
 // pair 8 + r the smallest of its negative, each half by itself.
 inline Short32 smallest_pairs_of_rows(const Short32 (&row)[8]) {
-  Short32 of[8];  // one bit of rows after the other becomes a bit of pairs; the last is set for negatives
+  Short32 of[8];  // each step turns a bit of row numbers into a bit of pair numbers; the last marks negatives
 #pragma GCC unroll 4
   for (int r = 0; r < 4; ++r) {
     const auto [own, other] = neighbours<1>(row[2 * r], row[2 * r + 1]);

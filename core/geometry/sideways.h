@@ -12,23 +12,26 @@
 // One text serves a query and eight queries side by side: with doubles and bools, and with lanes.
 namespace cscd {
 
-// Three points seen from a fourth at both ends: [point][end][axis]. Of a vertex and a face: the second and
-// third corner and the vertex, from the first corner. Of two edges: the first's other end and both of the
-// second, from the first's first end.
+// Three points seen from a fourth at both ends of the interval: [point][end][axis]. For a vertex and a face:
+// the face's second and third corner and the vertex, seen from the first corner. For two edges: the first
+// edge's other end and both ends of the second edge, seen from the first edge's first end.
 template <class Real>
 using SeenFromFirst = Real[3][2][3];
 
-// Whether they certainly are apart at every t in [0, 1]. The points may carry one rounding a coordinate.
+// Returns whether two features certainly are apart at every t in [0, 1]. The points may carry
+// one rounding for each coordinate.
 //
-// Error bound: along m, with L the largest coordinate and M = |m_x| + |m_y| + |m_z|, a point is off by at
-// most 4.1 u M L (its own rounding, a product, two sums), two of them by 8.2; 16 also pay for the bound's own
-// roundings. Every m is exact by definition. Below kTinyProduct products may lose more; where something
-// overflows, the bound is infinite or no number, and nothing exceeds it.
+// Error bound: let m be a direction, L the largest coordinate, M = |m_x| + |m_y| + |m_z| and u =
+// kUnitRoundoff. The projection of a point on m is off by at most 4.1 u M L (the point's own rounding, a
+// product, two sums), and two projections by 8.2 u M L. The factor 16 also pays for the roundings of the
+// bound itself. The computed m is taken as the direction, so m has no error. If the bound's M L is below
+// kTinyProduct, products may lose more, and nothing is certain. If something overflows, the bound is infinite
+// or NaN, and nothing exceeds it.
 template <class Real, class Mask>
 Mask apart_sideways(const SeenFromFirst<Real>& p, Mask vertex_face) {
   Real along[3][3], most_along[3];
   for (int i = 0; i < 3; ++i) {
-    const auto twice = [&](int k) { return p[k][0][i] + p[k][1][i]; };  // of the middle of the interval
+    const auto twice = [&](int k) { return p[k][0][i] + p[k][1][i]; };  // at the middle of the interval
     along[0][i] = twice(0);
     along[1][i] = select(vertex_face, twice(1), Real(twice(2) - twice(1)));
     along[2][i] = along[1][i] - along[0][i];

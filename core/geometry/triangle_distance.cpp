@@ -4,12 +4,14 @@
 
 #include "core/geometry/feature_distance.h"
 
-// Two triangles that do not cross are nearest at a vertex and a face or at two edges, so the least of six and
-// nine such distances is theirs. If they cross, an edge of one pierces the other.
+// Two triangles that do not cross are nearest to each other at a vertex and a face, or at two edges. So
+// their distance is the smallest of six vertex-face and nine edge-edge distances. If they cross, an
+// edge of one pierces the other.
 namespace cscd {
 namespace {
 
-// On which side of each edge of the triangle, seen along its normal, a point of its plane lies.
+// Returns whether a point of the triangle's plane lies inside the triangle: on the inner side of
+// each edge, seen along the normal.
 bool above_face(const Vec3& p, const TriangleCorners& t, const Vec3& normal) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3& from = t[k];
@@ -25,10 +27,11 @@ struct Faced {
   double height(const Vec3& p) const { return (p - corners[0]).dot(normal); }  // times the normal's length
 };
 
-// Least squared distance of one triangle's vertices to the other's face, 0 if an edge pierces it.
+// Returns the smallest of `least` and the squared distances of one triangle's vertices to the other's face,
+// or 0 if an edge pierces that face.
 double to_face(const TriangleCorners& from, const Faced& face, double least) {
   const double length = face.normal.squaredNorm();
-  if (length == 0) return least;  // its edges are all of it
+  if (length == 0) return least;  // the triangle consists of its edges
   double height[3];
   for (std::size_t k = 0; k < 3; ++k) {
     height[k] = face.height(from[k]);

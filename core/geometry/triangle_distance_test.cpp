@@ -39,7 +39,8 @@ TEST(TriangleDistance, DegenerateTrianglesAreTheirSegmentsAndPoints) {
   EXPECT_EQ(both_ways({p, q, Vec3(p + 2 * (q - p))}, {Vec3{1, 5, 2}, Vec3{1, 5, 2}, Vec3{1, 5, 2}}), 4);
 }
 
-// Against a grid of points on both: never above it, and below it by no more than the grid is coarse.
+// Compares with the nearest points of a grid on both triangles: the distance is never above theirs, and it is
+// below by at most the width of the grid.
 TEST(TriangleDistance, IsThatOfTheNearestPoints) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> coordinate(-1, 1);

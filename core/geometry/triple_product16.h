@@ -5,26 +5,28 @@
 
 // Sixteen triple products of moving vectors in single precision, with certified signs.
 //
-// Rounding. u = 2^-24; the vectors are differences of coordinates, each of which is off by at most d =
-// `error`, which is at least u times the largest. (a x b) . c: a difference of coordinates is off by 2 d and
-// rounds by u of itself. Let A, B, C be the largest computed components of the three and A' = A + 2 d, and so
-// on. Every coefficient is a sum of products whose absolute values sum to 6 A B C (18 for the middle two,
-// which are three times the Bernstein coefficients). Errors of the factors change it by at most
+// Rounding. Let u = 2^-24. The vectors are differences of coordinates; each coordinate is off by at most d =
+// `error`, which is at least u times the largest coordinate. So a component of a vector is off by 2 d and by
+// u times itself. Let A, B and C be the largest computed components of a, b and c, and A' = A + 2 d, and so
+// on. Every coefficient of (a x b) . c is a sum of products whose absolute values sum to 6 A B C (to 18 A B C
+// for the middle two, which are stored as three times the Bernstein coefficients). The errors of the factors
+// change a coefficient by at most
 //   6 ((A' + u A)(B' + u B)(C' + u C) - A B C) <= 12 d (A' B' + A' C' + B' C') + 19 u A' B' C'.
-// Then come the roundings behind each product. Where a product and a sum are rounded apart, the 6 have 28 in
-// all (2 in `cross`, then 3, 3, 2), the 18 of the middle two 137 (12 have 2 to 4 in `cross`, then 6, 6, 5;
-// the other 6 have 2, then 4, 3, 2); else 21 and 111. That is less than 8.1 each, hence at most
-// 6 * 8.1 u A B C. 12.1 and 68 also pay for the roundings of the bound itself. Below kTiny products
-// might underflow; nothing is certain then.
+// The roundings that follow each product come on top. If a product and a sum are rounded separately, the 6
+// products have 28 roundings in all (2 in `cross`, then 3, 3, 2). The 18 products of the middle two then have
+// 137 (12 products have 2 to 4 in `cross`, then 6, 6, 5; the other 6 have 2, then 4, 3, 2). If a product and
+// a sum are rounded once, the numbers are 21 and 111. That is less than 8.1 roundings for each of the 6 or 18
+// products, hence an error of at most 6 * 8.1 u A B C. The factors 12.1 and 68 in the code also pay for the
+// roundings of the bound itself. Below kTiny products might underflow, and nothing is certain.
 namespace cscd {
 
-// A point in one register; the fourth number is 0.
+// A point in one register. The fourth number is 0.
 using Double4 = HalfOf<double>;
 inline Double4 row_of(const Vec3& p) {
   return Double4{p[0], p[1], p[2], 0};
 }
 
-// Sixteen moving vectors, or points: [end][axis].
+// Sixteen moving vectors or points: [end][axis].
 struct VectorLanes16 {
   Float16 at[2][3];
 };
@@ -44,7 +46,7 @@ inline Float16 largest_component(const VectorLanes16& v) {
   return larger_size(largest(0), largest(1));
 }
 
-// a(t) x b(t): control vectors on [0, 1], the middle one twice.
+// Computes a(t) x b(t): its control vectors on [0, 1], of which the middle one is stored twice as large.
 inline void cross(const VectorLanes16& a, const VectorLanes16& b, Float16 (&control)[3][3]) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -71,17 +73,19 @@ struct Rounding16 {
 // The coefficients, the middle two times three, and bounds on the errors of the outer and of the middle ones.
 struct TripleProducts16 {
   Float16 c[4], bound, bound3;
-  Mask16 known;  // where nothing underflows
+  Mask16 known;  // lanes in which nothing underflows
 
+  // Lanes in which the cubic certainly is positive at every t in [0, 1].
   Mask16 positive() const {
     return static_cast<Mask16>(known & above(c[0], bound) & above(c[1], bound3) & above(c[2], bound3) &
                                above(c[3], bound));
   }
+  // Lanes in which the cubic certainly is negative at every t in [0, 1].
   Mask16 negative() const {
     return static_cast<Mask16>(known & above(-bound, c[0]) & above(-bound3, c[1]) & above(-bound3, c[2]) &
                                above(-bound, c[3]));
   }
-  // Where one coefficient certainly is positive and another negative.
+  // Lanes in which one coefficient certainly is positive and another one certainly is negative.
   Mask16 mixed() const {
     const unsigned some_positive =
         above(c[0], bound) | above(c[1], bound3) | above(c[2], bound3) | above(c[3], bound);
@@ -123,9 +127,10 @@ struct TripleProducts16 {
   return bounded(c, third, rounding, error);
 }
 
-// Whether all certainly are positive, of third vectors none of which has a component of `reach` - 2 `error`:
-// in fewer steps, and never where `positive` would not say so of all. (Of a coefficient above ten times
-// Rounding16::kTiny the largest components have a product above it.)
+// Returns whether all sixteen cubics certainly are positive. No third vector may have a component larger than
+// `reach` - 2 `error`. The function takes fewer steps than TripleProducts16::positive(), and it returns true
+// only if positive() would have all lanes set. (If a coefficient exceeds ten times kTiny, the product of the
+// largest components exceeds kTiny, so nothing underflows.)
 [[gnu::always_inline]] inline bool all_positive(const Float16 (&c)[4], const Rounding16& rounding,
                                                 float reach) {
   const Float16 bound =

@@ -8,9 +8,10 @@
 namespace cscd {
 namespace {
 
-// Where all third vectors are equally long, whether all are certainly positive is the same by both ways, in
-// whichever coefficient they fail, be it by their sign or by the bound. Mutations: one of the four
-// coefficients left out, the middle two held against the outer ones' bound, a hundredth of the reach.
+// If all third vectors are equally long, both ways agree whether all cubics certainly are positive,
+// whichever coefficient fails, be it by its sign or by the bound. Mutations: one of the four
+// coefficients is left out; the middle two are compared with the bound of the outer ones; the reach is a
+// hundredth of what it should be.
 TEST(TripleProduct16, AllArePositiveWhereEachIs) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> digits(-1, 1);
@@ -47,8 +48,8 @@ TEST(TripleProduct16, AllArePositiveWhereEachIs) {
   for (const std::size_t alone : not_all) EXPECT_GT(alone, 100u);
 }
 
-// Of what is so small that products underflow nothing is certain, by either way. Mutations: nothing added to
-// the bound for it, no look at the area.
+// If sizes are so small that products underflow, nothing is certain by either way. Mutations: nothing is
+// added to the bound for underflow; the area is not looked at.
 TEST(TripleProduct16, OfWhatUnderflowsNothingIsCertain) {
   for (int down = 0; down < 40; ++down)
     for (int away = 0; away < 40; ++away) {

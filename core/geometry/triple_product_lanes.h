@@ -13,7 +13,7 @@
 // do, which are the scalar twins: equal bits, equal signs.
 namespace cscd {
 
-// Eight moving vectors: [end][component].
+// Eight moving vectors: [end][axis].
 struct VectorLanes {
   Lane8 at[2][3];
 
@@ -25,7 +25,7 @@ struct VectorLanes {
   }
 };
 
-// Eight vertices, as offsets of their x coordinate in an array of positions.
+// Eight vertices, each stored as the offset of its x coordinate in an array of positions.
 struct VertexLanes {
   std::array<std::int32_t, kLanes> offset;
   void set(std::size_t lane, VertexId vertex) { offset[lane] = 3 * static_cast<std::int32_t>(vertex); }
@@ -51,13 +51,14 @@ inline VectorLanes operator-(const VectorLanes& to, const VectorLanes& from) {
   return out;
 }
 
-// a(t) x b(t) for eight pairs: control vectors n0, 2 n1, n2, and the scale of their rounding.
+// a(t) x b(t) for eight pairs of vectors: the control vectors n0, 2 n1 and n2, and the product of the largest
+// components of a and b, which scales the rounding.
 struct NormalLanes {
   Lane8 control[3][3];
   Lane8 area;
 };
 
-// `area`: the product of their largest components.
+// Takes that product as `area`.
 inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b, Lane8 area) {
   NormalLanes normal;
   for (int i = 0; i < 3; ++i) {
@@ -76,7 +77,7 @@ inline NormalLanes cross(const VectorLanes& a, const VectorLanes& b) {
 
 using BernsteinLanes = BernsteinCubicOf<Lane8>;
 
-// (a x b) . c. The components of c may be off by `c_slack`.
+// Returns the cubics (a x b) . c. The components of c may be off by `c_slack`, an absolute bound.
 inline BernsteinLanes triple_products(const NormalLanes& normal, const VectorLanes& c, double c_slack = 0) {
   const auto dot = [&](int n, int end) {
     return normal.control[n][0] * c.at[end][0] + normal.control[n][1] * c.at[end][1] +
@@ -90,10 +91,11 @@ inline BernsteinLanes triple_products(const NormalLanes& normal, const VectorLan
           select(known, kTripleProductError * volume + 7 * normal.area * c_slack, unknown)};
 }
 
-// +1 or -1 where the cubic certainly has that sign for every t in [0, 1], else 0.
+// Returns, for each lane, +1 or -1 if the cubic certainly has that sign for every t in [0, 1], else 0.
 inline Sign8 certain_sign(const BernsteinLanes& f) {
   const Lane8 error = f.error;
-  // A true comparison is -1 in its lane. Coefficient by coefficient, because a minimum may forget a NaN.
+  // A true comparison is -1 in its lane. Every coefficient is compared by itself,
+  // because a minimum may lose a NaN.
   const Sign8 positive = (f.c[0] > error) & (f.c[1] > error) & (f.c[2] > error) & (f.c[3] > error);
   const Sign8 negative = (f.c[0] < -error) & (f.c[1] < -error) & (f.c[2] < -error) & (f.c[3] < -error);
   return negative - positive;

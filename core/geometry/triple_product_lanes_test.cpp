@@ -7,8 +7,8 @@
 namespace cscd {
 namespace {
 
-// Signs of eight cubics at once against the scalar twin, on everything that the twin is tested with: all
-// magnitudes, cancellation, zeros, overflow, NaN.
+// Compares the signs of eight cubics at once with those of the scalar functions, on everything with which
+// those are tested: all magnitudes, cancellation, zeros, overflow and NaN.
 TEST(TripleProductLanes, SayWhatTheScalarTwinSays) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);

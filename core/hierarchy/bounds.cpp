@@ -3,7 +3,8 @@
 namespace cscd {
 
 namespace {
-// Nodes whose bounds are made together: few enough to be in the cache when their parents ask for them.
+// Number of nodes whose bounds are computed in one pass: few enough to be still in the
+// cache when their parents need them.
 constexpr NodeIndex kNodesAtOnce = 1024;
 }  // namespace
 

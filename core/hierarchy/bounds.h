@@ -10,7 +10,8 @@
 
 namespace cscd {
 
-// Swept bounding volumes of every node of a tree over one interval.
+// The bounds of the path of every node of a tree over one interval: each node's volume contains the paths
+// of all triangles below the node.
 template <class Volume>
 class SweptVolumes {
  public:
@@ -34,7 +35,7 @@ class SweptVolumes {
   // kind would often be mispredicted.
   std::vector<Leaf> leaves_;
   std::vector<Inner> inner_;
-  std::vector<Volume> vertex_, node_;
+  std::vector<Volume> vertex_, node_;  // [vertices], [nodes]
 };
 using SweptBounds = SweptVolumes<Kdop16>;
 using SweptBoxes = SweptVolumes<Aabb>;

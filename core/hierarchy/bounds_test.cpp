@@ -18,7 +18,8 @@ std::array<std::uint32_t, 2 * N> bits_of(const Slabs<N>& volume) {
   return std::bit_cast<std::array<std::uint32_t, 2 * N>>(volume);
 }
 
-// Bits, but for the sign of zeros: adding +0 makes them all positive and leaves everything else.
+// Returns the bits of the bounds, with all zeros positive: adding +0 makes zeros
+// positive and changes nothing else.
 template <std::size_t N>
 std::array<std::uint32_t, 2 * N> bits_without_sign_of_zero(Slabs<N> volume) {
   for (float& bound : volume.at_least) bound += 0.0f;
@@ -109,11 +110,11 @@ TYPED_TEST(SweptVertexBounds, OfZerosAreZero) {
     for (const float b : bound.at_least) ASSERT_EQ(b, 0);
 }
 
-// Whether every node contains the paths of the triangles below it, decided in rational arithmetic.
+// Returns whether every node contains the paths of all triangles below it, decided in rational arithmetic.
 bool all_contained(const TriangleMesh& mesh, const Tree& tree, const Motion& motion, const auto& bound_of) {
   std::vector<NodeIndex> ancestors;
   for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
-    // The subtree of `node` ends where the first node behind its last leaf stands.
+    // The subtree of `node` ends at its rightmost leaf.
     NodeIndex last = node;
     while (!tree.is_leaf(last)) last = tree.right(last);
     for (NodeIndex n = node; n <= last; ++n) {
@@ -138,8 +139,8 @@ TEST(SweptBounds, EveryNodeContainsThePathsBelowIt) {
   }
 }
 
-// Every bound of every node is attained by some vertex below: nothing is left over from earlier intervals,
-// and nodes are as small as they can be. With containment this fixes every bound.
+// Every bound of every node is attained by some vertex below the node. So nothing is left over from earlier
+// intervals, and nodes are as small as they can be. Together with containment this determines every bound.
 TEST(SweptBounds, AreTheUnionOfWhatIsBelowWhateverCameBefore) {
   const test::Shape shape = test::torus();
   const TriangleMesh mesh = shape.mesh();
@@ -165,7 +166,7 @@ TEST(SweptBounds, AreTheUnionOfWhatIsBelowWhateverCameBefore) {
   }
 }
 
-// Saboteur: one bound of one node, drawn in by one unit in the last place, is noticed.
+// Saboteur: if one bound of one node is drawn in by one unit in the last place, the test notices.
 TEST(SweptBounds, OneBoundDrawnInByOneUlpIsNoticed) {
   const test::Shape shape = test::octahedron();
   const TriangleMesh mesh = shape.mesh();

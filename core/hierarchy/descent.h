@@ -5,12 +5,12 @@
 #include "core/hierarchy/bounds.h"
 #include "core/hierarchy/tree.h"
 
-// The one pair-descent and the one self-descent, over bounds of any volume. Strategies differ in the
-// callables:
-//   is_leaf(node)     where the descent stops: tree leaves, or the roots of cluster trees
-//   skip(a, b)        true if no pair below these two nodes has to be looked at; a == b: none below this one
+// Finds the pairs of leaves of a tree whose bounds overlap: pair_descent() below two nodes, self_descent()
+// below one node. Strategies differ in three callables:
+//   is_leaf(node)     true where the descent stops: at leaves of the tree, or at the roots of cluster trees
+//   skip(a, b)        true if no pair below the two nodes (for a == b: below the node) needs a test
 //   emit(a, b)        takes two leaves whose bounds overlap
-// Both return the number of bounding volume overlap tests.
+// Both functions return the number of bounding volume overlap tests.
 namespace cscd {
 
 template <class Volume, class IsLeaf, class Skip, class Emit>
@@ -22,14 +22,15 @@ struct Descent {
   Emit emit;
   std::uint64_t tests = 0;
 
-  // All pairs with one leaf below each of two disjoint nodes.
+  // Visits all pairs of one leaf below `a` and one leaf below `b`, two nodes of
+  // which neither contains the other.
   void pair(NodeIndex a, NodeIndex b) {
     if (skip(a, b)) return;
     ++tests;
     if (overlap(bounds[a], bounds[b])) below(a, b);
   }
 
-  // The same for two nodes that are known to overlap.
+  // Does the same as pair() for two nodes that are known to overlap.
   void below(NodeIndex a, NodeIndex b) {
     const bool leaf_a = is_leaf(a), leaf_b = is_leaf(b);
     if (leaf_a && leaf_b) {
@@ -48,7 +49,7 @@ struct Descent {
     }
   }
 
-  // All pairs of different leaves below one node.
+  // Visits all pairs of different leaves below one node.
   void self(NodeIndex node) {
     if (is_leaf(node) || skip(node, node)) return;
     self(tree.left(node));
@@ -57,7 +58,7 @@ struct Descent {
   }
 };
 
-// Starts below two nodes that are known to overlap.
+// Visits all pairs of one leaf below `a` and one leaf below `b`, which are known to overlap.
 template <class Volume, class IsLeaf, class Skip, class Emit>
 std::uint64_t pair_descent(const Tree& tree, const SweptVolumes<Volume>& bounds, NodeIndex a, NodeIndex b,
                            IsLeaf is_leaf, Skip skip, Emit emit) {
@@ -66,6 +67,7 @@ std::uint64_t pair_descent(const Tree& tree, const SweptVolumes<Volume>& bounds,
   return descent.tests;
 }
 
+// Visits all pairs of different leaves below `node`.
 template <class Volume, class IsLeaf, class Skip, class Emit>
 std::uint64_t self_descent(const Tree& tree, const SweptVolumes<Volume>& bounds, NodeIndex node,
                            IsLeaf is_leaf, Skip skip, Emit emit) {

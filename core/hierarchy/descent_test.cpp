@@ -11,9 +11,9 @@
 namespace cscd {
 namespace {
 
-using Pairs = std::vector<std::pair<int, int>>;  // of triangles, sorted, as often as they were emitted
+using Pairs = std::vector<std::pair<int, int>>;  // of triangles, sorted, with repetitions
 
-// A mesh in motion with its tree and bounds.
+// A moving mesh with its tree and bounds.
 struct Scene {
   test::Shape shape;
   TriangleMesh mesh;
@@ -40,7 +40,7 @@ struct Scene {
   std::pair<int, int> named(NodeIndex a, NodeIndex b) const {
     return std::minmax(static_cast<int>(tree.triangle(a)), static_cast<int>(tree.triangle(b)));
   }
-  // The quadratic loop: leaves in [a, a_end) against leaves in [b, b_end), each unordered pair once.
+  // The quadratic loop: compares leaves in [a, a_end) with leaves in [b, b_end), each unordered pair once.
   Pairs overlapping(NodeIndex a, NodeIndex a_end, NodeIndex b, NodeIndex b_end) const {
     Pairs pairs;
     for (NodeIndex m = a; m < a_end; ++m)
@@ -103,8 +103,8 @@ TEST(PairDescent, EmitsExactlyTheOverlappingPairsOfLeavesOnceEach) {
   EXPECT_GT(descents, 300);
 }
 
-// What a descent has to do, told a second time and without sharing code: pairs of nodes whose overlap is
-// asked.
+// Specifies a second time, without sharing code, what a descent has to do. Returns the number of pairs
+// of nodes whose overlap is asked.
 std::uint64_t asked_below(const Scene& scene, NodeIndex a, NodeIndex b);
 std::uint64_t asked(const Scene& scene, NodeIndex a, NodeIndex b) {
   return 1 + (overlap(scene.bounds[a], scene.bounds[b]) ? asked_below(scene, a, b) : 0);
@@ -126,7 +126,7 @@ TEST(SelfDescent, ReturnsTheNumberOfOverlapTests) {
     std::uint64_t expected = 0;
     for (NodeIndex node = 0; node < scene.node_count(); ++node)
       if (!scene.tree.is_leaf(node)) expected += asked(scene, scene.tree.left(node), scene.tree.right(node));
-    // `skip` is asked before every overlap test and once for every inner node.
+    // `skip` is asked before every overlap test, and once for every inner node.
     std::uint64_t skip_calls = 0;
     const std::uint64_t tests = self_descent(
         scene.tree, scene.bounds, 0, [&](NodeIndex n) { return scene.tree.is_leaf(n); },
@@ -146,7 +146,7 @@ TEST(PairDescent, ReturnsTheNumberOfOverlapTestsWithoutTheOneThatIsKnown) {
   const auto is_leaf = [&](NodeIndex n) { return scene.tree.is_leaf(n); };
   const auto ignore = [](NodeIndex, NodeIndex) {};
   EXPECT_EQ(pair_descent(scene.tree, scene.bounds, a, b, is_leaf, kNoSkip, ignore), asked_below(scene, a, b));
-  // Two leaves: nothing is left to test.
+  // For two leaves there is nothing left to test.
   const auto all_are_leaves = [](NodeIndex) { return true; };
   int emitted = 0;
   EXPECT_EQ(pair_descent(scene.tree, scene.bounds, a, b, all_are_leaves, kNoSkip,
@@ -185,7 +185,7 @@ TEST(Descent, SkipPrunesWhatItNamesAndNothingElse) {
   EXPECT_EQ(emitted, 0);
 }
 
-// Stopping at cluster roots emits pairs of clusters.
+// A descent that stops at cluster roots emits pairs of clusters.
 TEST(SelfDescent, StopsAtClusterRoots) {
   const test::Shape shape = test::icosphere(2);
   const TriangleMesh mesh = shape.mesh();

@@ -8,21 +8,22 @@ namespace cscd {
 // Writes nodes in depth-first order.
 struct TreeBuilder {
   const TriangleMesh& mesh;
-  std::vector<Vec3> centroid;  // one a triangle
+  std::vector<Vec3> centroid;  // [triangles]
   Tree tree;
 
   TreeBuilder(const TriangleMesh& mesh_in, std::span<const Vec3> positions)
       : mesh(mesh_in), centroid(mesh.triangle_count()) {
     for (std::size_t t = 0; t < centroid.size(); ++t) {
       const Triangle& corner = mesh.triangles()[t];
-      // Divided before it is summed, so that hardly any coordinates overflow; those that do spoil no pair,
-      // only the shape of the tree.
+      // Each position is divided before the sum, so that hardly any coordinates overflow. If some do, only
+      // the shape of the tree suffers; no pair is lost.
       centroid[t] = positions[+corner[0]] / 3 + positions[+corner[1]] / 3 + positions[+corner[2]] / 3;
     }
     tree.link_.reserve(2 * centroid.size());
   }
 
-  // Splits items in half at the median along the longest axis of the box of their centres.
+  // Builds a subtree. It splits the items in half at the median of their centres, along the
+  // longest axis of the centres' box.
   template <class Item, class Centre, class Leaf>
   void build(std::span<Item> items, const Centre& centre, const Leaf& leaf) {
     if (items.size() == 1) return leaf(items[0]);
@@ -37,7 +38,7 @@ struct TreeBuilder {
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
                      [&](const Item& a, const Item& b) {
                        const double ca = centre(a)[axis], cb = centre(b)[axis];
-                       return ca != cb ? ca < cb : a < b;  // total order: the same tree with every library
+                       return ca != cb ? ca < cb : a < b;  // a total order: the same tree with every library
                      });
     const std::size_t node = tree.link_.size();
     tree.link_.push_back(0);

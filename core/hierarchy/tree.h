@@ -23,14 +23,14 @@ class Tree {
   NodeIndex left(NodeIndex node) const { return node + 1; }
   NodeIndex right(NodeIndex node) const { return link_[static_cast<std::size_t>(node)]; }
 
-  // For a tree over clusters: the node below which cluster c lies. Empty otherwise.
+  // For a tree over clusters: [clusters], the root of each cluster's subtree. Empty for other trees.
   std::span<const NodeIndex> cluster_roots() const { return cluster_roots_; }
 
  private:
   friend Tree build_tree(const TriangleMesh&, std::span<const Vec3>);
   friend Tree build_tree(const TriangleMesh&, std::span<const Vec3>, std::span<const std::int32_t>, int);
   friend struct TreeBuilder;
-  std::vector<std::int32_t> link_;  // inner node: its right child; leaf: ~triangle
+  std::vector<std::int32_t> link_;  // [nodes]; an inner node's right child, or ~triangle for a leaf
   std::vector<NodeIndex> cluster_roots_;
 };
 

@@ -11,8 +11,8 @@
 namespace cscd {
 namespace {
 
-// Walks the subtree at `node`; checks that it lies in one piece from `node` on and that it is balanced.
-// Appends its triangles, returns the node behind it.
+// Walks the subtree at `node` and checks that it lies in one piece from `node` on. Appends its triangles,
+// sets its depth and returns the first node after it.
 NodeIndex walk(const Tree& tree, NodeIndex node, int& depth, std::vector<int>& triangles) {
   if (tree.is_leaf(node)) {
     depth = 0;
@@ -36,7 +36,7 @@ std::vector<int> triangles_below(const Tree& tree, NodeIndex node) {
   return triangles;
 }
 
-// No two centroids share a coordinate.
+// A sphere no two of whose centroids share a coordinate.
 test::Shape uneven_sphere(int splits) {
   test::Shape shape = test::icosphere(splits);
   std::mt19937 random(1);
@@ -121,7 +121,7 @@ TEST(Tree, SplitsAtTheMedianOfTheLongestAxis) {
   EXPECT_NEAR(left, 5, 0.5);
 }
 
-// The same triangles in another order give the same tree but for their names, wherever centroids differ.
+// The same triangles in another order give the same tree up to their numbers, if all centroids differ.
 TEST(Tree, DoesNotDependOnWhereTrianglesStandInTheList) {
   const test::Shape shape = uneven_sphere(1);
   std::mt19937 random(1);
@@ -146,7 +146,7 @@ TEST(ClusterTree, EachRootHoldsExactlyItsCluster) {
   std::mt19937 random(2);
   for (const int clusters : {1, 2, 3, 17, 320}) {
     std::vector<std::int32_t> label(mesh.triangle_count());
-    for (std::size_t t = 0; t < label.size(); ++t)  // every label occurs, sizes differ
+    for (std::size_t t = 0; t < label.size(); ++t)  // every label occurs; sizes differ
       label[t] = t < static_cast<std::size_t>(clusters)
                      ? static_cast<std::int32_t>(t)
                      : static_cast<std::int32_t>(random() % static_cast<unsigned>(clusters) %

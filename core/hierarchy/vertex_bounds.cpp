@@ -4,17 +4,18 @@
 #include "core/geometry/lanes.h"
 #include "core/hierarchy/bounds.h"
 
-// Eight vertices at a time. A projection is an exact sum of two coordinates, kept as its rounded value and
-// the error; the smaller of both ends is rounded down, the larger one up.
+// Bounds of eight vertices at a time. A projection is an exact sum of two coordinates, stored as
+// the rounded sum and its error. The smaller of the projections at both ends of the interval is
+// rounded down, and the larger one up.
 namespace cscd {
 namespace {
 
 using Float8 = HalfOf<float>;
 using Mask8 = HalfOf<std::int32_t>;
-// Unsigned: lanes that are not selected step as well, and may wrap.
+// Unsigned, because lanes that are not chosen step as well and may wrap round.
 using Bits8 = HalfOf<std::uint32_t>;
 
-// value + error, exactly.
+// The exact number value + error.
 struct Exact8 {
   Lane8 value, error;
   Exact8 operator-() const { return {-value, -error}; }
@@ -30,7 +31,7 @@ Exact8 lesser(const Exact8& a, const Exact8& b) {
   return {select(second, b.value, a.value), select(second, b.error, a.error)};
 }
 
-// The largest float not above each number: float_below_sum for eight.
+// Returns the largest float that is not above each number: float_below_sum() for eight numbers.
 Float8 rounded_down(const Exact8& x) {
   const Float8 nearest = converted<Float8>(x.value);
   const Lane8 widened = converted<Lane8>(nearest);
@@ -64,7 +65,8 @@ Position8 load(std::span<const Vec3> points, std::size_t first) {
   return p;
 }
 
-// Along eight or fewer directions; one that is missing is left at zero.
+// Stores the bounds along M directions, at most eight. Directions that `out` has
+// beyond those are left at zero.
 template <std::size_t N, std::size_t M>
 void store(const Exact8 (&at_start)[M], const Exact8 (&at_end)[M], std::span<Slabs<N>> out) {
   Float8 rows[2 * N] = {};

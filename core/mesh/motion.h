@@ -9,13 +9,14 @@
 
 namespace cscd {
 
-// One point on a straight line at constant speed: x(t) = (1 - t) start + t end, t in [0, 1].
+// A point that moves in a straight line at constant speed: x(t) = (1 - t) start + t end for t in [0, 1].
 struct MovingPoint {
   Vec3 start, end;
   Vec3 at(double t) const { return (1 - t) * start + t * end; }
 };
 
-// View of one interval: every vertex's position at t = 0 and at t = 1. Copies nothing.
+// A view of one interval: the positions of all vertices at t = 0 and at t = 1, [vertices] each.
+// The caller owns the positions.
 class Motion {
  public:
   Motion(std::span<const Vec3> start, std::span<const Vec3> end) : start_(start), end_(end) {

@@ -12,7 +12,7 @@
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
 
-// Small closed surfaces for tests, all oriented outward.
+// Small surfaces for tests. All but ramp() are closed, and all are oriented outward.
 namespace cscd::test {
 
 struct Shape {
@@ -25,7 +25,7 @@ inline Triangle corners(int a, int b, int c) {
   return {VertexId{a}, VertexId{b}, VertexId{c}};
 }
 
-// Eight faces; corners at distance `radius` along the axes.
+// An octahedron: eight faces, corners at distance `radius` from the origin along the axes.
 inline Shape octahedron(double radius = 1) {
   const double r = radius;
   return {{{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}},
@@ -33,8 +33,8 @@ inline Shape octahedron(double radius = 1) {
            corners(1, 2, 5), corners(3, 1, 5), corners(0, 3, 5)}};
 }
 
-// The octahedron or any other star-shaped surface about the origin, each face split in four, all corners
-// pushed out to the sphere.
+// Splits every face of a star-shaped surface about the origin in four and moves all vertices onto
+// the sphere of the given radius.
 inline Shape split_onto_sphere(const Shape& shape, double radius) {
   const TriangleMesh mesh = shape.mesh();
   Shape out{shape.positions, {}};
@@ -57,7 +57,7 @@ inline Shape split_onto_sphere(const Shape& shape, double radius) {
   return out;
 }
 
-// 20 * 4^splits faces.
+// An icosahedron whose faces are split `splits` times onto the sphere: 20 * 4^splits faces.
 inline Shape icosphere(int splits, double radius = 1) {
   const double g = std::numbers::phi;
   Shape shape{
@@ -82,8 +82,8 @@ inline Shape icosphere(int splits, double radius = 1) {
   return shape;
 }
 
-// Round tube along x from 0 to `length`: `rings` + 1 circles of `sides` vertices and a flat fan at each end;
-// its radius at x is radius_at(x).
+// A round tube along the x axis from 0 to `length`. It has `rings` + 1 circles of `sides` vertices and a flat
+// fan at each end. Its radius at x is radius_at(x).
 template <class RadiusAt>
 Shape uneven_tube(int sides, int rings, double length, RadiusAt&& radius_at) {
   Shape shape;
@@ -114,7 +114,7 @@ inline Shape capped_tube(int sides, int rings, double radius, double length) {
   return uneven_tube(sides, rings, length, [radius](double) { return radius; });
 }
 
-// Torus about the z axis.
+// A torus about the z axis.
 inline Shape torus(int around = 12, int across = 8, double major = 2, double minor = 0.5) {
   Shape shape;
   for (int i = 0; i < around; ++i) {
@@ -134,7 +134,7 @@ inline Shape torus(int around = 12, int across = 8, double major = 2, double min
   return shape;
 }
 
-// An open strip, two quads wide, that winds about the z axis like a spiral staircase and faces up all along.
+// An open strip, two quads wide, that winds about the z axis like a spiral staircase and faces up everywhere.
 inline Shape ramp(int steps, double turns, double inner, double outer, double pitch) {
   Shape shape;
   for (int i = 0; i <= steps; ++i) {
@@ -153,7 +153,7 @@ inline Shape ramp(int steps, double turns, double inner, double outer, double pi
   return shape;
 }
 
-// Twelve triangles.
+// A box of twelve triangles.
 inline Shape box(const Vec3& low = {0, 0, 0}, const Vec3& high = {1, 1, 1}) {
   Shape shape;
   for (int i = 0; i < 8; ++i)
@@ -173,7 +173,7 @@ inline Shape moved(Shape shape, const Vec3& by, double scale = 1) {
   return shape;
 }
 
-// Both surfaces in one list; they share no vertex.
+// Both surfaces in one list. They share no vertex.
 inline Shape together(Shape first, const Shape& second) {
   const auto shift = static_cast<int>(first.positions.size());
   first.positions.insert(first.positions.end(), second.positions.begin(), second.positions.end());
@@ -183,7 +183,7 @@ inline Shape together(Shape first, const Shape& second) {
   return first;
 }
 
-// Six times the enclosed volume; positive when the surface faces outward.
+// Returns six times the enclosed volume, which is positive if the surface faces outward.
 inline double six_volumes(const Shape& shape) {
   double sum = 0;
   for (const Triangle& c : shape.triangles)
@@ -191,7 +191,7 @@ inline double six_volumes(const Shape& shape) {
   return sum;
 }
 
-// `count` bones in one chain along the straight line from head to tail.
+// A skeleton of `count` bones in one chain along the straight line from `head` to `tail`.
 inline Rig straight_chain(int count, const Vec3& head, const Vec3& tail) {
   Rig rig;
   for (int i = 0; i < count; ++i) {

@@ -7,15 +7,15 @@
 
 #include "core/base/error.h"
 
-// Connectivity of a triangle list by counting and small sorts: half-edges are dealt into one bucket a vertex
-// (their smaller end), each bucket is sorted by the larger end, equal neighbours are one edge. Edges are
-// thereby numbered in the order of their ends, whatever the order of the triangles. Cost: linear, apart from
-// the logarithm of the largest valence.
+// Finds the connectivity of a triangle list by counting and small sorts. Every half-edge is put into the
+// bucket of its smaller end. Each bucket is sorted by the larger end; neighbours with equal ends are one
+// edge. So edges are numbered in the order of their ends, whatever the order of the triangles. The cost is
+// linear, apart from the logarithm of the largest valence.
 
 namespace cscd {
 namespace {
 
-constexpr std::size_t kLargest = std::size_t{1} << 28;  // three half-edges a triangle still fit an int32
+constexpr std::size_t kLargest = std::size_t{1} << 28;  // three half-edges a triangle still fit into an int32
 
 std::size_t index_of(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -46,7 +46,7 @@ std::string text(const Triangle& c) {
   return in_brackets(c);
 }
 
-// "triangles 1, 2 and 3"; long lists are cut.
+// Writes "triangles 1, 2 and 3". Long lists are cut.
 std::string text(std::span<const TriangleId> triangles) {
   constexpr std::size_t shown = 6;
   std::string out = triangles.size() == 1 ? "triangle " : "triangles ";
@@ -79,21 +79,21 @@ void require_triangle_list(std::span<const Triangle> triangles, std::size_t vert
   }
 }
 
-// The corner of the triangle that is not an end of the edge.
+// Returns the corner of the triangle that is not an end of the edge.
 VertexId opposite(const Triangle& c, const Edge& e) {
   for (const VertexId v : c)
     if (v != e[0] && v != e[1]) return v;
-  return c[0];  // not reached: a triangle has three different corners
+  return c[0];  // never reached: a triangle has three different corners
 }
 
-// Does the triangle pass from the edge's smaller to its larger end?
+// Returns whether the triangle's corners run from the edge's smaller end to its larger end.
 bool runs_upward(const Triangle& c, const Edge& e) {
   for (std::size_t k = 0; k < 3; ++k)
     if (c[k] == e[0]) return c[(k + 1) % 3] == e[1];
   return false;
 }
 
-// Counts defects of one kind; the text is made for the first one only.
+// Counts the defects of one kind and describes the first of them.
 class Tally {
  public:
   explicit Tally(Defect kind) : report_{kind, 0, {}} {}
@@ -134,7 +134,7 @@ void TriangleMesh::build_edges() {
 
   struct HalfEdge {
     VertexId larger;
-    std::int32_t index;  // 3 triangle + k
+    std::int32_t index;  // 3 * triangle + k
     auto operator<=>(const HalfEdge&) const = default;
   };
   at_vertex_.items.resize(half_edges);
@@ -223,7 +223,8 @@ void TriangleMesh::find_defects() {
                " in the same direction; swap two corners of one of them";
       });
 
-    // Equal triangles share their edge between their two smallest corners, so each one is looked at once.
+    // Triangles with the same corners share the edge between their two smallest corners. Looking only
+    // there finds each such pair once.
     if (around.size() < 2) continue;
     by_third.clear();
     for (const TriangleId t : around)
@@ -238,8 +239,9 @@ void TriangleMesh::find_defects() {
         });
   }
 
-  // One fan: all triangles at the vertex are reached from the first by crossing edges at the vertex. The ends
-  // of a non-manifold edge count only if their triangles fall apart beyond that.
+  // A vertex is manifold if its triangles form one fan: all of them are reached from the first by crossing
+  // edges at the vertex. At an end of a non-manifold edge, crossing that edge reaches all of its triangles,
+  // so the vertex counts as a defect only if other triangles at it stay unreached.
   std::vector<std::int32_t> triangle_met(triangles_.size(), -1), edge_met(edges_.size(), -1);
   std::vector<TriangleId> open;
   for (std::size_t i = 0; i < vertex_count_; ++i) {

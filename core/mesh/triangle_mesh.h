@@ -24,13 +24,14 @@ enum class Defect {
   non_manifold_vertex
 };
 
-// Immutable connectivity of a triangle surface. Construction refuses what is not a triangle list at all;
-// open, non-manifold or inconsistently oriented surfaces are accepted and say so, as strategies with the
-// guarantee `complete` can use them.
+// The connectivity of a triangle surface, which never changes. The constructor refuses what is not a triangle
+// list at all. Surfaces that are open, non-manifold or inconsistently oriented are accepted and listed in
+// defects(), because strategies with the guarantee `complete` can use them.
 class TriangleMesh {
  public:
-  // Throws InputError for an index outside [0, vertex_count), a triangle that repeats a corner, no triangles,
-  // or more than 2^28 vertices or triangles. `name` (a file, a scene) begins the error texts.
+  // Takes triangles as [triangles] of vertex indices in [0, vertex_count). Throws InputError for an index
+  // outside that range, a triangle that repeats a corner, an empty list, or more than 2^28 vertices or
+  // triangles. `name` (a file, a scene) begins the error texts.
   TriangleMesh(std::vector<Triangle> triangles, std::size_t vertex_count, const std::string& name = "mesh");
 
   std::size_t vertex_count() const { return vertex_count_; }
@@ -47,16 +48,18 @@ class TriangleMesh {
   std::span<const TriangleId> triangles_at(VertexId vertex) const { return slice(at_vertex_, +vertex); }
   std::span<const TriangleId> triangles_at(EdgeId edge) const { return slice(at_edge_, +edge); }
 
-  // Connected components, joined through shared vertices; numbered from 0 in order of their first triangle.
+  // Connected components, joined through shared vertices, are numbered from 0 in the
+  // order of their first triangle.
   std::int32_t component_count() const { return component_count_; }
   std::int32_t component(TriangleId triangle) const { return component_[+triangle]; }
 
-  // The first defect found of each kind, and how many there are.
+  // The first defect of one kind, and the number of defects of that kind.
   struct DefectReport {
     Defect kind;
     std::size_t count;
     std::string first;  // names the element: "edge (3, 7) of triangle 12 has no second triangle"
   };
+  // Returns one report for each kind of defect that occurs; none for a closed, manifold, oriented surface.
   const std::vector<DefectReport>& defects() const { return defects_; }
   bool closed_and_oriented() const { return defects_.empty(); }
 
@@ -85,10 +88,12 @@ class TriangleMesh {
 };
 
 // Throws InputError, naming the first defect and the counts, unless the surface is closed, manifold and
-// consistently oriented. `who` needs it ("strategy drvbc").
+// consistently oriented (rule closed-mesh, core/soundness.md). `who` names the user of the surface in the
+// error text ("strategy drvbc").
 void require_closed_and_oriented(const TriangleMesh& mesh, const std::string& who);
 
-// Throws InputError naming the first position that is NaN or infinite. `where` begins the text ("frame 3").
+// Throws InputError naming the first position that is NaN or infinite. `where`
+// begins the error text ("frame 3").
 void require_finite(std::span<const Vec3> positions, const std::string& where);
 
 }  // namespace cscd

@@ -42,7 +42,7 @@ std::string first_of(const TriangleMesh& mesh, Defect kind) {
   return "";
 }
 
-// Every table of the mesh against maps made the slow way.
+// Compares every table of the mesh with maps that are made in a slow way.
 void expect_tables_match(const TriangleMesh& mesh) {
   std::map<Edge, std::vector<TriangleId>> at_edge;
   std::map<VertexId, std::vector<TriangleId>> at_vertex;
@@ -58,7 +58,7 @@ void expect_tables_match(const TriangleMesh& mesh) {
   }
   ASSERT_EQ(mesh.edge_count(), at_edge.size());
   std::size_t i = 0;
-  for (const auto& [edge, triangles] : at_edge) {  // a map runs in the order that the mesh promises
+  for (const auto& [edge, triangles] : at_edge) {  // a map has the order that the mesh promises
     const EdgeId e{static_cast<std::int32_t>(i++)};
     EXPECT_EQ(mesh.ends(e), edge);
     EXPECT_TRUE(std::ranges::equal(mesh.triangles_at(e), triangles));
@@ -146,12 +146,12 @@ TEST(TriangleMesh, TwoSidedTriangleIsADuplicate) {
 }
 
 TEST(TriangleMesh, BowTieVertexIsFound) {
-  // Two octahedra that share the vertex at which they touch.
+  // Two octahedra touch in a vertex that they share.
   Shape shape = test::together(test::octahedron(), test::moved(test::octahedron(), {2, 0, 0}));
   for (Triangle& c : shape.triangles)
     for (VertexId& v : c)
       if (v == VertexId{7}) v = VertexId{0};
-  const TriangleMesh mesh = shape.mesh();  // vertex 7 is now unreferenced, which is fine
+  const TriangleMesh mesh = shape.mesh();  // vertex 7 has no triangles left, which is allowed
   ASSERT_EQ(mesh.defects().size(), 1u);
   EXPECT_EQ(count_of(mesh, Defect::non_manifold_vertex), 1u);
   EXPECT_TRUE(mentions(first_of(mesh, Defect::non_manifold_vertex), "vertex 0 joins triangles 0 and 9 "));

@@ -9,19 +9,21 @@
 
 namespace cscd {
 
-// Two different triangles of one mesh, the smaller number first.
+// Two different triangles of one mesh, the smaller index first.
 using CrossingPair = std::pair<TriangleId, TriangleId>;
 
-// The pairs of triangles that cross in one pose: pairs that meet outside the vertices and edges they share.
+// The triangle pairs that cross in one pose. Two triangles *cross* if they meet outside the
+// vertices and edges that they share.
 struct Crossings {
-  std::vector<CrossingPair> pairs;  // sorted; all of them, unless there are more than the caller wanted kept
-  std::size_t total = 0;
+  std::vector<CrossingPair> pairs;  // sorted; incomplete if more pairs cross than the caller wanted to keep
+  std::size_t total = 0;            // number of all pairs that cross
 
   bool all_kept() const { return pairs.size() == total; }
   bool contains(const CrossingPair& pair) const;
 };
 
-// The pairs of triangles that carry a feature pair: one triangle has the first feature, the other the second.
+// Returns the triangle pairs that carry a feature pair: one triangle has the first feature, and
+// the other has the second feature.
 std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair);
 
 }  // namespace cscd

@@ -23,8 +23,9 @@ struct Frame {
     return segments_touch(x[+e[0]], x[+e[1]], x[+f[0]], x[+f[1]]);
   }
 
-  // Does a feature of the first triangle meet the second outside what they share? An edge that is disjoint
-  // from the other triangle settles both of its ends.
+  // Returns whether a feature of the first triangle meets the second triangle outside the vertices
+  // and edges that both share. An edge without a vertex of the second triangle is tested as a
+  // whole, which covers its two ends.
   bool reaches(TriangleId from, TriangleId to) const {
     const Triangle& target = mesh.corners(to);
     for (const VertexId vertex : mesh.corners(from))
@@ -34,8 +35,8 @@ struct Frame {
       const int shared = contains(target, edge[0]) + contains(target, edge[1]);
       if (shared == 0 && touch(edge, target)) return true;
       if (shared != 1) continue;
-      // One end is shared: inside the plane of the target the edge can still cross the side opposite to that
-      // end.
+      // One end of the edge is shared. If the edge lies in the plane of the target, it can still cross
+      // the side opposite to that end.
       for (const EdgeId side : mesh.edges_of(to)) {
         const Edge& other = mesh.ends(side);
         if (!share_vertex(edge, other) && touch(edge, other)) return true;

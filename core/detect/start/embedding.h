@@ -14,12 +14,13 @@ namespace cscd {
 // Exact.
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
 
-// Decides exactly whether a frame is embedded: no two triangles meet except in the vertices and edges they
-// share. (No feature pair touches, and no edge pierces a face.) The theorem behind the guarantee
-// `first_contact` needs it.
+// Decides exactly whether a frame is *embedded*: no two triangles meet outside the vertices and edges that
+// they share. In an embedded frame no feature pair touches and no edge pierces a face. The theorem behind the
+// guarantee `first_contact` needs an embedded start (rule embedded-start, core/soundness.md).
 class EmbeddingTest {
  public:
-  // `reference` shapes the tree; any frame will do.
+  // Builds a tree from the positions `reference` ([vertices]); any frame will do.
+  // `mesh` must outlive the object.
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
   // Returns two triangles that meet, or nothing if the frame is embedded.
@@ -30,7 +31,7 @@ class EmbeddingTest {
   Crossings find_all(std::span<const Vec3> positions, std::size_t most);
 
  private:
-  // Calls found(pair) for every pair that meets until it returns false.
+  // Calls found(pair) for every triangle pair that meets, until found() returns false.
   template <class Found>
   void search(std::span<const Vec3> positions, const Found& found);
 

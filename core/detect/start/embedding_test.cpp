@@ -22,7 +22,7 @@ TEST(Embedding, PlainSurfacesAreEmbedded) {
   EXPECT_TRUE(embedded(test::octahedron()));
   EXPECT_TRUE(embedded(test::icosphere(2)));
   EXPECT_TRUE(embedded(test::torus()));
-  EXPECT_TRUE(embedded(test::box()));  // neighbours in one plane
+  EXPECT_TRUE(embedded(test::box()));  // neighbouring triangles lie in one plane
   EXPECT_TRUE(embedded(test::capped_tube(6, 4, 1, 5)));
   EXPECT_TRUE(embedded({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {corners(0, 1, 2)}}));
 }
@@ -30,7 +30,7 @@ TEST(Embedding, PlainSurfacesAreEmbedded) {
 TEST(Embedding, ComponentsBesideAndInsideEachOtherAreEmbedded) {
   EXPECT_TRUE(embedded(test::together(test::octahedron(), test::moved(test::octahedron(), {3, 0, 0}))));
   EXPECT_TRUE(embedded(test::together(test::octahedron(), test::octahedron(0.5))));
-  // As near as doubles can be, and in touch.
+  // Boxes as near to each other as doubles can be are embedded; boxes that touch are not.
   const double beyond = std::nextafter(1.0, 2.0);
   EXPECT_TRUE(embedded(test::together(test::box(), test::box({beyond, 0, 0}, {2, 1, 1}))));
   EXPECT_FALSE(embedded(test::together(test::box(), test::box({1, 0, 0}, {2, 1, 1}))));
@@ -43,7 +43,8 @@ TEST(Embedding, OverlappingComponentsAreNot) {
   EXPECT_FALSE(embedded(test::together(test::box(), test::moved(test::box(), {0.5, 0.5, 0.5}))));
 }
 
-// An edge pierces a face: no vertex lies on a face, no two edges meet. Only segment against triangle sees it.
+// An edge pierces a face, but no vertex lies on a face and no two edges meet. Only the test of a
+// segment against a triangle sees it.
 TEST(Embedding, APiercedFaceIsNotEmbeddedAlthoughNoFeaturePairTouches) {
   const Shape pierced{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 9}},
                       {corners(0, 1, 2), corners(3, 4, 5)}};
@@ -68,20 +69,20 @@ TEST(Embedding, ATouchingVertexIsNot) {
   }
 }
 
-// Two triangles at a common edge, folded onto each other in one plane.
+// Two triangles have a common edge and are folded onto each other in one plane.
 TEST(Embedding, FoldedNeighboursInOnePlaneAreNot) {
   const auto folded = [](const Vec3& tip) {
     return Shape{{{0, 0, 0}, {4, 0, 0}, {1, 3, 0}, tip}, {corners(0, 1, 2), corners(1, 0, 3)}};
   };
   EXPECT_TRUE(embedded(folded({1, -3, 0})));  // unfolded
-  EXPECT_FALSE(embedded(folded({1, 1, 0})));  // tip inside the other
-  EXPECT_FALSE(embedded(folded({2, 8, 0})));  // holds the other's tip
-  EXPECT_FALSE(embedded(folded({5, 3, 0})));  // sides cross
-  EXPECT_FALSE(embedded(folded({1, 3, 0})));  // the same place
+  EXPECT_FALSE(embedded(folded({1, 1, 0})));  // its tip is inside the other
+  EXPECT_FALSE(embedded(folded({2, 8, 0})));  // it holds the other's tip
+  EXPECT_FALSE(embedded(folded({5, 3, 0})));  // their sides cross
+  EXPECT_FALSE(embedded(folded({1, 3, 0})));  // both are in the same place
   EXPECT_TRUE(embedded(folded({1, 1, 0x1p-1074})));
 }
 
-// Two triangles at a common corner, in one plane and through each other.
+// Two triangles have a common corner and lie in one plane or pass through each other.
 TEST(Embedding, NeighboursAtAVertex) {
   const auto at_corner = [](const Vec3& p, const Vec3& q) {
     return Shape{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, p, q}, {corners(0, 1, 2), corners(0, 3, 4)}};
@@ -98,10 +99,10 @@ TEST(Embedding, NeighboursAtAVertex) {
   EXPECT_TRUE(embedded(at_corner({1, 1, 1}, {2, 1, 1})));
 }
 
-// Where one piece of a bent tube passes through another, wherever in the list the triangles stand.
+// One piece of a bent tube passes through another, wherever the triangles stand in the list.
 TEST(Embedding, DoesNotDependOnTheOrderOfTriangles) {
   Shape shape = test::capped_tube(6, 24, 0.4, 12);
-  for (Vec3& p : shape.positions) {  // wound into a loop and a half of a helix without pitch
+  for (Vec3& p : shape.positions) {  // wound into one and a half turns of a helix without pitch
     const double angle = p.x() * 0.8;
     p = Vec3((2 + p.y()) * std::cos(angle), (2 + p.y()) * std::sin(angle), p.z());
   }
@@ -113,7 +114,7 @@ TEST(Embedding, DoesNotDependOnTheOrderOfTriangles) {
   }
 }
 
-// A tree shaped by another frame finds the same.
+// A tree that was shaped by another frame finds the same.
 TEST(Embedding, AnyReferenceWillDo) {
   const Shape apart = test::together(test::icosphere(1), test::moved(test::icosphere(1), {9, 0, 0}));
   const Shape together = test::together(test::icosphere(1), test::moved(test::icosphere(1), {1.5, 0, 0}));
@@ -127,7 +128,7 @@ TEST(Embedding, AnyReferenceWillDo) {
   }
 }
 
-// Saboteur-sized: of 640 triangles a single vertex pushed through the opposite wall.
+// A small sabotage: a single vertex of a surface of 320 triangles is pushed through the opposite wall.
 TEST(Embedding, FindsTheOneVertexThatWentThrough) {
   Shape shape = test::icosphere(2);
   EXPECT_TRUE(embedded(shape));

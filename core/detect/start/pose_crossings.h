@@ -9,7 +9,7 @@
 
 namespace cscd {
 
-// The crossing pairs of triangles of a surface in one pose after another.
+// Keeps the crossing triangle pairs of a surface while it moves from one pose to the next.
 //
 // Finding them from nothing tests every neighbourhood of the surface with exact predicates, which takes many
 // times as long as a query. But two triangles begin or cease to cross only at a moment at which a feature
@@ -22,19 +22,21 @@ class PoseCrossings {
   // `reference` shapes the tree; any frame will do. At most `most` pairs are kept for a pose.
   PoseCrossings(const TriangleMesh& mesh, std::span<const Vec3> reference, std::size_t most);
 
-  // Whether the crossings of these very positions, bit for bit, are known without work.
+  // Returns whether `positions` are those last asked for, bit for bit, so that
+  // their crossings are known already.
   bool knows(std::span<const Vec3> positions) const;
 
-  // The positions last asked for, and what crosses there.
+  // The positions last asked for, and the crossings in them.
   std::span<const Vec3> positions() const { return positions_; }
   const Crossings& crossings() const { return crossings_; }
 
-  // Finds the crossings from nothing.
+  // Finds the crossings in `positions` from nothing.
   const Crossings& find(std::span<const Vec3> positions);
 
-  // Derives them from the pose last asked for: every vertex moved from there in a straight line, and
-  // `touched` holds all feature pairs that touched on the way, decided or not. Finds them from nothing where
-  // the last pose's pairs are not all known.
+  // Derives the crossings in `positions` from the pose last asked for. Every vertex must have moved from
+  // there in a straight line, and `touched` must hold all feature pairs that touched on the way, contacts and
+  // undecided ones. If no pose was asked for yet, or the last pose has more crossing pairs than were kept,
+  // this finds the crossings from nothing.
   const Crossings& follow(std::span<const Vec3> positions, const ContactSet& touched);
 
  private:

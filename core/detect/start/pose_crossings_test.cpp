@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kAll = 1'000'000;
 
-// All feature pairs of a mesh that touch on the way, by asking about every one.
+// Returns all feature pairs of a mesh that touch on the way, found by asking about every feature pair.
 ContactSet all_contacts(const TriangleMesh& mesh, const Motion& motion) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");
   ContactSet found;
@@ -37,7 +37,7 @@ ContactSet all_contacts(const TriangleMesh& mesh, const Motion& motion) {
   return found;
 }
 
-// An octahedron at rest and one that tumbles through it, both a little deformed at every step.
+// One octahedron rests and another tumbles through it. Both are a little deformed at every step.
 struct Tumbling {
   test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
   TriangleMesh mesh = shape.mesh();
@@ -82,7 +82,7 @@ TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
   EXPECT_GT(free, 3u) << "some poses must be embedded";
 }
 
-// The premise: whoever withholds what touched gets another answer.
+// The premise: if contacts are withheld, the crossings that follow from the rest are wrong.
 TEST(PoseCrossings, NeedEverythingThatTouched) {
   Tumbling two;
   PoseCrossings followed(two.mesh, two.shape.positions, kAll);
@@ -108,7 +108,7 @@ TEST(PoseCrossings, KnowThePoseBitForBit) {
   EXPECT_FALSE(crossings.knows(other));
 }
 
-// Where not all pairs were kept, nothing can be derived from them.
+// If not all pairs were kept, the crossings are found from nothing.
 TEST(PoseCrossings, FindFromNothingWhatTheyCannotDerive) {
   const test::Shape shape = test::together(test::octahedron(), test::octahedron());
   const TriangleMesh mesh = shape.mesh();

@@ -5,7 +5,7 @@
 namespace cscd {
 namespace {
 
-// All triangles within some rings round one, itself included.
+// Returns all triangles within some rings round one triangle, that triangle included.
 std::vector<TriangleId> within_rings(const TriangleMesh& mesh, TriangleId center, int rings) {
   std::vector<TriangleId> inside{center};
   std::size_t begin = 0;
@@ -49,8 +49,8 @@ std::span<const std::uint32_t> RestCrossings::near(TriangleId triangle) const {
 bool RestCrossings::explains(const CrossingPair& pair) const {
   if (empty()) return false;
   if (pairs_.contains(pair)) return true;
-  // One triangle near the first of a crossing, the other near its second: their numbers differ by the last
-  // bit.
+  // The pair is explained if one triangle is near the first triangle of a crossing and the other is near its
+  // second. The numbers of these two entries differ in the last bit.
   const std::span<const std::uint32_t> others = near(pair.second);
   return std::ranges::any_of(
       near(pair.first), [&](std::uint32_t number) { return std::ranges::binary_search(others, number ^ 1); });

@@ -21,22 +21,23 @@ class RestCrossings {
   static constexpr int kRings = 2;  // a ring: all triangles that share a vertex with those inside
 
   RestCrossings() = default;  // explains nothing
-  // All pairs of `at_rest` have to be kept. `mesh` must outlive this.
+  // Takes the crossings at rest, all of which must be kept. `mesh` must outlive the object.
   RestCrossings(const TriangleMesh& mesh, const Crossings& at_rest);
 
   bool empty() const { return pairs_.pairs.empty(); }
+  // Returns whether a triangle pair that crosses is explained.
   bool explains(const CrossingPair& pair) const;
   // Whether a pair of triangles that is explained carries the feature pair.
   bool explains(const FeaturePair& pair) const;
 
  private:
-  // The crossings near a triangle, as numbers of pairs_: 2 i for a triangle near the first triangle of pair
-  // i, 2 i + 1 for one near the second. Compressed rows, each sorted.
+  // Returns the crossings at rest that are near a triangle, in ascending order. Number 2 i means that the
+  // triangle is near the first triangle of pair i, number 2 i + 1 that it is near the second.
   std::span<const std::uint32_t> near(TriangleId triangle) const;
 
   const TriangleMesh* mesh_ = nullptr;
   Crossings pairs_;
-  std::vector<std::uint32_t> offset_, near_;
+  std::vector<std::uint32_t> offset_, near_;  // row of triangle t: near_[offset_[t] .. offset_[t + 1])
 };
 
 }  // namespace cscd

@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::size_t kAll = 1'000'000;
 
-// A ball that looks out of a larger one, as an eye does.
+// A small ball looks out of a larger one, as an eye does.
 struct Eye {
   test::Shape shape = test::together(test::icosphere(3), test::moved(test::icosphere(2), {0.9, 0, 0}, 0.3));
   TriangleMesh mesh = shape.mesh();
   EmbeddingTest test{mesh, shape.positions};
 
-  // The small ball moved by so much, the large one where it is.
+  // Returns the positions with the small ball moved by `by` and the large one where it is.
   std::vector<Vec3> moved(const Vec3& by) const {
     std::vector<Vec3> x = shape.positions;
     for (std::size_t v = test::icosphere(3).positions.size(); v < x.size(); ++v) x[v] += by;
@@ -54,7 +54,7 @@ TEST(RestCrossings, ExplainFeaturePairsOfTheirTriangles) {
   EXPECT_FALSE(RestCrossings().explains(FeaturePair::of(eye.mesh.corners(head)[0], ball)));
 }
 
-// A crease of one component: its neighbours are told.
+// A surface of one component crosses itself. Triangle pairs beside the crossing ones are not explained.
 TEST(RestCrossings, InsideOneComponentExplainThePairsAlone) {
   test::Shape shape = test::icosphere(2);
   shape.positions[0] = -1.05 * shape.positions[0];
