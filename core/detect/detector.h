@@ -26,9 +26,8 @@ struct Report {
   StageTimes ms;
 };
 
-// Finds the contacts of one interval after another. All positions of an interval must be finite numbers. No
-// detector logs or throws. A detector whose strategy promises it (Strategy::settles) allocates no memory once
-// it has seen its largest interval.
+// Finds the contacts of one interval after another. A detector whose strategy promises it (Strategy::settles)
+// allocates no memory once it has seen its largest interval.
 class Detector {
  public:
   virtual ~Detector() = default;

@@ -13,10 +13,9 @@ namespace cscd {
 //
 // Finding them from nothing tests every neighbourhood of the surface with exact predicates, which takes many
 // times as long as a query. But two triangles begin or cease to cross only at a moment at which a feature
-// pair that they carry touches (theorem "what crosses at a start follows from what touched before it" in
-// core/soundness.md). So a caller who knows all feature pairs that touched on the way from a known pose has
-// to look at their carriers alone. Where nothing touched, the same pairs cross as before: in particular, an
-// embedded pose stays embedded.
+// pair that they carry touches (theorem "crossings follow from contacts" in core/soundness.md). So a caller
+// who knows all feature pairs that touched on the way from a known pose has to look at their carriers alone.
+// Where nothing touched, the same pairs cross as before: in particular, an embedded pose stays embedded.
 class PoseCrossings {
  public:
   // `reference` shapes the tree; any frame will do. At most `most` pairs are kept for a pose.

@@ -21,7 +21,7 @@ namespace cscd::fast {
 // positive.
 //
 // Theorem. If triangles A and B of S meet in x at time t, and no triangle of U is seen in the direction of x,
-// then x lies on a vertex or edge that A and B share. Proof: see core/soundness.md, "caps keep all contacts".
+// then x lies on a vertex or edge that A and B share. Proof: core/soundness.md.
 // (Triangles are counted as the mesh lists them: two with the same corners are two.)
 //
 // So a pair of triangles of one cluster carries no contact if one of the two is clear: nothing of U is seen
