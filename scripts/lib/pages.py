@@ -1,9 +1,9 @@
 """Parts of Markdown pages."""
 
 
-def table(head, rows):
-    """Lines of a table: the first column to the left, numbers to the right."""
-    rule = "|---|" + "---:|" * (len(head) - 1)
+def table(head, rows, text_columns=1):
+    """Lines of a table. The first columns hold text and stand to the left, the others numbers, to the right."""
+    rule = "|" + "---|" * text_columns + "---:|" * (len(head) - text_columns)
     return ["| " + " | ".join(head) + " |", rule] + ["| " + " | ".join(row) + " |" for row in rows]
 
 

@@ -4,6 +4,7 @@ import json
 import pathlib
 import re
 import sys
+import zlib
 
 SCRIPT = pathlib.Path(sys.argv[0]).name
 
@@ -15,16 +16,19 @@ def refuse(text):
 
 
 def read_json(path):
-    """The document of a JSON file, compressed with gzip or not. Throws OSError or ValueError."""
+    """The document of a JSON file, compressed with gzip or not. Raises OSError or ValueError."""
     content = pathlib.Path(path).read_bytes()
-    return json.loads(gzip.decompress(content) if content[:2] == b"\x1f\x8b" else content)
+    try:
+        return json.loads(gzip.decompress(content) if content[:2] == b"\x1f\x8b" else content)
+    except (EOFError, zlib.error) as error:
+        raise ValueError(str(error)) from error
 
 
 def read_record(path, schema, command):
     """A record of that schema, which `command` writes; refuses anything else."""
     try:
         record = read_json(path)
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, ValueError) as error:
         refuse(f"{path}: cannot be read ({error}); name a file that `{command}` wrote")
     if not isinstance(record, dict) or record.get("schema") != schema:
         refuse(f"{path}: its schema is not {schema}; write it anew with `{command}`")
