@@ -1,0 +1,205 @@
+"""The charts of scripts/scale-figures: a panel a scene, a curve a strategy."""
+from charts import (STAGES, label_panels, left_out, line_style, log_axis, marker, panels, plt, save, shown, spans_decades,
+                    ticks)
+from scale_record import count, per_triangle, row, series, speedups, stage
+
+FEW_ROWS = 4  # strategies in a chart that has two curves for each
+
+
+def style(name):
+    return {**line_style(name), "marker": marker(name)}
+
+
+def draw_curve(axes, points, label, law=None, **look):
+    """Draws measured points and, dotted, the power law fitted to them, whose exponent follows the label. Returns the end of the
+    curve for its label; nothing where nothing was measured."""
+    if not points:
+        return []
+    if law:
+        xs = [points[0][0], points[-1][0]]
+        axes.plot(xs, [law["factor"] * x ** law["exponent"] for x in xs], lw=0.9, ls=":", color=look["color"])
+        label += f" {law['exponent']:.2f}".replace("-", "−")
+    axes.plot(*zip(*points), **{"ms": 4.5, "lw": 1.4, **look})
+    return [(*points[-1], label, look["color"])]
+
+
+def triangle_ticks(axes, record, scene):
+    sizes = sorted({s["triangles"] for s in record.of("size", scene)})
+    ticks(axes, sizes, lambda n: f"{n / 1e6:.1f} M" if n >= 1e6 else f"{n / 1e3:.0f} k")
+
+
+def draw_scenes(scenes, folder, name, draw, x_label, y_label, title=""):
+    """One panel a scene. `draw(axes, scene)` draws its curves, sets its axes, and returns the curves' ends."""
+    if not scenes:
+        return False
+    figure, cells = panels(len(scenes), title_height=0.4 if title else 0.1)
+    labelled = []
+    for number, (axes, scene) in enumerate(zip(cells, scenes)):
+        labelled.append((axes, draw(axes, scene)))
+        axes.set_title(scene, fontsize=9)
+        axes.set_xlabel(x_label)
+        if number % 2 == 0:
+            axes.set_ylabel(y_label)
+    if title:
+        figure.suptitle(title, fontsize=9)
+    label_panels(labelled)
+    save(figure, folder, f"scale-{name}")
+    return True
+
+
+def draw_size(record, folder, everything):
+    names, missing = shown(record.names("size"), everything)
+
+    def draw(axes, scene):
+        ends = [end for name in names for end in draw_curve(
+            axes, series(record.of("size", scene), name, stage("total")), name, record.fit("size", scene, name, "total"),
+            **style(name))]
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        triangle_ticks(axes, record, scene)
+        return ends
+
+    return draw_scenes(record.scenes("size"), folder, "size", draw, "triangles", "ms a query, refit included",
+                       "dotted: fitted power laws, their exponents beside the names" + left_out(missing))
+
+
+def draw_stages(record, folder, everything):
+    names = record.names("size")
+
+    def draw(axes, scene):
+        ends = [end for key, colour in STAGES.items() for end in draw_curve(
+            axes, series(record.of("size", scene), names[0], stage(key)), key, record.fit("size", scene, names[0], key),
+            color=colour, marker="o")]
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        triangle_ticks(axes, record, scene)
+        return ends
+
+    return draw_scenes(record.scenes("size"), folder, "stages", draw, "triangles", f"{names[0]}, ms" if names else "",
+                       "dotted: fitted power laws, their exponents beside the names")
+
+
+def draw_pairs(record, folder, everything):
+    names, missing = shown(record.names("size"), everything, FEW_ROWS)
+
+    def draw(axes, scene):
+        ends = []
+        for name in names:
+            for key, look in (("bvot", {"ls": "-"}), ("pctp", {"ls": "--", "mfc": "white"})):
+                ends += draw_curve(axes, series(record.of("size", scene), name, count(key)), f"{name} {key.upper()}",
+                                   record.fit("size", scene, name, key), **{**style(name), **look})
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        triangle_ticks(axes, record, scene)
+        return ends
+
+    return draw_scenes(record.scenes("size"), folder, "pairs", draw, "triangles", "a query",
+                       "filled: overlap tests (BVOT); hollow: triangle pairs (PCTP), zero left out" + left_out(missing))
+
+
+def draw_memory(record, folder, everything):
+    names, missing = shown(record.names("size"), everything)
+
+    def draw(axes, scene):
+        ends = [end for name in names
+                for end in draw_curve(axes, series(record.of("size", scene), name, per_triangle), name, **style(name))]
+        axes.set_xscale("log")
+        axes.set_ylim(bottom=0)
+        triangle_ticks(axes, record, scene)
+        return ends
+
+    return draw_scenes(record.scenes("size"), folder, "memory", draw, "triangles", "bytes a triangle",
+                       left_out(missing).strip())
+
+
+def draw_step(record, folder, everything):
+    names, missing = shown(record.names("step"), everything)
+
+    def draw(axes, scene):
+        steps = record.of("step", scene)[0]["steps"]
+        ends = []
+        for name in names:
+            ends += draw_curve(axes, [(step["step"], asked["ms"]["total"]) for step in steps
+                                      if (asked := row(step, name)) and "ms" in asked], name, **style(name))
+        for step in steps:
+            if step["colliding"]:
+                axes.axvspan(step["step"] / 1.19, step["step"] * 1.19, color="#D55E00", zorder=0, lw=0,
+                             alpha=0.2 * step["colliding"] / len(step["starts"]))
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        ticks(axes, [step["step"] for step in steps], lambda length: f"{length:g}")
+        return ends
+
+    return draw_scenes(record.scenes("step"), folder, "step", draw, "step, in frame steps", "ms a query, refit included",
+                       "shaded: steps with contacts, the darker the more of their intervals have one" + left_out(missing))
+
+
+def draw_bones(record, folder, everything):
+    names, missing = shown(record.names("bones"), everything)
+
+    def draw(axes, scene):
+        subjects = record.of("bones", scene)
+        ends = [end for name in names for end in draw_curve(
+            axes, series(subjects, name, stage("total"), "bones"), name, record.fit("bones", scene, name, "total"),
+            **style(name))]
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        ticks(axes, [s["bones"] for s in subjects], str)
+        return ends
+
+    return draw_scenes(record.scenes("bones"), folder, "bones", draw, "bones", "ms a query, refit included",
+                       left_out(missing).strip())
+
+
+def draw_threads(record, folder, everything):
+    names, missing = shown(record.names("threads"), everything)
+
+    def draw(axes, scene):
+        counts = [s["threads"] for s in record.of("threads", scene)]
+        axes.plot(counts, counts, lw=0.9, ls=":", color="#666666")
+        ends = [(counts[-1], counts[-1], "ideal", "#666666")]
+        for name in names:
+            ends += draw_curve(axes, list(speedups(record, scene, name).items()), name, **style(name))
+        if spans_decades(counts):
+            axes.set_xscale("log")
+        axes.set_ylim(bottom=0)
+        ticks(axes, counts, str)
+        return ends
+
+    scenes = [scene for scene in record.scenes("threads") if len(record.of("threads", scene)) > 1]
+    return draw_scenes(scenes, folder, "threads", draw, "threads", "times as fast as on one",
+                       "dotted: as many times as fast as there are threads" + left_out(missing))
+
+
+def draw_contacts(record, folder, most):
+    """Bars; a dotted line at `most`, the ratio that contacts may cost."""
+    scenes, names = record.scenes("contacts"), record.names("contacts")
+    if not scenes:
+        return False
+    figure, axes = plt.subplots(figsize=(8, 3.4))
+    wide = 0.8 / len(names)
+    for i, name in enumerate(names):
+        found = [(x - 0.4 + (i + 0.5) * wide, ratio) for x, scene in enumerate(scenes)
+                 if (ratio := record.contacts.get((scene, name, "median_interval")))]
+        colour = line_style(name)["color"]
+        axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=name, color=colour,
+                 **({"alpha": 0.55, "hatch": "////", "edgecolor": "white"} if name.endswith(" --first") else {}))
+        for x, r in found:
+            if "low" in r:
+                axes.plot([x] * 2, [r["low"], r["high"]], color="#666666", lw=1)
+    axes.axhline(1, color="#666666", lw=0.8)
+    axes.axhline(most, color="#666666", lw=0.8, ls=":")
+    axes.set_xticks(range(len(scenes)), scenes)
+    axes.grid(axis="x", visible=False)
+    axes.set_ylabel("time with contacts,\nover time without")
+    axes.legend(fontsize=8, ncols=min(4, len(names)), loc="lower center", bbox_to_anchor=(0.5, 1))
+    save(figure, folder, "scale-contacts")
+    return True
+
+
+def draw_all(record, folder, everything, most_for_contacts):
+    """Draws what the record has; returns the names of the charts that were drawn."""
+    drawings = {"size": draw_size, "stages": draw_stages, "pairs": draw_pairs, "memory": draw_memory, "step": draw_step,
+                "bones": draw_bones, "threads": draw_threads}
+    drawn = {name for name, draw in drawings.items() if draw(record, folder, everything)}
+    return drawn | ({"contacts"} if draw_contacts(record, folder, most_for_contacts) else set())

@@ -1,0 +1,65 @@
+"""What pages and charts ask of a record of `cscd scale`."""
+
+
+class Record:
+    """Subjects by study and scene, and what is asked of them."""
+
+    def __init__(self, record):
+        self.raw = record
+        self.fits = {(f["study"], f["scene"], f["strategy"], f["quantity"]): f for f in record["fits"]}
+        self.ratios = {(r["scene"], r["strategy"], r["step"]): r for r in record["step_ratios"]}
+        self.contacts = {(r["scene"], r["strategy"], r["of"]): r for r in record["contact_ratios"]}
+        names = [row["name"] for subject in record["subjects"] for row in subject["strategies"]]
+        self.strategies = list(dict.fromkeys(names))
+
+    def of(self, study, scene=None):
+        return [s for s in self.raw["subjects"] if s["study"] == study and scene in (None, s["scene"])]
+
+    def scenes(self, study):
+        return list(dict.fromkeys(s["scene"] for s in self.of(study)))
+
+    def names(self, study):
+        found = {row["name"] for s in self.of(study) for row in s["strategies"]}
+        return [name for name in self.strategies if name in found]
+
+    def fit(self, study, scene, strategy, quantity):
+        found = self.fits.get((study, scene, strategy, quantity))
+        return found if found and found["exponent"] is not None else None
+
+    def exponent(self, study, scene, strategy, quantity):
+        found = self.fit(study, scene, strategy, quantity)
+        return f"{found['exponent']:.2f}" if found else "–"
+
+
+def row(step, name):
+    return next((r for r in step["strategies"] if r["name"] == name), None)
+
+
+def series(subjects, name, value, x="triangles"):
+    """Points of one strategy over its subjects, positive values alone."""
+    points = []
+    for subject in subjects:
+        prepared = next((r for r in subject["strategies"] if r["name"] == name), None)
+        asked = row(subject["steps"][0], name)
+        y = value(prepared, asked) if prepared and asked else None
+        if y:
+            points.append((subject[x], y))
+    return sorted(points)
+
+
+def stage(key):
+    return lambda prepared, asked: asked.get("ms", {}).get(key)
+
+
+def count(key):
+    return lambda prepared, asked: asked["counts"].get(key)
+
+
+def per_triangle(prepared, asked):
+    return prepared.get("held_bytes_per_triangle")
+
+
+def speedups(record, scene, name):
+    """Times as fast as on one thread, by threads; nothing where one has no time."""
+    ms = dict(series(record.of("threads", scene), name, stage("total"), "threads"))
+    return {threads: ms[1] / value for threads, value in ms.items()} if 1 in ms else {}
