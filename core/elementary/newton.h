@@ -4,12 +4,13 @@
 
 namespace cscd {
 
-// The paper's elementary test: non-penetration filter, then interval Newton on the coplanarity cubic.
+// The paper's elementary test (section 7.1): the non-penetration filter, then interval Newton on the
+// coplanarity cubic. newton_search.h describes the method and the limits of its answers.
 Answer newton_vertex_face(const MovingVertexFace& query);
 Answer newton_edge_edge(const MovingEdgeEdge& query);
 
-// The same in single precision, as games have it: coordinates are rounded to floats first, which alone may
-// move features by 2^-24 of their distance from the origin.
+// The same test in single precision, as games use it. It first rounds the coordinates to floats, and that
+// rounding alone may move features by 2^-24 of their distance from the origin.
 Answer newton_float_vertex_face(const MovingVertexFace& query);
 Answer newton_float_edge_edge(const MovingEdgeEdge& query);
 

@@ -10,18 +10,20 @@
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/relative_box.h"
 
-// Interval Newton on the coplanarity cubic (section 7.1 of the paper; the root finder is the one customary
-// with the filter of Tang et al. 2010), in double or in single precision.
+// Interval Newton on the coplanarity cubic (section 7.1 of the paper; this root finder is the customary
+// companion of the filter of Tang et al. 2010), in double or in single precision.
 //
-// The roots in [0, 1] are enclosed in ascending order; at each the features are tested for touching. The
-// filter's "apart" is a proof for the coordinates as they are in that precision. What comes after it is not:
-// an enclosure is found with rounded coefficients, and touching is judged at its middle within a tolerance.
-// Hence contacts may be missed or invented near the limits of the precision; the harness counts both against
-// the exact referee. Degenerate cases follow rule degenerate: a cubic that may be zero throughout is reduced to two
-// dimensions, and what is left open is `undecided`, never "apart".
+// The search encloses the roots of the cubic in [0, 1] in ascending order and tests at each root whether the
+// features touch. The filter's "apart" is a proof for the coordinates as they stand in that precision. The
+// answers of the search are no proofs: an enclosure is found with rounded coefficients, and touching is
+// judged at its middle within a tolerance. Hence contacts may be missed or invented near the limits of the
+// precision. The harness counts both against the exact referee.
+//
+// Degenerate cases follow rule degenerate (core/soundness.md): a cubic that may be zero throughout is reduced
+// to two dimensions, and a case that stays open is `undecided`, never "apart".
 namespace cscd {
 
-// What a query is made of in single precision.
+// Points, queries, vectors and cubics in single precision.
 struct FloatPoint {
   Eigen::Vector3f start, end;
   Eigen::Vector3f at(float t) const { return (1 - t) * start + t * end; }
@@ -34,7 +36,7 @@ struct FloatEdgeEdge {
 };
 struct FloatVector {
   Eigen::Vector3f start, end;
-  // No number where coordinates were beyond the range of floats.
+  // The largest absolute component at both ends. NaN if coordinates were beyond the range of floats.
   float largest() const {
     Eigen::Matrix<float, 3, 2> ends;
     ends << start, end;
@@ -49,7 +51,7 @@ struct FloatCubic {
 inline FloatVector difference(const FloatPoint& from, const FloatPoint& to) {
   return {to.start - from.start, to.end - from.end};
 }
-// As triple_product of bernstein.h, whose bound holds for any unit roundoff.
+// The single-precision twin of triple_product (bernstein.h), whose error bound holds for any unit roundoff.
 inline FloatCubic float_triple_product(const FloatVector& a, const FloatVector& b, const FloatVector& c) {
   const Eigen::Vector3f n0 = a.start.cross(b.start), n1 = a.start.cross(b.end) + a.end.cross(b.start),
                         n2 = a.end.cross(b.end);
@@ -86,16 +88,20 @@ inline bool relative_boxes_apart(const FloatEdgeEdge& q) {
 }
 
 struct NewtonLimits {
-  // Width at which an enclosure of a root counts as found.
+  // The width below which an enclosure of a root is narrow enough.
   double root_width;
-  // Barycentric slack when touching is judged at a root: root width times motion, for features that move up
-  // to 2^10 (in single precision 2^6) times their own size in the interval. The paper states no tolerance.
+  // The barycentric slack with which touching is judged at a root. It is the root width times the motion, for
+  // features that move up to 2^10 (in single precision 2^6) times their own size in the interval. The paper
+  // states no tolerance.
   double inside;
-  // Sine of the angle below which a normal has no direction that the precision can trust.
+  // The sine of the smallest angle between two vectors whose common normal has a direction that this
+  // precision can trust.
   double parallel;
-  // Errors of the cubic between which products of four lengths, as in squared areas, stay within range.
+  // The range of the cubic's error in which products of four lengths, as in squared areas, neither underflow
+  // nor overflow.
   double least_error, most_error;
 };
+// The types and limits of each precision.
 struct DoubleNumbers {
   using Real = double;
   using Vec = Vec3;
@@ -117,6 +123,7 @@ struct FloatNumbers {
   static constexpr NewtonLimits limits{0x1p-18, 0x1p-12, 0x1p-12, 0, 1e24};
 };
 
+// The search itself, for `Numbers` = DoubleNumbers or FloatNumbers.
 template <class Numbers>
 struct NewtonSearch {
   using Real = typename Numbers::Real;
@@ -134,8 +141,8 @@ struct NewtonSearch {
 
   enum class Touch { no, yes, unclear };
 
-  // Is the point within kInside of the segment a + [0, 1] ab, in lengths of the segment or of its own
-  // distance from a?
+  // True if the point is within kInside of the segment a + [0, 1] ab, measured in the length of the segment
+  // or in the point's distance from a, whichever is larger.
   static bool near_segment(const Vec& p, const Vec& a, const Vec& ab) {
     const Vec ap = p - a;
     const Real length = ab.squaredNorm();
@@ -143,16 +150,16 @@ struct NewtonSearch {
     return (ap - u * ab).squaredNorm() <= kInside * kInside * std::max(length, ap.squaredNorm());
   }
 
-  // Do two vectors whose cross product has this squared length span a plane? Not if they are parallel, nor if
-  // one is so much shorter that rounding may have made its direction. False for NaN.
+  // True if two vectors, whose cross product has this squared length, certainly span a plane. False if they
+  // are parallel, if one vector is so much shorter that its direction may come from rounding, and for NaN.
   static bool spans(Real squared_cross, const Vec& a, const Vec& b) {
     const Real longest = std::max(a.squaredNorm(), b.squaredNorm());
     return squared_cross > kParallel * kParallel * longest * longest;
   }
 
-  // Of two features known to be in one plane at time t: how far, in barycentric terms, the touching point is
-  // inside each border, all at least 0 where they touch. Nothing where a feature collapses or the two are
-  // parallel.
+  // The margins of two features that are in one plane at time t: how far, in barycentric terms, the touching
+  // point lies inside each border. The features touch if all margins are at least 0. Returns nullopt if a
+  // feature collapses or the two features are parallel.
   static std::optional<std::array<Real, 3>> margins(const VertexFace& q, Real t) {
     const Vec a = q.corner[0].at(t), ab = q.corner[1].at(t) - a, ac = q.corner[2].at(t) - a,
               av = q.vertex.at(t) - a;
@@ -172,19 +179,20 @@ struct NewtonSearch {
     return std::array{u, 1 - u, v, 1 - v};
   }
 
-  // Where there are no margins. The triangle is hardly more than its edges.
+  // True if the features are close to touching at a time without margins. The triangle is then hardly more
+  // than its edges.
   static bool near_collapsed(const VertexFace& q, Real t) {
     const Vec v = q.vertex.at(t), a = q.corner[0].at(t), b = q.corner[1].at(t), c = q.corner[2].at(t);
     return near_segment(v, a, b - a) || near_segment(v, b, c - b) || near_segment(v, c, a - c);
   }
-  // Parallel segments are nearest to each other at an end.
+  // Parallel segments have their smallest distance at an end.
   static bool near_collapsed(const EdgeEdge& q, Real t) {
     const Vec a = q.first[0].at(t), b = q.first[1].at(t), c = q.second[0].at(t), d = q.second[1].at(t);
     return near_segment(a, c, d - c) || near_segment(b, c, d - c) || near_segment(c, a, b - a) ||
            near_segment(d, a, b - a);
   }
 
-  // Do the features touch at time t, when they are known to be in one plane?
+  // Tells whether the features touch at a time t at which they are in one plane.
   template <class Query>
   static Touch touch(const Query& q, Real t) {
     const auto inside = margins(q, t);
@@ -192,6 +200,7 @@ struct NewtonSearch {
     return *std::min_element(inside->begin(), inside->end()) >= -kInside ? Touch::yes : Touch::no;
   }
 
+  // `during` gives the part of a motion between the times `low` and `high`, as a motion over [0, 1].
   static Point during(const Point& p, Real low, Real high) { return {p.at(low), p.at(high)}; }
   static VertexFace during(const VertexFace& q, Real low, Real high) {
     const auto part = [=](const Point& p) { return during(p, low, high); };
@@ -202,11 +211,12 @@ struct NewtonSearch {
     return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
   }
 
-  // What the search has found; "apart" until something touches.
+  // The result of a search so far. It is "apart" until the features may touch at some time.
   struct FirstTouch {
     Answer answer{Verdict::apart, 0};
 
-    // Returns true when the search is over.
+    // Takes the finding at the next root, whose time is `earliest` or later. Returns true if the search is
+    // over.
     bool offer(Touch found, Real earliest) {
       if (found == Touch::no) return false;
       answer = {found == Touch::yes ? Verdict::contact : Verdict::undecided, earliest};
@@ -214,7 +224,8 @@ struct NewtonSearch {
     }
   };
 
-  // Both ends, and at most two roots for each of four lines and one for each of three axes of four pairs.
+  // Candidate times. There are at most 22: both ends, two roots for each of four lines, and one root for each
+  // of three axes of four pairs.
   struct Times {
     std::array<Real, 22> at{};
     std::size_t count = 0;
@@ -223,8 +234,8 @@ struct NewtonSearch {
     }
   };
 
-  // When p is on the line ab: the roots of twice the signed area of (a, b, p), a quadratic in Bernstein form,
-  // projected along the axis that shows most of it.
+  // Adds the times at which p is on the line ab. They are the roots of twice the signed area of (a, b, p), a
+  // quadratic in Bernstein form. The area is projected along the axis along which it looks largest.
   static void add_crossings(const Point& a, const Point& b, const Point& p, Times& times) {
     const Vector ab = difference(a, b), ap = difference(a, p);
     const Vec area[3] = {ab.start.cross(ap.start), (ab.start.cross(ap.end) + ab.end.cross(ap.start)) / 2,
@@ -239,7 +250,8 @@ struct NewtonSearch {
     times.add(c0 / q);
   }
 
-  // When p and q have a coordinate in common: for what moves along one line, where nothing crosses a line.
+  // Adds the times at which p and q have a coordinate in common. Points that move along one line need this,
+  // because there no point ever crosses the line of an edge.
   static void add_meetings(const Point& p, const Point& q, Times& times) {
     for (int axis = 0; axis < 3; ++axis) {
       const Real start = q.start[axis] - p.start[axis], end = q.end[axis] - p.end[axis];
@@ -247,8 +259,9 @@ struct NewtonSearch {
     }
   }
 
-  // Coplanar throughout: features can begin to touch only at t = 0 or when a point crosses the line of an
-  // edge, or, on one line, meets another point.
+  // Adds the times at which features that are coplanar throughout can begin to touch, other than t = 0: the
+  // times at which a point crosses the line of an edge or, if all points are on one line, meets another
+  // point.
   static void add_events(const VertexFace& q, Times& times) {
     for (int k = 0; k < 3; ++k) {
       add_crossings(q.corner[k], q.corner[(k + 1) % 3], q.vertex, times);
@@ -263,12 +276,13 @@ struct NewtonSearch {
     }
   }
 
+  // The answer for features that are coplanar throughout, within rounding.
   template <class Query>
   static Answer planar(const Query& query) {
     if (relative_boxes_apart(query)) return {Verdict::apart, 0};
     Times times;
     times.add(0);
-    times.add(1);  // a root there may be rounded past it
+    times.add(1);  // because a root at 1 may be rounded past 1
     add_events(query, times);
     std::sort(times.at.begin(), times.at.begin() + times.count);
     FirstTouch search;
@@ -277,9 +291,10 @@ struct NewtonSearch {
     return search.answer;
   }
 
-  // The same when all that is known is that they may be in one plane between two times, near a double root
-  // mostly. "No" only where one border keeps them apart by more than its margin changes, or where parallel
-  // features stay apart as if they were in one plane throughout.
+  // Tells whether the features touch at some time between `low` and `high`, where it is known only that they
+  // may be in one plane at some time between. This is mostly so near a double root. The result is "no" in two
+  // cases: one border keeps the features apart by more than its margin changes, or parallel features stay
+  // apart as if they were in one plane throughout.
   template <class Query>
   static Touch touch_between(const Query& q, Real low, Real high) {
     if (relative_boxes_apart(during(q, low, high))) return Touch::no;
@@ -295,7 +310,8 @@ struct NewtonSearch {
     return inside ? Touch::yes : Touch::unclear;
   }
 
-  // Polar form of the cubic: its control points on [a, b] are blossom(a,a,a), (a,a,b), (a,b,b), (b,b,b).
+  // The polar form of the cubic. The control points of the cubic on [a, b] are blossom(a,a,a), (a,a,b),
+  // (a,b,b) and (b,b,b).
   static Real blossom(const Real (&c)[4], Real r, Real s, Real t) {
     const auto mix = [](Real x, Real y, Real w) { return (1 - w) * x + w * y; };
     const Real d0 = mix(c[0], c[1], r), d1 = mix(c[1], c[2], r), d2 = mix(c[2], c[3], r);
@@ -310,7 +326,8 @@ struct NewtonSearch {
                                blossom(f.c, low, high, high), blossom(f.c, high, high, high)};
       const auto [least, most] = std::minmax({control[0], control[1], control[2], control[3]});
       if (least > f.error || most < -f.error) return false;
-      // Narrow enough, or flat within rounding: no cut tells more about where the root is.
+      // If the enclosure is narrow enough, or the cubic is flat within rounding, no further cut tells more
+      // about the place of the root.
       if (high - low <= kRootWidth) return search.offer(touch(query, (low + high) / 2), low);
       if (least >= -f.error && most <= f.error) return search.offer(touch_between(query, low, high), low);
 
@@ -338,7 +355,7 @@ struct NewtonSearch {
     }
   }
 
-  // In this precision. Where products may leave the range, nothing is said.
+  // Answers the query in this precision. Returns nullopt if products may underflow or overflow.
   template <class Query>
   static std::optional<Answer> answer(const Query& query) {
     const Cubic f = coplanarity(query);

@@ -8,14 +8,16 @@
 
 namespace cscd {
 
-// Answers of filtered_exact to some of eight queries: one bit each for those that have one.
+// Answers to some of eight queries.
 struct LaneAnswers {
-  unsigned decided = 0;
+  unsigned decided = 0;  // bit l is set if answer[l] holds the answer to query l
   std::array<Answer, kLanes> answer;
 };
 
-// Eight queries or fewer side by side, in double precision: those that are never in one plane, or certainly
-// once. What is decided is what the scalar stages say, time included, as there is but one right answer.
+// Answers queries side by side in double precision, at most eight, as far as that precision can prove the
+// answers. It decides queries whose points are never in one plane, and most queries whose points certainly
+// come into one plane once. The answers, times included, equal those of filtered_exact one by one, because
+// there is only one right answer.
 LaneAnswers decide_in_lanes(std::span<const MovingVertexFace> queries);
 LaneAnswers decide_in_lanes(std::span<const MovingEdgeEdge> queries);
 

@@ -6,16 +6,17 @@
 
 namespace cscd {
 
-// Contact decided exactly, for any finite coordinates. The time of a contact is the largest double that is
-// not above the earliest time: never late, early by less than 2^-53, and the same as the referee's.
+// Decides a contact exactly, for any finite coordinates. The verdict is never `undecided`. The time of a
+// contact is the largest double that is not above the earliest contact time: it is never late, it is early by
+// less than 2^-53, and it equals the referee's time.
 Answer filtered_exact_vertex_face(const MovingVertexFace& query);
 Answer filtered_exact_edge_edge(const MovingEdgeEdge& query);
 
-// The same of many, eight side by side.
+// Answers [queries] queries, eight side by side, and writes [queries] answers.
 void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer> answers);
 void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers);
 
-// Which means the answer, with its time, took.
+// The last stage that the answer with its time needs (see filtered_exact.cpp), for tests and measurements.
 enum class ExactStage { filter, doubles, integers, referee };
 ExactStage filtered_exact_stage(const MovingVertexFace& query);
 ExactStage filtered_exact_stage(const MovingEdgeEdge& query);

@@ -5,10 +5,14 @@
 
 #include "core/geometry/feature_motion.h"
 
-// Size and place of a query, and the whole range of doubles brought to where products of coordinates neither
-// underflow nor overflow.
+// The size and the place of a query, and a scaling that brings any doubles to a range in which products of
+// coordinates neither underflow nor overflow.
+//
+// A *relative query* is a query seen from one of its own moving points (`relative`). The *extent* of a query
+// is the longest side of the box of all its points at both ends (`extent`).
 namespace cscd {
 
+// Calls visit(point) for each of the four moving points of the query.
 template <class Visit>
 void for_each_point(const MovingVertexFace& q, const Visit& visit) {
   visit(q.vertex);
@@ -20,7 +24,7 @@ void for_each_point(const MovingEdgeEdge& q, const Visit& visit) {
   for (const MovingPoint& p : q.second) visit(p);
 }
 
-// Largest absolute coordinate along each axis.
+// The largest absolute coordinate along each axis, over all points at both ends.
 template <class Query>
 Vec3 largest_coordinates(const Query& query) {
   Vec3 largest = Vec3::Zero();
@@ -30,8 +34,9 @@ Vec3 largest_coordinates(const Query& query) {
   return largest;
 }
 
-// Seen from its first corner, or its first edge's first end, in motion: whether and when features touch does
-// not change, nor how far apart they are. Every coordinate is one rounded difference.
+// `relative` gives the query as seen from one of its moving points: the first corner of the face, or the
+// first end of the first edge. The distance of the features at any t stays the same, and so do their
+// contacts. Every coordinate is one rounded difference.
 inline MovingPoint seen_from(const MovingPoint& from, const MovingPoint& p) {
   return {p.start - from.start, p.end - from.end};
 }
@@ -44,8 +49,8 @@ inline MovingEdgeEdge relative(const MovingEdgeEdge& q) {
   return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
 }
 
-// The longest side of the box of all points at both ends. Of a relative query: the length that tolerances are
-// shares of.
+// The longest side of the axis-aligned box of all points at both ends. Tolerances are given as shares of the
+// extent of the relative query.
 template <class Query>
 double extent(const Query& query) {
   Vec3 low, high;
@@ -59,6 +64,7 @@ double extent(const Query& query) {
   return (high - low).maxCoeff();
 }
 
+// `scaled` multiplies all coordinates by 2^exponent.
 inline MovingPoint scaled(const MovingPoint& p, int exponent) {
   const auto scale = [exponent](const Vec3& x) {
     return Vec3(std::ldexp(x.x(), exponent), std::ldexp(x.y(), exponent), std::ldexp(x.z(), exponent));
@@ -74,8 +80,9 @@ inline MovingEdgeEdge scaled(const MovingEdgeEdge& q, int exponent) {
   return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
 }
 
-// Times the power of two that takes the largest coordinate to [1/2, 1), if it is very small or very large.
-// Exact, but for coordinates that become subnormal: those move by at most 2^-1075.
+// Scales a query whose largest coordinate is very small or very large by the power of two that takes this
+// coordinate to [1/2, 1), and returns any other query as it is. The scaling is exact, except for coordinates
+// that become subnormal: those move by at most 2^-1075.
 template <class Query>
 Query in_range(const Query& query) {
   constexpr double small = 0x1p-64, large = 0x1p64;

@@ -5,12 +5,14 @@
 
 #include "core/geometry/feature_motion.h"
 
-// Queries brought to the size of 1 by powers of two, for coordinates whose products underflow or overflow.
-// That is exact but for coordinates that become subnormal: those may be off by 2^-1074, so far below the
-// roundings of anything that kTinyProduct and kLeastSize admit that the bounds of bernstein.h and sides.h pay
-// for it.
+// Scales a query to the size of 1 by powers of two, for coordinates whose products underflow or overflow.
+//
+// The scaling is exact, except for coordinates that become subnormal: those may be off by 2^-1074. That error
+// is covered by the bounds of bernstein.h and sides.h, because it lies far below the roundings of any numbers
+// that kTinyProduct and kLeastSize admit.
 namespace cscd {
 
+// Calls take(point) for each of the four moving points of the query; `take` may change the point.
 template <class Take>
 void for_each_point(MovingVertexFace& query, const Take& take) {
   take(query.vertex);
@@ -24,6 +26,7 @@ void for_each_point(MovingEdgeEdge& query, const Take& take) {
 
 namespace unit_scale {
 
+// The power of two that takes |x| to [1/2, 1) when x is divided by it; 0 for zero.
 inline int exponent_of(double x) {
   int exponent = 0;
   std::frexp(x, &exponent);
@@ -37,6 +40,7 @@ Vec3 largest_coordinates(Query query) {
   });
   return largest;
 }
+// Divides the coordinates along axis k by 2^exponent[k].
 template <class Query>
 Query scaled(Query query, const int (&exponent)[3]) {
   for_each_point(query, [&](MovingPoint& p) {
@@ -50,14 +54,15 @@ Query scaled(Query query, const int (&exponent)[3]) {
 
 }  // namespace unit_scale
 
-// All axes by one power of two: the same shape.
+// Scales all axes by one power of two, so that the largest coordinate lies in [1/2, 1). The shape stays.
 template <class Query>
 Query scaled_to_unit(const Query& query) {
   const int e = unit_scale::exponent_of(unit_scale::largest_coordinates(query).maxCoeff());
   return unit_scale::scaled(query, {e, e, e});
 }
 
-// Each axis by its own: contact and its time stay, lengths and angles do not.
+// Scales each axis by its own power of two, so that its largest coordinate lies in [1/2, 1). Contacts and
+// their times stay; lengths and angles change.
 template <class Query>
 Query axes_scaled_to_unit(const Query& query) {
   const Vec3 largest = unit_scale::largest_coordinates(query);
