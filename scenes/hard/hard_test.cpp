@@ -190,8 +190,7 @@ TEST(HardCases, ExactAnswersKeepUnderSymmetries) {
 // The translation moves every coordinate without rounding.
 TEST(HardCases, ExactAnswersKeepUnderExactTranslation) {
   for (const Family& family : families()) {
-    if (family.name == "extreme_scale" || family.name == "grazing")
-      continue;  // their coordinates would round
+    if (family.name == "extreme_scale" || family.name == "grazing") continue;  // would round
     for (const Kind kind : kKinds)
       for (int i = 0; i < 24; ++i) {
         Random random(kSeed + static_cast<std::uint64_t>(i));
