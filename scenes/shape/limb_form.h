@@ -16,7 +16,8 @@ class LimbForm {
     std::vector<Vec3> joints;    // at least two; the line leads from the first, inside the body, to the tip
     Parameters::Table sections;  // share of the line's length, radius_u, radius_v, shift_u, shift_v
     double tip = 0;              // the length over which the end is rounded
-    Vec3 u = Vec3::UnitX(), v = Vec3::UnitY();  // section axes at the first joint, roughly
+    // The axes of the section at the first joint. Their parts along the centre line are removed.
+    Vec3 u = Vec3::UnitX(), v = Vec3::UnitY();
   };
   // Throws InputError, whose text begins with `who`, for joints or sections that give no limb.
   LimbForm(Spec spec, const std::string& who);
