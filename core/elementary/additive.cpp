@@ -8,16 +8,20 @@
 #include "core/geometry/feature_distance.h"
 
 // Additive continuous collision detection (Li, Kaufman and Jiang, "Codimensional incremental potential
-// contact", SIGGRAPH 2021, section 5): conservative advancement in which the bound on the approach is the sum
-// of the largest displacements of the two features, the mean displacement taken off first.
+// contact", SIGGRAPH 2021, section 5). This is conservative advancement: the bound on the speed of approach
+// is the sum of the largest displacements of the two features, after the mean displacement has been
+// subtracted.
 //
-// Time advances by 0.9 of the distance over that bound, in which the features cannot meet, until the distance
-// has fallen to a share of what it was at the start; the last step is not taken. Differences: the share is
-// the parameter (the paper has one number for it and for the step), a certified filter stands in front, and a
-// limit on the steps ends in `undecided` (the paper runs on).
+// Each step advances time by 0.9 of the distance over that bound; in this time the features cannot meet. The
+// steps end when the distance has fallen to a share of the distance at the start; the last step is not taken.
 //
-// A "no" is sound in exact arithmetic; distances of nearly degenerate features may be rounded upwards, so it
-// is no proof. A "contact" may be none: features that come to within the share of their starting distance.
+// There are three differences to the paper. The share is a parameter of its own, where the paper uses one
+// number for the share and for the step. A certified filter stands in front. A limit on the number of steps
+// ends in `undecided`, where the paper runs on.
+//
+// An "apart" would be a proof in exact arithmetic. It is none here, because the distances of nearly
+// degenerate features may be rounded upwards. A "contact" may be false: it may be features that come to
+// within the share of their starting distance.
 namespace cscd {
 namespace {
 
@@ -54,7 +58,7 @@ Answer additive(const Query& given, const TestParameters& parameters) {
   double time = 0, step = (1 - parameters.tolerance) * distance / speed;
   for (std::int64_t i = 0; i < parameters.steps; ++i) {
     const double next = time + std::min(step, kStep * distance / speed);
-    if (!(next <= 1)) return {Verdict::apart, 0};  // infinite or NaN where nothing moves
+    if (!(next <= 1)) return {Verdict::apart, 0};  // `next` is infinite or NaN if nothing moves
     distance = distance_at(query, next);
     if (distance <= near) return {Verdict::contact, time};
     time = next;

@@ -35,7 +35,7 @@ TEST(Additive, FindsWhatCrossesAndIsNeverLate) {
 }
 
 TEST(Additive, TheToleranceIsAShareOfTheStartingDistance) {
-  // Falls from a height of 1 to one of 0.05 above the face, all of it approach.
+  // The vertex falls from a height of 1 to a height of 0.05 above the face; all of its motion is approach.
   const MovingVertexFace query = against_triangle({1, 1, 1}, {1, 1, 0.05});
   EXPECT_EQ(additive_vertex_face(query, kUsual).verdict, Verdict::apart) << "the filter's";
   const MovingVertexFace beside = against_triangle({-0.05, 1, 1}, {-0.05, 1, -1});

@@ -14,7 +14,8 @@
 namespace cscd {
 namespace {
 
-// The referee behind two certified filters: their "apart" is a proof, so the answers are the referee's.
+// The referee behind two certified filters. The filters' "apart" is a proof, so every answer is the
+// referee's.
 template <class Query>
 Answer filtered_referee(const Query& query) {
   if (never_coplanar(query) || relative_boxes_apart(query)) return {Verdict::apart, 0};

@@ -7,7 +7,7 @@
 
 namespace cscd {
 
-// Every elementary test that this project has: the published ones and our own.
+// All elementary tests of this project: the published tests and our own. The span is valid for the whole run.
 std::span<const ElementaryTest> elementary_tests();
 
 // Returns the test of that name, or null when there is none.

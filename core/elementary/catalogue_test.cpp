@@ -1,4 +1,5 @@
-// What the rows of the catalogue promise, held against the referee; a new row is tested by being there.
+// Compares the promises of all rows of the catalogue with the referee. A new row is tested without a change
+// here.
 #include "core/elementary/catalogue.h"
 
 #include <algorithm>
@@ -77,7 +78,7 @@ Answer ask(const ElementaryTest& row, const Query& query) {
     return row.edge_edge(query);
 }
 
-// Calls with the row, the points, the query and the truth.
+// Calls check(row, answer, truth) for each row and each query of all families.
 template <class Check>
 void for_each_question(const Check& check) {
   for (const Family& family : kFamilies) {
@@ -93,7 +94,7 @@ void for_each_question(const Check& check) {
       };
       ask_all(vf, query_of<MovingVertexFace>(vf));
       ask_all(ee, query_of<MovingEdgeEdge>(ee));
-      if (testing::Test::HasFailure()) return;  // one is enough to read
+      if (testing::Test::HasFailure()) return;  // one failure is enough to read
     }
   }
 }

@@ -7,21 +7,26 @@
 #include "core/elementary/question/query_scale.h"
 #include "core/geometry/feature_distance.h"
 
-// The roots of the coplanarity cubic, each with the distance of the features there (Provot, "Collision and
-// self-collision handling in cloth model dedicated to design garments", 1997; Bridson, Fedkiw and Anderson,
-// "Robust treatment of collisions, contact and friction for cloth animation", SIGGRAPH 2002, section 7.1).
+// Finds the roots of the coplanarity cubic and measures the distance of the features at each root (Provot,
+// "Collision and self-collision handling in cloth model dedicated to design garments", 1997; Bridson,
+// Fedkiw and Anderson, "Robust treatment of collisions, contact and friction for cloth animation", SIGGRAPH
+// 2002, section 7.1).
 //
-// The turning points of the cubic cut [0, 1] into at most three monotone pieces. Each piece is closed: a
-// change of sign within it gives a root, and its ends are looked at in any case, so that double roots and
-// roots at 0 and 1 survive rounding. Differences: the cubic is kept in Bernstein form, the filter in front is
+// The turning points of the cubic cut [0, 1] into at most three monotone pieces. Each piece is closed. A
+// change of sign within a piece gives a root, and the distance is measured at the ends of the piece in any
+// case. So double roots, and roots at 0 and 1, survive rounding.
+//
+// There are three differences to the papers: the cubic is in Bernstein form, the filter in front is
 // certified, and the tolerance is relative to the query.
 //
-// A "no" proves nothing unless the filter said it: distances are judged at rounded roots, and features that
-// stay in one plane are looked at in both ends alone, as in the papers.
+// An "apart" is a proof only if it comes from the filter. The distances behind any other "apart" are
+// measured at rounded roots, and features that stay in one plane are measured at both ends only, as in the
+// papers.
 namespace cscd {
 namespace {
 
-// Where the derivative of the cubic is zero, in [0, 1]; 0 and 1 where it is not.
+// The times in (0, 1) at which the derivative of the cubic is zero, in ascending order. If there are fewer
+// than two such times, 0, 1 or the same time again fills the gap.
 struct TurningPoints {
   double first = 0, second = 1;
 
@@ -31,14 +36,15 @@ struct TurningPoints {
     const double q =
         -(half_b + std::copysign(std::sqrt(std::max(0.0, half_b * half_b - square * d0)), half_b));
     const auto inside = [](double t) { return t > 0 && t < 1; };
-    const double r = q / square, s = d0 / q;  // NaN and infinity are not inside
+    const double r = q / square, s = d0 / q;  // if NaN or infinite, not inside
     first = inside(r) ? r : inside(s) ? s : 0;
     second = inside(s) ? s : 1;
     if (first > second) std::swap(first, second);
   }
 };
 
-// In a monotone piece with a change of sign: Newton's iteration, kept in the bracket by bisection.
+// The root in a monotone piece with a change of sign, by Newton's iteration. Bisection replaces each step
+// that would leave the bracket.
 double root_between(const BernsteinCubic& f, double low, double high) {
   const bool rising = f.at(low) < 0;
   double t = (low + high) / 2;

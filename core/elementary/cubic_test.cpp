@@ -35,7 +35,7 @@ TEST(Cubic, AgreesWithTheRefereeWhereFeaturesCross) {
 }
 
 TEST(Cubic, TheToleranceIsADistance) {
-  const MovingVertexFace query = against_triangle({-1e-3, 1, 1}, {-1e-3, 1, -1});  // 4 in extent
+  const MovingVertexFace query = against_triangle({-1e-3, 1, 1}, {-1e-3, 1, -1});  // the extent is about 4
   EXPECT_EQ(cubic_vertex_face(query, {.tolerance = 1e-3}).verdict, Verdict::contact);
   EXPECT_EQ(cubic_vertex_face(query, {.tolerance = 1e-4}).verdict, Verdict::apart);
 }
@@ -43,7 +43,8 @@ TEST(Cubic, TheToleranceIsADistance) {
 TEST(Cubic, RootsAtTheEndsAndDoubleRootsCount) {
   EXPECT_EQ(cubic_vertex_face(against_triangle({1, 1, 0}, {1, 1, 1}), kFine).time, 0);
   EXPECT_EQ(cubic_vertex_face(against_triangle({1, 1, 1}, {1, 1, 0}), kFine).time, 1);
-  // The plane swings through the vertex's path and back: (t - 1/2)^2 at the vertex.
+  // The plane of the face swings through the path of the vertex and back. The height of the vertex over the
+  // plane is a multiple of (t - 1/2)^2.
   const MovingVertexFace twice{{{-1, 1, 0}, {1, 1, 0}},
                                {still(0, 0, 0), {{4, 0, -1}, {4, 0, 1}}, still(0, 4, 0)}};
   const Answer answer = cubic_vertex_face(twice, kFine);
@@ -51,7 +52,8 @@ TEST(Cubic, RootsAtTheEndsAndDoubleRootsCount) {
   EXPECT_NEAR(answer.time, 0.5, 1e-6);
 }
 
-// What the classic loses, and why its "no" is no proof: a vertex that slides through the face in its plane.
+// A vertex that slides through the face in the plane of the face is a contact that this test loses. So its
+// "apart" is no proof.
 TEST(Cubic, LosesWhatStaysInOnePlane) {
   const MovingVertexFace query = against_triangle({-1, 1, 0}, {9, 1, 0});
   ASSERT_TRUE(exact::first_contact(query));

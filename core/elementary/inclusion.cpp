@@ -12,31 +12,37 @@
 // Kheddar and Coquillart 2002; Wang, Ferguson, Schneider, Jiang, Attene and Panozzo, "A large-scale benchmark
 // and an inclusion-based algorithm for continuous collision detection", ACM TOG 40(5), 2021).
 //
-// F(t, u, v), the vector between the points with parameters u, v of the two features at time t, is affine in
-// each of its three arguments, so over a box of them it stays in the hull of its values at the eight corners.
-// Boxes whose hull, padded by the rounding error, leaves out the origin are dropped; the others are cut in
-// half along the argument that moves F most, until the hull is smaller than the tolerance along every axis.
+// F(t, u, v) is the vector between the points with parameters u, v of the two features at time t. It is
+// affine in each of its three arguments, so over a box of arguments it stays in the hull of its values at
+// the eight corners of the box. A box is dropped if its hull, padded by the rounding error, leaves out the
+// origin. Any other box is cut in half along the argument that moves F most, until the hull is smaller than
+// the tolerance along every axis.
 //
-// Differences to Wang et al.: depth first with the earlier half in front and everything dropped that begins
-// after a contact already found (no queue, no allocation); everything is seen from one of the points in
-// motion, so that the rounding error grows with the size of the query and its relative motion, not with its
-// distance from the origin (theirs grows with min(1, x) where max(1, x) is needed, and misses contacts
-// there); the tolerance is relative to the query and never below what rounding can tell apart; a certified
-// non-penetration filter stands in front.
+// There are four differences to Wang et al.:
+// - The search goes depth first, takes the earlier half first, and drops every box that begins after a
+//   contact already found. It needs no queue and no allocation.
+// - The query is seen from one of its moving points. So the rounding error grows with the size of the query
+//   and its relative motion, and not with its distance from the origin. (The bound of Wang et al. grows
+//   with min(1, x) where max(1, x) is needed, and misses contacts far from the origin.)
+// - The tolerance is relative to the query, and never smaller than rounding can tell apart.
+// - A certified non-penetration filter stands in front.
 //
-// A "no" is a proof. A "contact" bounds the distance, not the error in time: features that are slow are
-// early. Cost: about 50 ns a box; one box for most pairs that are apart, thousands for near misses.
+// An "apart" is a proof. A "contact" bounds the distance, not the error in time: slow features are reported
+// early. A box takes about 50 ns. Most pairs that are apart take one box, and near misses take thousands.
 namespace cscd {
 namespace {
 
-// Arguments are dyadic numbers with at most 52 binary places, so they, their differences from 1 and u + v are
-// exact. With u the unit roundoff and M the largest relative coordinate along the axis: coordinates are off
-// by u M; a point at time t by 2 u M more; weights of a vertex-face query sum to at most 3, which gives (3 +
-// 6 + 9) u M for the point of the face and 3 u M for the vertex; the last subtraction rounds 4 M. 25 u M in
-// all, less for two edges. 28 also pays for terms of second order; the constant for products that underflow
-// and for coordinates moved by in_range.
+// Bounds of the rounding error of F along an axis: kRelativeError times M plus kUnderflow, where M is the
+// largest relative coordinate along the axis.
+//
+// Arguments are dyadic numbers with at most 52 binary places, so they, their differences from 1, and u + v
+// are exact. Let u be the unit roundoff. A coordinate is off by u M, and a point at time t by 2 u M more.
+// The weights of a vertex-face query sum to at most 3, which gives (3 + 6 + 9) u M for the point of the
+// face and 3 u M for the vertex. The last subtraction rounds a number of up to 4 M. That is 25 u M in all,
+// and less for two edges. The constant 28 also pays for terms of second order. kUnderflow pays for products
+// that underflow and for coordinates moved by in_range.
 constexpr double kRelativeError = 28 * kUnitRoundoff, kUnderflow = 0x1p-1060;
-// No hull is asked to be smaller than this many rounding errors; it is reached before 52 halvings.
+// The smallest hull that the search may have to reach, in rounding errors. It is reached before 52 halvings.
 constexpr double kResolution = 64;
 
 struct Range {
@@ -47,7 +53,8 @@ struct Box {
   Range t, u, v;
 };
 
-// F at the corners of a box, axis by axis: corner number 4 t + 2 u + v.
+// F at the corners of a box: [axis][corner], where corner 4 t + 2 u + v has the high ends of t, u and v where
+// these are 1.
 using Corners = std::array<std::array<double, 8>, 3>;
 
 double at(const MovingPoint& p, double t, int axis) {
@@ -83,7 +90,8 @@ Corners corners(const MovingEdgeEdge& q, const Box& box) {
   return f;
 }
 
-// Has the box any point of the features' own? Its first corner is one then.
+// True if some arguments in the box are parameters of points of the features. The first corner of the box
+// is then one of these.
 bool in_domain(const MovingVertexFace&, const Box& box) {
   return box.u.low + box.v.low <= 1;
 }
@@ -110,7 +118,7 @@ Hull hull(const Corners& f, const Vec3& error) {
   return result;
 }
 
-// How far F moves along each argument, at most.
+// The largest motion of a component of F over the box, for each argument.
 std::array<double, 3> motions(const Corners& f) {
   std::array<double, 3> most{};
   constexpr std::array<std::size_t, 3> step = {4, 2, 1};
@@ -122,7 +130,7 @@ std::array<double, 3> motions(const Corners& f) {
   return most;
 }
 
-// Depth first: a box waiting for each halving above the one in hand.
+// The stack of the depth-first search. It holds one waiting box for each halving that led to the current box.
 class Waiting {
  public:
   bool empty() const { return size_ == 0; }

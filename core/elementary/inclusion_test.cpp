@@ -29,8 +29,8 @@ TEST(Inclusion, TellsTheTimeFromBelowWithinTheTolerance) {
   }
 }
 
-// A vertex that passes a border askew to the axes at a distance: contact for coarse tolerances, a proof of
-// none for fine ones.
+// A vertex passes, at a distance, a border that is askew to the axes. A coarse tolerance gives a contact,
+// and a fine tolerance gives a proof that there is none.
 TEST(Inclusion, FalseAlarmsAreWithinTheTolerance) {
   const auto still = [](double x, double y) { return MovingPoint{{x, y, 0}, {x, y, 0}}; };
   const MovingVertexFace query{{{-1.301, 1.299, 1}, {-1.301, 1.299, -1}},
@@ -51,7 +51,7 @@ TEST(Inclusion, ContactsAreNear) {
       double nearest = distance_at(query, answer.time);
       for (int k = 0; k <= 4096; ++k)
         nearest = std::min(nearest, distance_at(query, answer.time + k * (1 - answer.time) / 4096));
-      // Within half a sample of the nearest place, features move relative to each other by less than this.
+      // The relative motion of the features within half a sample of the nearest place is less than this.
       const double slack = 4 * extent(query) / 8192;
       EXPECT_LE(nearest, std::sqrt(3.0) * tolerance * extent(relative(query)) + slack);
     };
@@ -63,8 +63,8 @@ TEST(Inclusion, ContactsAreNear) {
   EXPECT_GT(contacts, 300);
 }
 
-// Double roots, parallel edges and what slides in its plane cost boxes without end: they are undecided, with
-// a time that is not late.
+// A search that runs out of steps is undecided, with a time that is not late. (Double roots, parallel
+// edges, and features that slide in their plane need boxes without end.)
 TEST(Inclusion, StopsAtTheLimitWithoutAnAnswer) {
   const MovingVertexFace sliding = against_triangle({-1, 1, 1e-9}, {1, 1, 1e-9});
   ASSERT_FALSE(exact::first_contact(sliding));
@@ -74,7 +74,8 @@ TEST(Inclusion, StopsAtTheLimitWithoutAnAnswer) {
   EXPECT_LE(cut.time, 0.25);
 }
 
-// Where a bound that grows with min(1, x) loses a tenth of the contacts.
+// Mutation: an error bound that grows with min(1, x), x being the distance from the origin, loses a tenth
+// of these contacts.
 TEST(Inclusion, LosesNothingFarFromTheOrigin) {
   QueryMaker make{6};
   for (const double far : {1e3, 1e6, 1e12}) {

@@ -6,8 +6,8 @@
 namespace cscd {
 namespace {
 
-// What the error bound says nothing about is brought to the size of 1 first; with scales too far apart for
-// that, too, only boxes decide.
+// If the error bound says nothing about the query, the query is scaled to the size of 1 and tried again. If
+// its scales are too far apart for that too, only the relative boxes decide.
 template <class Query>
 Answer newton(const Query& query) {
   using Search = NewtonSearch<DoubleNumbers>;

@@ -10,8 +10,8 @@
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/relative_box.h"
 
-// Interval Newton on the coplanarity cubic (section 7.1 of the paper; the root finder is the one customary
-// with the filter of Tang et al. 2010), in double or in single precision.
+// Interval Newton on the coplanarity cubic (section 7.1 of the paper; this root finder is the customary
+// companion of the filter of Tang et al. 2010), in double or in single precision.
 //
 // The roots in [0, 1] are enclosed in ascending order; at each the features are tested for touching. The
 // filter's "apart" is a proof for the coordinates as they are in that precision. What comes after it is not:
@@ -87,6 +87,7 @@ struct NewtonLimits {
   // The errors of the cubic between which products of four lengths, as in squared areas, stay within range.
   double least_error, most_error;
 };
+// The types and limits of each precision.
 struct DoubleNumbers {
   using Real = double;
   using Vec = Vec3;
@@ -108,6 +109,7 @@ struct FloatNumbers {
   static constexpr NewtonLimits limits{0x1p-18, 0x1p-12, 0x1p-12, 0, 1e24};
 };
 
+// The search itself, for `Numbers` = DoubleNumbers or FloatNumbers.
 template <class Numbers>
 struct NewtonSearch {
   using Real = typename Numbers::Real;
@@ -168,7 +170,7 @@ struct NewtonSearch {
     const Vec v = q.vertex.at(t), a = q.corner[0].at(t), b = q.corner[1].at(t), c = q.corner[2].at(t);
     return near_segment(v, a, b - a) || near_segment(v, b, c - b) || near_segment(v, c, a - c);
   }
-  // Parallel segments are nearest to each other at an end.
+  // Parallel segments have their smallest distance at an end.
   static bool near_collapsed(const EdgeEdge& q, Real t) {
     const Vec a = q.first[0].at(t), b = q.first[1].at(t), c = q.second[0].at(t), d = q.second[1].at(t);
     return near_segment(a, c, d - c) || near_segment(b, c, d - c) || near_segment(c, a, b - a) ||
@@ -183,6 +185,7 @@ struct NewtonSearch {
     return *std::min_element(inside->begin(), inside->end()) >= -kInside ? Touch::yes : Touch::no;
   }
 
+  // `during` gives the part of a motion between the times `low` and `high`, as a motion over [0, 1].
   static Point during(const Point& p, Real low, Real high) { return {p.at(low), p.at(high)}; }
   static VertexFace during(const VertexFace& q, Real low, Real high) {
     const auto part = [=](const Point& p) { return during(p, low, high); };
@@ -193,11 +196,12 @@ struct NewtonSearch {
     return {{part(q.first[0]), part(q.first[1])}, {part(q.second[0]), part(q.second[1])}};
   }
 
-  // What the search has found; "apart" until something touches.
+  // The result of a search so far. It is "apart" until the features may touch at some time.
   struct FirstTouch {
     Answer answer{Verdict::apart, 0};
 
-    // Returns true when the search is over.
+    // Takes the finding at the next root, whose time is `earliest` or later. Returns true if the search is
+    // over.
     bool offer(Touch found, Real earliest) {
       if (found == Touch::no) return false;
       answer = {found == Touch::yes ? Verdict::contact : Verdict::undecided, earliest};
@@ -256,12 +260,13 @@ struct NewtonSearch {
     }
   }
 
+  // The answer for features that are coplanar throughout, within rounding.
   template <class Query>
   static Answer planar(const Query& query) {
     if (relative_boxes_apart(query)) return {Verdict::apart, 0};
     Times times;
     times.add(0);
-    times.add(1);  // a root there may be rounded past it
+    times.add(1);  // because a root at 1 may be rounded past 1
     add_events(query, times);
     std::sort(times.at.begin(), times.at.begin() + times.count);
     FirstTouch search;
@@ -303,7 +308,8 @@ struct NewtonSearch {
                                blossom(f.c, low, high, high), blossom(f.c, high, high, high)};
       const auto [least, most] = std::minmax({control[0], control[1], control[2], control[3]});
       if (least > f.error || most < -f.error) return false;
-      // Narrow enough, or flat within rounding: no cut tells more about where the root is.
+      // If the enclosure is narrow enough, or the cubic is flat within rounding, no further cut tells more
+      // about the place of the root.
       if (high - low <= kRootWidth) return search.offer(touch(query, (low + high) / 2), low);
       if (least >= -f.error && most <= f.error) return search.offer(touch_between(query, low, high), low);
 

@@ -25,7 +25,7 @@ Answer newton(const MovingEdgeEdge& q) {
   return newton_edge_edge(q);
 }
 
-// How newton did on a family, the referee having answered the same queries.
+// Compares newton's answers to a family of queries with the referee's.
 struct Tally {
   int contacts = 0, misses = 0, false_alarms = 0, undecided = 0;
   double largest_time_error = 0;
@@ -43,7 +43,7 @@ struct Tally {
     if (truth && answer.verdict == Verdict::apart && misses++ == 0) first_miss = text(points, truth->lo);
     if (truth && answer.verdict == Verdict::contact)
       largest_time_error = std::max(largest_time_error, std::abs(answer.time - truth->lo));
-    // A bound from below, up to what double precision hides.
+    // The time of `undecided` is a lower bound, up to the rounding of double precision.
     if (truth && answer.verdict == Verdict::undecided) {
       EXPECT_LE(answer.time, truth->hi + 1e-6) << text(points, truth->lo);
     }
@@ -92,7 +92,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
   EXPECT_EQ(ee.contacts, 3000);
 }
 
-// A hundred thousandth of the feature's size inside or outside, at any of its borders.
+// Features touch or miss at any of their borders, by a hundred thousandth of the feature's size.
 TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
   Tally vf, ee;
   for (int i = 0; i < 3000; ++i) {
@@ -113,7 +113,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
   }
 }
 
-// Rules degenerate and closed-interval: small integer coordinates meet every degenerate case.
+// Rules degenerate and closed-interval. Small integer coordinates meet every degenerate case.
 TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
   Tally vf, ee;
   for (int i = 0; i < 12'000; ++i) {
@@ -155,7 +155,7 @@ TEST_F(Newton, ContactAtTheEndsOfTheIntervalCounts) {
   }
 }
 
-// Coplanar throughout.
+// The features are coplanar throughout.
 TEST_F(Newton, ContactAtTheEndsOfTheIntervalCountsInThePlane) {
   for (const Vec3& on : {Vec3(0, 1, 0), Vec3(0, 0, 0), Vec3(2, 2, 0), Vec3(3, 0, 0)}) {
     const Vec3 out = 2.5 * on - Vec3(1.5, 1.5, 0);
@@ -173,8 +173,8 @@ TEST_F(Newton, ContactAtTheEndsOfTheIntervalCountsInThePlane) {
   }
 }
 
-// The vertex reaches a border that moves in the plane, at t = 1 exactly: computed from all four points, the
-// root may be rounded past 1.
+// The vertex reaches a border that moves in the plane at t = 1 exactly. The root is computed from all four
+// points, so it may be rounded past 1.
 TEST_F(Newton, ContactAtTheEndWithAMovingBorderInThePlane) {
   int at_the_end = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -190,8 +190,8 @@ TEST_F(Newton, ContactAtTheEndWithAMovingBorderInThePlane) {
   EXPECT_GT(at_the_end, 100);
 }
 
-// The vertex comes to the plane, touches and turns back: a double root of the coplanarity cubic, which is
-// known to half of its digits only.
+// The vertex comes to the plane, touches it and turns back. This is a double root of the coplanarity cubic,
+// and only half of the digits of such a root are known.
 TEST_F(Newton, DoubleRootsAreContactOrUndecided) {
   for (const double t : {0.5, 0.25, 1.0 / 3, 0.7}) {
     for (const Vec3& on : {Vec3(1, 1, 0), Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(2, 2, 0), Vec3(1, 0, 0)}) {
@@ -199,8 +199,8 @@ TEST_F(Newton, DoubleRootsAreContactOrUndecided) {
         const auto path = [&](const Vec3& x, const Vec3& speed) {
           return MovingPoint{x - t * speed, x + (1 - t) * speed};
         };
-        // The triangle tilts about its corner at the origin as fast as the vertex slides: at that corner the
-        // height of the vertex is of second order in time.
+        // The triangle tilts about its corner at the origin as fast as the vertex slides. At that corner
+        // the height of the vertex is of second order in time.
         const MovingVertexFace query{path(on, slide),
                                      {path({0, 0, 0}, {0, 0, 0}), path({4, 0, 0}, {0, 0, slide.x()}),
                                       path({0, 4, 0}, {0, 0, slide.y()})}};
@@ -212,8 +212,8 @@ TEST_F(Newton, DoubleRootsAreContactOrUndecided) {
   }
 }
 
-// Double roots at corners and borders in general position: touching is judged with a root that is off by
-// 1e-8.
+// Double roots occur at corners and borders in general position. Touching is judged with a root that is off
+// by 1e-8.
 TEST_F(Newton, DoubleRootsAtBordersAreContactOrUndecided) {
   int touching = 0, missed = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -223,7 +223,8 @@ TEST_F(Newton, DoubleRootsAtBordersAreContactOrUndecided) {
     const Vec3 a = vec(), b = vec(), c = vec();
     const double u = make_.below(3) / 2.0, v = make_.below(2) * (1 - u);
     const Vec3 x = a + u * (b - a) + v * (c - a);
-    // All slide within the plane at time t, in first order: the vertex's height has a double root there.
+    // To first order, all points slide within the plane at time t, so the height of the vertex has a double
+    // root there.
     const Vec3 n = (b - a).cross(c - a);
     const double wb = dyadic(), wc = dyadic();
     const Vec3 slide = dyadic() * (b - a) + dyadic() * (c - a);
@@ -250,14 +251,14 @@ TEST_F(Newton, ZeroMotionInContact) {
   expect_not_apart(MovingEdgeEdge{{still(0, 0, 0), still(4, 0, 0)}, {still(1, 0, 0), still(9, 0, 0)}});
 }
 
-// The plane of motion is z = 0 and the triangle turns over in it: normals at both ends cancel.
+// All points move in the plane z = 0 and the triangle turns over in it, so the normals at both ends cancel.
 TEST_F(Newton, ATriangleThatTurnsInsideOutInItsPlane) {
   const MovingVertexFace query{{{-1, 1, 0}, {3, 1, 0}},
                                {{{0, 0, 0}, {0, 0, 0}}, {{4, 0, 0}, {4, 0, 0}}, {{0, 4, 0}, {0, -4, 0}}}};
   expect_not_apart(query);
 }
 
-// Sliding along one line, the edges meet end to end.
+// Edges that slide along one line meet end to end.
 TEST_F(Newton, EdgesThatSlideAlongOneLine) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto on = [&](double from, double to) {
@@ -277,22 +278,22 @@ TEST_F(Newton, EdgesThatSlideAlongOneLine) {
 
 TEST_F(Newton, CollapsedFeatures) {
   const MovingPoint falls{{1, 1, 1}, {1, 1, -1}}, far{{9, 9, 9}, {9, 9, 8}};
-  // Zero-length edge onto an edge; zero-area triangles.
+  // An edge without length falls onto an edge, and a vertex falls onto triangles without area.
   expect_not_apart(MovingEdgeEdge{{falls, falls}, {still(0, 1, 0), still(4, 1, 0)}});
   expect_not_apart(MovingVertexFace{falls, {still(0, 1, 0), still(4, 1, 0), still(2, 1, 0)}});
   expect_not_apart(MovingVertexFace{falls, {still(1, 1, 0), still(1, 1, 0), still(1, 1, 0)}});
-  // Boxes prove these apart, whatever the cubic says.
+  // The relative boxes prove these features apart, whatever the cubic says.
   EXPECT_EQ(newton(MovingEdgeEdge{{far, far}, {still(0, 1, 0), still(4, 1, 0)}}).verdict, Verdict::apart);
   EXPECT_EQ(newton(MovingVertexFace{far, {still(1, 1, 0), still(1, 1, 0), still(1, 1, 0)}}).verdict,
             Verdict::apart);
 }
 
-// Where products of coordinates underflow or overflow, the answers are those at the size of 1.
+// If products of coordinates underflow or overflow, the answers equal those at the size of 1.
 TEST_F(Newton, ScalesWhatIsBeyondTheRange) {
   for (const double scale : {0x1p-1000, 0x1p-660, 0x1p-370, 0x1p330, 0x1p365, 0x1p530, 0x1p1019}) {
     int contacts = 0;
     for (int i = 0; i < 200; ++i) {
-      // With a last bit that survives the smallest scale.
+      // Shorten the coordinates, so that their last bit survives the smallest scale.
       FourMovingPoints p = test::vertex_meets_face(make_, 0.5, make_.uniform(-0.2, 0.4), 0.25);
       FourMovingPoints beyond = p;
       for (std::size_t k = 0; k < 4; ++k) {
@@ -316,7 +317,8 @@ TEST_F(Newton, ScalesWhatIsBeyondTheRange) {
   }
 }
 
-// Scales too far apart for products in double precision: nothing is known, and nothing is claimed.
+// The scales are too far apart for products in double precision. Nothing is known then, so nothing may be
+// claimed.
 TEST_F(Newton, MixedScalesAreUndecidedOrRight) {
   for (const double scale : {1e-320, 1e-200, 1e-110, 1e110, 1e160, 1e307}) {
     for (int i = 0; i < 200; ++i) {
@@ -331,7 +333,7 @@ TEST_F(Newton, MixedScalesAreUndecidedOrRight) {
   }
 }
 
-// Single precision is right where it need not be better.
+// Single precision is right for features that cross clearly.
 TEST_F(Newton, FloatsAgreeWithTheRefereeWhereFeaturesCross) {
   int contacts = 0, wrong = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -351,7 +353,7 @@ TEST_F(Newton, FloatsAgreeWithTheRefereeWhereFeaturesCross) {
   EXPECT_LT(wrong, 20);
 }
 
-// Coordinates that floats cannot hold: what is said of the others alone is no answer.
+// Floats cannot hold some of the coordinates. An answer from the other coordinates alone would be wrong.
 TEST_F(Newton, FloatsKnowNothingOfCoordinatesBeyondTheirRange) {
   for (int axis = 0; axis < 3; ++axis) {
     FourMovingPoints p = test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
@@ -360,8 +362,8 @@ TEST_F(Newton, FloatsKnowNothingOfCoordinatesBeyondTheirRange) {
   }
 }
 
-// Cubics that are almost zero leave nothing to cut. Generous: a thousandth of a second each on a slow machine
-// under a sanitizer would pass.
+// The search ends soon on cubics that are almost zero. The limit is generous: a millisecond for each query
+// would pass, even on a slow machine under a sanitizer.
 TEST_F(Newton, TheSearchEndsSoonOnFlatCubics) {
   const auto begin = std::chrono::steady_clock::now();
   constexpr int kQueries = 3000;
@@ -371,7 +373,7 @@ TEST_F(Newton, TheSearchEndsSoonOnFlatCubics) {
     for (MovingPoint& x : p) x.start.z() *= thin, x.end.z() *= thin;
     newton(query_of<MovingVertexFace>(p));
     newton(query_of<MovingEdgeEdge>(p));
-    // Triple roots: three factors that vanish at once.
+    // Make triple roots: the three factors of the triple product vanish at once.
     for (MovingPoint& x : p) x.end = -x.start + thin * make_.vector();
     newton(query_of<MovingVertexFace>(p));
     newton(query_of<MovingEdgeEdge>(p));

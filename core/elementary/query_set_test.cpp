@@ -1,6 +1,6 @@
-// The referee and `filtered_exact` against the open query set with published truths (README of that folder).
-// The set is found through CSCD_QUERIES or as shared/queries in a folder above the current one; without it
-// the test is skipped.
+// Compares the referee and `filtered_exact` with the open query set and its published truths (see the
+// README of that folder). The set is found through CSCD_QUERIES, or as shared/queries in the current folder
+// or one above. Without the set the test is skipped.
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -54,7 +54,7 @@ std::vector<Entry> read_index(const std::filesystem::path& set) {
   return entries;
 }
 
-// Lines "row hit t_lo t_hi d_lo d_hi flags": the published bounds d_lo <= t* <= d_hi by row.
+// Reads lines "row hit t_lo t_hi d_lo d_hi flags". Returns the published bounds d_lo <= t* <= d_hi by row.
 std::map<std::size_t, exact::TimeEnclosure> read_times(const std::filesystem::path& set, std::string file) {
   file.resize(file.size() - std::string(".csv").size());
   for (std::size_t slash; (slash = file.find('/')) != std::string::npos;) file.replace(slash, 1, "__");
@@ -71,10 +71,10 @@ std::map<std::size_t, exact::TimeEnclosure> read_times(const std::filesystem::pa
 
 struct Tally {
   int queries = 0, contacts = 0, wrong = 0, wrong_time = 0, same_time = 0;
-  std::array<int, 4> stages{};  // of filtered_exact
+  std::array<int, 4> stages{};  // queries that ended in each stage of filtered_exact
 };
 
-// Above all: the same verdict and the same double.
+// filtered_exact must give the referee's verdict and the same double as its time.
 template <class Query>
 void expect_filtered_exact_agrees(const Query& query, Answer (&test)(const Query&),
                                   const std::optional<exact::TimeEnclosure>& referee, Tally& tally) {

@@ -13,18 +13,18 @@
 
 namespace cscd::scenes {
 
-// What all frames of an animated surface share.
+// The data that all frames of an animated surface share.
 struct ClipHeader {
-  std::vector<Triangle> triangles;
+  std::vector<Triangle> triangles;  // [triangles]
   std::size_t vertex_count = 0;
-  std::vector<BoneId> bone_parent;  // empty without bones
-  bool predicted = false;           // intervals end where a simulator predicted, not at the next frame
-  // Positions [vertices] in the pose at rest: what crosses in it is how the surface is made, and no
-  // collision. Empty where that is frame 0.
+  std::vector<BoneId> bone_parent;  // [bones]; empty without bones
+  bool predicted = false;           // intervals end at predictions of a simulator, not at the next frame
+  // [vertices]: the positions in the pose at rest. Triangles that cross in that pose cross because the
+  // surface is made so, and are no collision. Empty if the pose at rest is frame 0.
   std::vector<Vec3> rest = {};
 };
 
-// One moment: positions [vertices] and bones [bones].
+// One frame: positions [vertices] and bones [bones].
 struct FrameView {
   std::span<const Vec3> positions;
   std::span<const Bone> bones;
@@ -36,30 +36,31 @@ struct ClipInterval {
   std::optional<Rig::Interval> bones;
 };
 
-// Where intervals come from: memory, or a file that is larger than memory.
+// A source of intervals: memory, or a file that may be larger than memory.
 class ClipSource {
  public:
   virtual ~ClipSource() = default;
   virtual const ClipHeader& header() const = 0;
   virtual std::size_t frame_count() const = 0;  // at least 2
-  // Views that hold until the next load of the same source. Throws InputError for a frame that cannot be read
-  // or holds a number that is not finite.
+  // Return views that are valid until the next load from the same source. They throw InputError for a frame
+  // that does not exist, cannot be read, or holds a number that is not finite.
   virtual ClipInterval load(std::size_t interval) = 0;
   virtual FrameView load_frame(std::size_t frame) = 0;
 
   std::size_t interval_count() const { return frame_count() - 1; }
 };
 
-// Takes frames one after the other.
+// A receiver of frames, one after the other.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  // `predicted` is where the interval from the frame before was predicted to end: present for every frame but
-  // the first if the header says so, and never else. Throws InputError for sizes that do not fit the header.
+  // `predicted` is the predicted end of the interval that starts at the previous frame. It is present for
+  // every frame but the first if the header announces predictions, and null otherwise. Throws InputError if
+  // the frame does not fit the header (check_frame).
   virtual void append(const FrameView& frame, const FrameView* predicted) = 0;
 };
 
-// An animated surface in memory. Owns its frames; intervals are views.
+// An animated surface in memory. It owns its frames, and intervals are views of them.
 class Clip final : public ClipSource, public FrameSink {
  public:
   explicit Clip(ClipHeader header) : header_(std::move(header)) {}
@@ -69,7 +70,8 @@ class Clip final : public ClipSource, public FrameSink {
   const ClipHeader& header() const override { return header_; }
   std::size_t frame_count() const override { return frames_.count; }
   FrameView frame(std::size_t frame) const { return frames_.view(frame, header_); }
-  // From frame i to where it ends: frame i + 1, or the prediction. Holds as long as nothing is appended.
+  // The interval from frame i to its end, which is frame i + 1 or the prediction. The views are valid until
+  // the next append.
   ClipInterval interval(std::size_t i) const;
   ClipInterval load(std::size_t i) override { return interval(i); }
   FrameView load_frame(std::size_t i) override { return frame(i); }
@@ -86,16 +88,17 @@ class Clip final : public ClipSource, public FrameSink {
   Frames frames_, predicted_;
 };
 
-// Throws InputError unless the frame has the header's sizes and is finite, and a prediction is there exactly
-// where the header promises one. `index` is the frame's number.
+// Throws InputError if the frame or its prediction has other sizes than the header or holds a number that
+// is not finite, or if a prediction is missing or present against the header. `index` is the number of the
+// frame.
 void check_frame(const ClipHeader& header, std::size_t index, const FrameView& frame,
                  const FrameView* predicted);
 
-// The skeleton in the pose of frame 0; absent without bones. Loads frame 0.
+// The skeleton in the pose of frame 0, or nullopt if the source has no bones. Loads frame 0.
 std::optional<Rig> rig_of(ClipSource& source);
 
-// Hands all frames of a source to a sink of the same header, at most two at a time in memory beside the
-// source's. `progress` is called with the number of frames done.
+// Hands all frames of a source to a sink with the same header. It holds at most one frame in memory beside
+// the frames of the source. After each frame `progress` is called with the number of frames done.
 void copy_frames(ClipSource& source, FrameSink& sink, const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace cscd::scenes

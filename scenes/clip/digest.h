@@ -7,8 +7,8 @@
 
 namespace cscd::scenes {
 
-// 64-bit FNV-1a over the bits of frames: for each, positions, then bones, then the prediction if there is
-// one.
+// The 64-bit FNV-1a hash of the bits of frames. Each frame adds its positions, then its bones, then its
+// prediction if it has one.
 class FrameDigest {
  public:
   void add(const FrameView& frame, const FrameView* predicted = nullptr);
@@ -18,10 +18,10 @@ class FrameDigest {
   std::uint64_t state_ = 14695981039346656037ull;
 };
 
-// 64-bit FNV-1a over bytes, as 16 hex digits.
+// The 64-bit FNV-1a hash of bytes, as 16 hex digits.
 std::string digest(const std::string& bytes);
 
-// Takes frames for nothing but their digest.
+// A sink that keeps only the digest of its frames.
 class DigestSink final : public FrameSink {
  public:
   void append(const FrameView& frame, const FrameView* predicted) override { digest_.add(frame, predicted); }

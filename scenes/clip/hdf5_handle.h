@@ -5,7 +5,7 @@
 
 namespace cscd::scenes {
 
-// Owns an HDF5 identifier.
+// Owns an HDF5 identifier. `close` returns false if HDF5 reports an error.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -31,11 +31,11 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-// HDF5 prints its error stack on standard error by default; we report in one line of our own instead. Call
-// this before anything else of HDF5's.
+// Stops HDF5 from printing its error stack on standard error: we report each error in one line of our own.
+// Call this before any other function of HDF5.
 inline void silence_hdf5() {
-  // At the end of the process HDF5 closes again what could not be closed, and crashes where a disk was full
-  // (1.10.8). All files are closed by their handles.
+  // At the end of the process HDF5 (1.10.8) tries again to close files that it could not close, and crashes
+  // if a disk was full. This switches that off; all files are closed by their handles.
   [[maybe_unused]] static const herr_t no_cleaning = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }

@@ -7,7 +7,7 @@
 
 namespace cscd::scenes {
 
-// Point caches: HDF5 files of
+// A point cache is an HDF5 file with these datasets:
 //   /positions            float64 [frames, vertices, 3], frame 0 the reference pose
 //   /triangles            int32   [triangles, 3], counter-clockwise seen from outside
 //   /rest                 float64 [vertices, 3]: the pose at rest, frame 0 without it (optional)
@@ -19,8 +19,8 @@ namespace cscd::scenes {
 // Positions are used exactly as stored. All errors are InputError and name the file, the dataset and the
 // element.
 
-// Streams a point cache: three frames are in memory at most, whatever the length. float32 positions and wider
-// integers are accepted where nothing is lost.
+// Streams a point cache. At most three frames are in memory, whatever the length of the file. float32
+// positions are accepted too, and so are wider integers whose values fit.
 class PointCacheReader final : public ClipSource {
  public:
   explicit PointCacheReader(const std::filesystem::path& path);
@@ -38,25 +38,25 @@ class PointCacheReader final : public ClipSource {
   std::unique_ptr<File> file_;
 };
 
-// Writes a point cache frame by frame under a temporary name in the same folder; `finish` gives it its name.
-// The same frames give the same bytes.
+// Writes a point cache frame by frame, under a temporary name in the same folder; `finish` gives the file
+// its name. Equal frames give equal bytes. Throws InputError if the file cannot be written.
 class PointCacheWriter final : public FrameSink {
  public:
-  // Refuses a path that exists unless `force`.
+  // Throws InputError if the path exists and `force` is false.
   PointCacheWriter(std::filesystem::path path, ClipHeader header, bool force);
-  ~PointCacheWriter() override;  // without finish, leaves nothing behind
+  ~PointCacheWriter() override;  // removes the temporary file if `finish` was not called
   PointCacheWriter(PointCacheWriter&&) noexcept;
   PointCacheWriter& operator=(PointCacheWriter&&) noexcept;
 
   void append(const FrameView& frame, const FrameView* predicted = nullptr) override;
-  void finish();  // at least two frames
+  void finish();  // throws InputError if fewer than two frames were appended
 
  private:
   struct File;
   std::unique_ptr<File> file_;
 };
 
-// Reads a whole point cache into memory.
+// Reads a whole point cache into memory. Throws InputError if it does not fit.
 Clip read_clip(const std::filesystem::path& path);
 
 }  // namespace cscd::scenes

@@ -10,7 +10,7 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr std::size_t kMost = std::size_t{1} << 28;  // vertices, triangles, as TriangleMesh
+constexpr std::size_t kMost = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
 constexpr std::size_t kMostBones = std::size_t{1} << 20;
 constexpr std::size_t kMostFrames = std::size_t{1} << 40;
 
@@ -33,7 +33,8 @@ bool has(hid_t file, const std::string& name) {
   return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
 }
 
-// Data that lie in other files would let a cache from outside read whatever its user may read.
+// True if the data of the dataset lie in another file. Such data are refused: they would let a cache from a
+// stranger read any file that its user may read.
 bool lies_elsewhere(hid_t file, const std::string& name, hid_t dataset) {
   for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
     H5L_info_t link;
@@ -46,6 +47,7 @@ bool lies_elsewhere(hid_t file, const std::string& name, hid_t dataset) {
   return H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL;
 }
 
+// Opens a dataset and checks its type, its rank and its last extent.
 Dataset open_dataset(hid_t file, const std::string& path, const std::string& name, H5T_class_t type_class,
                      std::size_t rank) {
   Dataset dataset;
@@ -81,8 +83,9 @@ void require_shape(const Dataset& dataset, const std::vector<hsize_t>& wanted, c
                      shown(wanted));
 }
 
-// Does the file hold at least that many elements of the dataset? Guards allocations against declared sizes
-// that nothing stands behind. A filter may pack data, so that the size says little then.
+// Throws InputError if the file stores fewer elements of the dataset than `elements`. This guards
+// allocations against declared sizes without data behind them. A dataset with a filter is not checked,
+// because a filter may pack data.
 void require_stored(const Dataset& dataset, hsize_t elements) {
   const Hdf5Handle creation(H5Dget_create_plist(dataset.id.get()), H5Pclose);
   const Hdf5Handle type(H5Dget_type(dataset.id.get()), H5Tclose);
@@ -112,7 +115,7 @@ void read_frame(const Dataset& dataset, std::size_t frame, Vec3* out) {
                      ": cannot be read; the file may be damaged, write it again");
 }
 
-// Positions of one point set over the frames: of vertices, of heads or of tails.
+// Throws InputError for the first point that is not finite. `what` is the word for a point, such as "vertex".
 void require_finite_points(const Dataset& dataset, std::size_t frame, std::span<const Vec3> points,
                            std::string_view what) {
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -121,7 +124,7 @@ void require_finite_points(const Dataset& dataset, std::size_t frame, std::span<
                        std::to_string(i) + ": position is not finite; repair the animation");
 }
 
-// One sequence of frames of the file: the positions themselves, or the predictions.
+// One sequence of frames in the file: the frames themselves, or the predictions.
 struct Sequence {
   Dataset positions;
   std::optional<Dataset> head, tail;
@@ -257,6 +260,7 @@ struct PointCacheReader::File {
     }
   }
 
+  // Loads a frame into a slot, unless the slot holds it already.
   void fill(Slot& slot, const Sequence& sequence, std::size_t frame) {
     if (slot.frame == frame) return;
     slot.frame = Slot::nothing;
@@ -308,7 +312,7 @@ FrameView PointCacheReader::load_frame(std::size_t frame) {
 ClipInterval PointCacheReader::load(std::size_t interval) {
   File& file = *file_;
   file.require_frame(interval, file.frames - 1, "interval");
-  // Going forward, the end of one interval is the start of the next.
+  // If intervals are loaded in ascending order, the end of one interval is the start of the next.
   if (file.slots[0].frame != interval && file.slots[1].frame == interval)
     std::swap(file.slots[0], file.slots[1]);
   file.fill(file.slots[0], file.shown_frames, interval);

@@ -14,8 +14,8 @@
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/test_clips.h"
 
-// On damaged files libhdf5 loses memory of its own. What we could lose are identifiers, and those are
-// counted.
+// libhdf5 leaks memory of its own on damaged files, so its leaks are ignored. Our code could leak
+// identifiers only, and the tests count these.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
@@ -53,8 +53,8 @@ class PointCache : public testing::Test {
     writer.finish();
   }
 
-  // Replaces a dataset of the file by one of another type, shape or content; with no data it is only
-  // declared.
+  // Replaces a dataset of the file by a dataset of another type, shape or content. Without data the dataset
+  // is only declared.
   void replace(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* data,
                hid_t memory_type) {
     const Hdf5Handle h5 = edit();
@@ -87,7 +87,7 @@ class PointCache : public testing::Test {
     return {H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose};
   }
 
-  // What reading the whole file complains of, without the folder.
+  // Reads the whole file. Returns the text of the InputError, without the folder, or an empty text.
   std::string refusal() {
     try {
       PointCacheReader reader(file);
@@ -110,7 +110,7 @@ class PointCache : public testing::Test {
   fs::path folder, file;
 };
 
-// All ways in which a clip can be made up.
+// All combinations of parts that a clip can have.
 const SmallClip kKinds[] = {{.frames = 5},
                             {.frames = 5, .bones = 3},
                             {.frames = 5, .predicted = true},
@@ -151,7 +151,7 @@ TEST_F(PointCache, HasTheSameBytesWheneverItIsWritten) {
   for (const SmallClip& kind : kKinds) {
     write(kind);
     const std::string once = bytes(file);
-    sleep(kind.bones && kind.predicted ? 1 : 0);  // a time of creation, in seconds, would show
+    sleep(kind.bones && kind.predicted ? 1 : 0);  // would change a time of creation, which is in seconds
     write(kind);
     EXPECT_EQ(once, bytes(file));
   }
@@ -194,7 +194,7 @@ TEST_F(PointCache, SurvivesFlippedBytes) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(~damaged[at]);
     std::ofstream(file, std::ios::binary | std::ios::trunc) << damaged;
-    refusal();  // a complaint or none, but no crash
+    refusal();  // may refuse the file or read it, but must not crash
   }
 }
 
@@ -384,7 +384,7 @@ TEST_F(PointCache, SaysWhereItCannotWrite) {
   EXPECT_TRUE(files().empty());
 }
 
-// The most memory that this process has held, in MiB, since the last call of forget_peak.
+// The largest memory of this process since the last call of forget_peak, in MiB.
 double peak_mebibytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -419,7 +419,7 @@ TEST_F(PointCache, StreamsWithTwoFramesInMemory) {
     ASSERT_EQ(interval.motion.end()[99999], frame_position(i + 1, 99999));
   }
   EXPECT_EQ(buffers.size(), 2u);
-  // AddressSanitizer keeps freed memory.
+  // AddressSanitizer keeps freed memory, so the limit does not hold there.
   const double growth = peak_mebibytes() - before;
   EXPECT_TRUE(growth < 30 || kAddressSanitizer) << growth << " MiB for a cache of 183 MiB";
 }

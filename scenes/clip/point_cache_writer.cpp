@@ -10,7 +10,8 @@
 namespace cscd::scenes {
 namespace {
 
-// HDF5 chunks stay under 4 GiB; a frame of more vertices is cut into several.
+// The most vertices in a chunk, which keeps HDF5 chunks under 4 GiB. A frame of more vertices is cut into
+// several chunks.
 constexpr hsize_t kMostVerticesInChunk = hsize_t{1} << 24;
 
 // A growing dataset [frames, points, 3].
@@ -90,7 +91,7 @@ struct PointCacheWriter::File {
     predicted_tail = create_growing("/bones/predicted_tail", parents.size());
   }
 
-  // Without times of creation, so that the same frames give the same bytes.
+  // The properties of a dataset without a time of creation, so that equal frames give equal bytes.
   static Hdf5Handle timeless_dataset() {
     Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.get(), false);

@@ -10,7 +10,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Takes frames and keeps none.
+// A sink that counts frames and keeps none.
 class Counter final : public FrameSink {
  public:
   void append(const FrameView& frame, const FrameView*) override {
@@ -27,7 +27,8 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-// 1 GB of frames, every one read, in a process of its own so that its peak is its own.
+// The test reads all frames of a file of 1 GB, in a process of its own, so that the peak of memory is that
+// of the reading.
 TEST(Streaming, ReadsAllFramesInTheMemoryOfAFew) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("cscd-stream-" + std::to_string(getpid()) + ".h5");

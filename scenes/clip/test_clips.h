@@ -6,7 +6,7 @@
 
 namespace cscd::scenes {
 
-// What the tests of this room play: a tetrahedron whose vertices and joints move in recognisable ways.
+// For tests only: a tetrahedron whose vertices and joints move in recognisable ways.
 struct SmallClip {
   std::size_t frames = 2, bones = 0;
   bool predicted = false;

@@ -9,8 +9,9 @@
 
 namespace cscd::scenes {
 
-// A point cache of a sphere in which only the named frames are stored, frame f at (f, 0, 0): HDF5 allocates
-// a chunk when it is written, and reads what is not as zeros. So a file of any length takes no space.
+// For tests only: writes a point cache of a shape in which only the frames `stored` are stored; frame f is
+// moved to (f, 0, 0). HDF5 allocates a chunk when it is written and reads other chunks as zeros. So a file
+// of any length takes almost no space.
 inline void write_sparse_cache(const std::filesystem::path& path, const test::Shape& shape, hsize_t frames,
                                std::span<const hsize_t> stored) {
   const Hdf5Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);

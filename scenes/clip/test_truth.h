@@ -8,8 +8,9 @@
 
 namespace cscd::scenes {
 
-// Positions that another program has computed: the dataset /positions [frames, vertices, 3] of an HDF5 file
-// that need not be a point cache. Empty where there is none.
+// For tests only: positions that another program has computed. Reads the dataset /positions [frames,
+// vertices, 3] of an HDF5 file that need not be a point cache. Returns [frames][vertices], empty if there
+// is no such dataset.
 inline std::vector<std::vector<Vec3>> read_truth(const std::filesystem::path& path) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const Hdf5Handle positions(H5Dopen2(file.get(), "/positions", H5P_DEFAULT), H5Dclose);

@@ -8,13 +8,13 @@
 namespace cscd::scenes {
 namespace {
 
-// Keeps a chain off itself and off the floor: capsules round the bones, whose centre lines stay two radii and
-// a clearance apart, with Coulomb friction, projected position by position as in Mueller et al., "Position
-// based dynamics", VRIPHYS 2006. Cost per step: all pairs of bones once for the candidates, then the
-// candidates per sweep.
+// Keeps a chain off itself and off the floor. Capsules round the bones have centre lines that stay two
+// radii and a clearance apart, with Coulomb friction. Contacts are solved by moving positions one after the
+// other, as in Mueller et al., "Position based dynamics", VRIPHYS 2006. A step looks at all pairs of bones
+// once to find the candidates, and at the candidates in every sweep.
 
-// Closest points of two segments, as shares of their lengths (Ericson, "Real-Time Collision Detection",
-// 2005, 5.1.9; neither segment may be a point).
+// The closest points of two segments, as shares of the segments' lengths (Ericson, "Real-Time Collision
+// Detection", 2005, 5.1.9). Neither segment may be a point.
 struct Closest {
   double s, t;
 };
@@ -48,7 +48,7 @@ class ChainContact final : public Effect {
     double shortest = (shape.rig.reference[0].tail - shape.rig.reference[0].head).norm();
     for (const Bone& bone : shape.rig.reference)
       shortest = std::min(shortest, (bone.tail - bone.head).norm());
-    // Bones closer along the chain than this are kept apart by the limit on bending.
+    // The limit on bending keeps bones apart that are closer along the chain than this.
     skip_ = 1 + static_cast<std::size_t>(std::ceil(1.6 * apart_ / shortest));
   }
 
@@ -66,6 +66,7 @@ class ChainContact final : public Effect {
   }
 
  private:
+  // Finds the candidates: pairs of bones that may touch in this step.
   void gather() {
     pairs_.clear();
     const double slack = 0.5 * radius_;
@@ -88,7 +89,7 @@ class ChainContact final : public Effect {
     if (distance >= apart_ || distance == 0) return;
     const double share = w[0] * w[0] + w[1] * w[1] + w[2] * w[2] + w[3] * w[3];
     const double depth = apart_ - distance;
-    Vec3 move = depth / distance * gap;  // of b relative to a
+    Vec3 move = depth / distance * gap;  // move of b relative to a
     const Vec3 slid = w[2] * (joints_[b] - before_[b]) + w[3] * (joints_[b + 1] - before_[b + 1]) -
                       w[0] * (joints_[a] - before_[a]) - w[1] * (joints_[a + 1] - before_[a + 1]);
     const Vec3 normal = gap / distance;
@@ -99,6 +100,7 @@ class ChainContact final : public Effect {
     joints_[b + 1] += w[3] / share * move;
   }
 
+  // Moves a joint up to its height above the floor.
   void lift(std::size_t joint) {
     const double depth = floor_ + apart_ / 2 - joints_[joint].z();
     if (depth <= 0) return;
@@ -108,7 +110,7 @@ class ChainContact final : public Effect {
     joints_[joint].z() += depth;
   }
 
-  // The part of a slip that friction takes back.
+  // The part of a slip that friction undoes.
   Vec3 rubbed(const Vec3& slip, double depth) const {
     const double length = slip.norm();
     if (length == 0) return Vec3::Zero();

@@ -12,20 +12,24 @@
 namespace cscd::scenes {
 namespace {
 
-// Position-based dynamics of a chain of bones under gravity, led at its ends.
-// Mueller, Heidelberger, Hennix, Ratcliff, "Position based dynamics", VRIPHYS 2006, in small steps as in
-// Macklin et al., "Small steps in physics simulation", SCA 2019. Differs in that the lengths of all bones are
-// solved for together, by elimination in the tridiagonal system of the chain (Han, Harada, "Tridiagonal
-// matrix formulation for inextensible hair strand simulation", VRIPHYS 2013): a hanging chain of 100 bones
-// neither stretches nor needs hundreds of sweeps. Cost per step: linear in the bones.
+// Position-based dynamics of a chain of bones under gravity, led at its ends (Mueller, Heidelberger,
+// Hennix, Ratcliff, "Position based dynamics", VRIPHYS 2006), in small steps as in Macklin et al., "Small
+// steps in physics simulation", SCA 2019.
+//
+// This implementation differs in one respect. The lengths of all bones are solved for together, by
+// elimination in the tridiagonal system of the chain (Han, Harada, "Tridiagonal matrix formulation for
+// inextensible hair strand simulation", VRIPHYS 2013). So a hanging chain of 100 bones does not stretch,
+// and it needs no hundreds of sweeps. The cost of a step is linear in the number of bones.
 
-// Where an end is led: keys of frame, radius, turns and height about the vertical line through `axis`.
+// The path on which an end is led. Its keys are rows of frame, radius, turns and height, about the vertical
+// line through `axis`.
 class EndPath {
  public:
   EndPath(const Parameters::Table& keys, const Vec3& axis, const std::string& who)
       : curve_(keys, who), axis_(axis) {}
 
-  // Nothing before the first key and after the last: the end is then free.
+  // The place of the end at a frame. Returns nullopt before the first key and after the last, because the
+  // end is free then.
   std::optional<Vec3> at(double frame) const {
     if (frame < curve_.first_frame() || frame > curve_.last_frame()) return std::nullopt;
     const double radius = curve_.at(frame, 1), height = curve_.at(frame, 3);
@@ -57,7 +61,7 @@ class ChainDynamics final : public Effect {
     const double bend_radius = p.number("bend_radius");
     for (const Bone& bone : shape.rig.reference) lengths_.push_back((bone.tail - bone.head).norm());
     for (std::size_t i = 1; i < lengths_.size(); ++i) {
-      // Two chords of a circle of that radius span this much at least.
+      // Two chords of a circle of radius bend_radius span at least this length.
       const double chord = (lengths_[i - 1] + lengths_[i]) / 2;
       const double sine = std::min(1.0, chord / (2 * bend_radius));
       least_span_.push_back(2 * chord * std::sqrt(1 - sine * sine));
@@ -77,8 +81,8 @@ class ChainDynamics final : public Effect {
   }
 
  private:
-  // Inertia, drag and gravity; joints that are led go where they are led. Whatever moved the joints since the
-  // last step, contact too, is in the velocity.
+  // Moves the joints by inertia, drag and gravity, and moves led joints to their places. The velocity of a
+  // joint contains all of its motion since the last step, by contact too.
   void predict(const SceneState& state) {
     inverse_mass_.assign(joints_.size(), 1.0);
     const double kept = last_step_ > 0 ? std::max(0.0, 1 - drag_ * state.step) * state.step / last_step_ : 0;
@@ -98,7 +102,8 @@ class ChainDynamics final : public Effect {
     }
   }
 
-  // Moves the middle of three joints towards, and its neighbours away from, the line that joins them.
+  // Straightens every three neighbouring joints: moves the middle joint towards the line that joins the
+  // other two, and moves these two the opposite way.
   void bend(double step) {
     const double soft = std::min(1.0, stiffness_ * step * step);
     for (std::size_t i = 1; i + 1 < joints_.size(); ++i) {
@@ -106,7 +111,7 @@ class ChainDynamics final : public Effect {
       const double span = (joints_[i + 1] - joints_[i - 1]).norm();
       double share = soft;
       if (span < least_span_[i - 1]) {
-        // The sag that belongs to the least span, by Pythagoras.
+        // The sag of the middle joint at the least span, by Pythagoras.
         const double chord = (lengths_[i - 1] + lengths_[i]) / 2;
         const double most =
             std::sqrt(std::max(0.0, chord * chord - least_span_[i - 1] * least_span_[i - 1] / 4));
@@ -122,7 +127,8 @@ class ChainDynamics final : public Effect {
     }
   }
 
-  // One Newton step towards the bones' lengths: all multipliers at once, by Thomas' elimination.
+  // Makes one Newton step towards the lengths of the bones. It solves for all multipliers at once, by Thomas'
+  // elimination.
   void restore_lengths() {
     const std::size_t bones = lengths_.size();
     along_.resize(bones);
@@ -139,8 +145,8 @@ class ChainDynamics final : public Effect {
         diagonal -= coupling * upper_[i - 1];
         right -= coupling * multiplier_[i - 1];
       }
-      // Singular only when both ends are led along a taut straight chain; the regulariser lets it stretch
-      // then.
+      // The system is singular only if both ends of a taut straight chain are led. This regulariser lets
+      // the chain stretch then.
       diagonal += 1e-9;
       upper_[i] = i + 1 < bones ? -inverse_mass_[i + 1] *
                                       along_[i].dot((joints_[i + 2] - joints_[i + 1]).normalized()) / diagonal
@@ -160,7 +166,7 @@ class ChainDynamics final : public Effect {
   std::size_t steady_ = 0;
   std::optional<EndPath> ends_[2];
   std::vector<double> lengths_;     // [bones]
-  std::vector<double> least_span_;  // of bones i and i + 1 together
+  std::vector<double> least_span_;  // [bones - 1]: least span of bones i and i + 1 together
   std::vector<Vec3> joints_, before_;
   double last_step_ = 0;
   std::vector<double> inverse_mass_, upper_, multiplier_;

@@ -47,7 +47,7 @@ TEST(ChainDynamics, FallsFreelyAsAParabola) {
   EffectSequence sequence(calls, shape, 64);
   SceneState state(shape);
   for (int frame = 1; frame <= 4; ++frame) sequence.advance(state, frame);
-  // The symplectic Euler steps add half a step of fall to g t^2 / 2.
+  // Symplectic Euler steps add half a step of fall to g t^2 / 2.
   for (const Bone& bone : state.bones) EXPECT_NEAR(bone.head.z(), -8 - 4 / 128.0, 1e-9);
 }
 
@@ -111,7 +111,7 @@ TEST(ChainDynamics, BendsNoSharperThanItsLimit) {
 }
 
 TEST(ChainContact, KeepsTheChainOffItselfAndTheFloor) {
-  // A chain let fall on end onto the floor buckles and piles up on itself.
+  // A chain that falls onto the floor, end first, buckles and piles up on itself.
   const Shape shape = chain(40, 40, Vec3(0, 0, 1), Vec3(0.02, 0.01, 1));
   const EffectCall with[] = {
       dynamics({{"drag", 0.5}, {"bend_radius", 1.5}, {"bend_stiffness", 1.0}}),
@@ -139,7 +139,7 @@ TEST(PoseChain, BendsWithoutTwisting) {
   state.steady_bone = 12;
   std::vector<Vec3> joints;
   read_joints(state, joints);
-  // A helix, reached in small steps.
+  // The chain becomes a helix in small steps.
   for (int step = 1; step <= 20; ++step) {
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const double angle = 0.012 * step * static_cast<double>(i);
@@ -153,7 +153,7 @@ TEST(PoseChain, BendsWithoutTwisting) {
     const Vec3 along = (state.bones[i].tail - state.bones[i].head).normalized();
     EXPECT_LT((r * Vec3::UnitZ() - along).norm(), 1e-12) << "carries the bone";
     if (i == 0) continue;
-    // The turn between neighbours has no part about the bones: its axis lies across both.
+    // The turn between neighbours has no part about the bones, because its axis is perpendicular to both.
     const Eigen::Matrix3d turn = r * state.rotations[i - 1].transpose();
     const Vec3 axis(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
     EXPECT_LT(std::abs(axis.dot(along)), 1e-12);
@@ -165,7 +165,7 @@ TEST(PoseChain, TurnsAStraightChainRoundWithoutLosingItsFrame) {
   SceneState state(shape);
   std::vector<Vec3> joints;
   read_joints(state, joints);
-  for (Vec3& joint : joints) joint = -joint;  // half a turn at once, of which no axis is the smallest
+  for (Vec3& joint : joints) joint = -joint;  // half a turn at once, for which many axes are equally good
   pose_chain(joints, state);
   for (const Eigen::Matrix3d& r : state.rotations) {
     EXPECT_LT((r * Vec3::UnitZ() + Vec3::UnitZ()).norm(), 1e-12);

@@ -12,12 +12,12 @@
 namespace cscd::scenes {
 namespace {
 
-// Makes the animated surface feel itself. What the effects before have made is where the surface is drawn to,
-// its target; the surface proper starts from where the last step has left it. The predicted end of a step is
-// what the target did, and a part of the way back to it:
-//   predicted = target now + (1 - pull) (surface - target) before.
-// The prediction is what a detector is asked about, so contacts are real; the next frame is the corrected
-// end.
+// Keeps the animated surface from running into itself. The previous effects of the scene make the target,
+// to which the surface is drawn. The surface itself starts at the end of its last step. The predicted end
+// of a step follows the motion of the target and goes a part of the way back to the target:
+//   predicted = target at the end + (1 - pull) (surface - target) at the start.
+// A detector is asked about the step to the prediction, so the contacts are real. The next frame is the
+// corrected end.
 class ContactResponse final : public Effect {
  public:
   ContactResponse(const Parameters& p, const Shape& shape, const MakeDetector& first)

@@ -8,7 +8,8 @@
 
 namespace cscd::scenes {
 
-// The effect with another detector of first contacts than our own: for tests, which put broken ones there.
+// Makes the effect contact_response with another detector of first contacts than our own. Tests use this to
+// put in broken detectors.
 using MakeDetector = std::function<std::unique_ptr<Detector>(const Setup& setup)>;
 std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, const Shape& shape,
                                               const MakeDetector& first);

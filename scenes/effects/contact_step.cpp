@@ -11,15 +11,16 @@ constexpr double kUnreached = std::numeric_limits<double>::infinity();
 constexpr int kSmoothingPasses = 3;
 constexpr int kMostCuts = 20;
 
-// The features of one contact at its time: two groups of vertices, each with the share by which it carries
-// the point of contact, and the direction across both.
+// The features of one contact at its time: two groups of vertices, the share by which each vertex carries
+// the point of contact, and the direction across both features.
 struct Touch {
   VertexId vertex[4];
   double share[4];        // sums to 1 in the first group, to -1 in the second
-  std::size_t first = 0;  // vertices in the first group
-  Vec3 normal;            // not a unit vector; zero where there is none
+  std::size_t first = 0;  // number of vertices in the first group
+  Vec3 normal;            // not a unit vector; zero if the features have no normal
 };
 
+// The touch of a contact. at(vertex) gives the position of a vertex at the contact's time.
 Touch touch_of(const TriangleMesh& mesh, const Contact& contact, const auto& at) {
   Touch touch;
   if (contact.pair.kind == FeaturePair::Kind::vertex_face) {
@@ -95,7 +96,7 @@ void ContactStep::resolve(std::span<const Vec3> start, std::vector<Vec3>& end, c
   for (int cut = 0; cut < kMostCuts; ++cut) {
     double time = 1;
     for (const Contact& contact : found_.contacts) time = std::min(time, contact.time);
-    // Pairs that touch at one time may have bounds of it that differ in the last bits.
+    // Round the time down to a grid: the times of pairs that touch at once may differ in the last bits.
     constexpr double grid = 1 << 24;
     const double kept = std::floor(options_.back_off * time * grid) / grid;
     for (std::size_t v = 0; v < end.size(); ++v) end[v] = start[v] + kept * (end[v] - start[v]);
@@ -139,8 +140,8 @@ void ContactStep::add_correction(const Contact& contact, std::span<const Vec3> s
   }
 }
 
-// Every vertex near one in contact takes over its correction, fading out; then smoothed where two such
-// regions meet.
+// Spreads the corrections. Every vertex near a vertex in contact takes over the correction of that vertex,
+// fading out with the way between them. Then corrections are smoothed, because such regions meet.
 void ContactStep::spread() {
   using Entry = std::pair<double, VertexId>;
   const auto later = [](const Entry& x, const Entry& y) { return x > y; };

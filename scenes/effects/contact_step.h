@@ -11,29 +11,34 @@ namespace cscd::scenes {
 
 struct ContactStepOptions {
   double push = 0.3;      // gap left at a contact, in mean edge lengths of the reference pose
-  double spread = 8;      // how far along the surface a contact is felt, in the same
-  double back_off = 0.8;  // a step that has to be cut as a whole keeps this share of the time before contact
-  int rounds = 8;         // corrections of one step before it is cut as a whole
+  double spread = 8;      // reach of a contact along the surface, in the same unit
+  double back_off = 0.8;  // share of the time before contact that a step keeps if it is cut as a whole
+  int rounds = 8;         // the most corrections of a step before it is cut as a whole
 };
 
-// One step of a surface that must not run into itself: what a simulator does with the answer of a collision
-// query. At every contact of the predicted step the two sides lose their approach from the time of impact on
-// and are pushed apart, along the normal there and fading out along the surface, until the detector finds the
-// straight way from start to end free. If it does not become so, the whole step is cut short before its first
-// contact.
+// Makes steps of a surface that must not run into itself, as a simulator does with the answers of a
+// collision query.
 //
-// The same bits with every compiler: of `first`, whose later contacts depend on its clusters, only the
-// verdict and the earliest time are used.
+// At every contact of the predicted step the two sides lose their approach from the time of impact on, and
+// are pushed apart along the normal at the contact. This correction fades out along the surface.
+// Corrections are repeated until the detector finds no contact on the straight way from start to end. If
+// contacts remain after the last correction, the whole step is cut short before its first contact.
+//
+// The results have the same bits with every compiler. Therefore only the verdict and the earliest time of
+// `first` are used: its later contacts depend on its clusters.
 class ContactStep {
  public:
-  // Both detectors run with an exact elementary test; `first` finds the earliest contact, `all` every one.
+  // Both detectors must run with an exact elementary test. `first` finds the earliest contact, and `all`
+  // finds all contacts. `reference` [vertices] gives the edge lengths in the reference pose.
   ContactStep(const TriangleMesh& mesh, std::span<const Vec3> reference, std::unique_ptr<Detector> first,
               std::unique_ptr<Detector> all, const ContactStepOptions& options);
 
-  // Moves `end` (at first the prediction) to where the surface can go from `start`.
+  // Takes the prediction in `end` and changes it to an end that the surface can reach from `start` without
+  // contact. Both are [vertices].
   void resolve(std::span<const Vec3> start, std::vector<Vec3>& end, const Rig::Interval& bones);
 
-  // What has been done since construction.
+  // Counts since construction: steps, steps whose prediction had contacts, steps cut as a whole, and
+  // corrections.
   struct Counts {
     std::size_t steps = 0, colliding = 0, cut = 0, rounds = 0;
   };
@@ -46,7 +51,7 @@ class ContactStep {
   void spread();
 
   const TriangleMesh& mesh_;
-  ContactStepOptions options_;  // lengths in the frame's units
+  ContactStepOptions options_;  // push and spread are lengths of the scene here
   std::unique_ptr<Detector> first_, all_;
   ContactSet found_;
   struct Neighbour {
@@ -54,11 +59,11 @@ class ContactStep {
     double length;
   };
   std::vector<std::size_t> first_neighbour_;
-  std::vector<Neighbour> neighbours_;  // of vertex v: first_neighbour_[v] .. [v + 1]
+  std::vector<Neighbour> neighbours_;  // those of vertex v: first_neighbour_[v] .. first_neighbour_[v + 1]
   std::vector<Vec3> correction_, smoothed_;
   std::vector<std::size_t> contacts_at_;
-  std::vector<double> path_;       // to the nearest vertex in contact
-  std::vector<VertexId> reached_;  // in order of their paths
+  std::vector<double> path_;       // [vertices]: length of the path to the nearest vertex in contact
+  std::vector<VertexId> reached_;  // vertices with a correction, in ascending order of their paths
   Counts counts_;
 };
 

@@ -13,7 +13,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Every feature pair, without any culling.
+// A detector that tests every feature pair, without any culling.
 class AllPairs final : public Detector {
  public:
   explicit AllPairs(const TriangleMesh& mesh) : mesh_(mesh) {}
@@ -41,7 +41,7 @@ class AllPairs final : public Detector {
   const TriangleMesh& mesh_;
 };
 
-// Two balls beside each other; the prediction drives the left one into the right one.
+// Two balls lie beside each other, and the prediction drives the left ball into the right ball.
 class TwoBalls : public testing::Test {
  protected:
   static constexpr double kGap = 0.1;
@@ -66,7 +66,7 @@ class TwoBalls : public testing::Test {
   }
   test::Shape balls;
   TriangleMesh mesh;
-  std::size_t one;  // vertices of the left ball
+  std::size_t one;  // number of vertices of the left ball
 };
 
 TEST_F(TwoBalls, AStepThatMeetsNothingIsThePrediction) {
@@ -86,7 +86,7 @@ TEST_F(TwoBalls, AStepThatMeetsStopsThereAndIsPushedApart) {
   EXPECT_EQ(contact.counts().colliding, 1u);
   EXPECT_EQ(contact.counts().cut, 0u);
   double left = 0, right = 0,
-         back = 0;  // how far either side was moved from the prediction, and the far side
+         back = 0;  // largest moves from the prediction: left ball, right ball, far side of the left ball
   for (std::size_t v = 0; v < end.size(); ++v) {
     const double moved = (end[v] - predicted(0.4)[v]).norm();
     (v < one ? left : right) = std::max(v < one ? left : right, moved);
@@ -109,7 +109,7 @@ TEST_F(TwoBalls, AStepThatIsNotCorrectedIsCutAsAWholeBeforeItsFirstContact) {
   for (std::size_t v = 0; v < one; ++v) EXPECT_NEAR(end[v].x() - balls.positions[v].x(), moved, 1e-15);
 }
 
-// A tube that is wound up into a ring until its ends would go through each other.
+// A tube is wound up into a ring until its ends would go through each other.
 class Ring : public testing::Test {
  protected:
   Ring() {
@@ -121,7 +121,8 @@ class Ring : public testing::Test {
     p.length = 12;
     shape = tube(p);
   }
-  // Drives the effect and gives its last start.
+  // The outcome of 40 frames of the effect: the refusal, the frames whose prediction collided, and the
+  // frames done.
   struct Outcome {
     std::string refusal;
     std::size_t colliding = 0, frames = 0;
@@ -165,7 +166,7 @@ std::unique_ptr<Detector> own(const Setup& setup) {
   return make_drvbc(setup).detector;
 }
 
-// Forgets what it found, every so often.
+// Mutation: a detector that loses its contacts every `every`-th time it finds some.
 class Forgetful final : public Detector {
  public:
   Forgetful(std::unique_ptr<Detector> detector, int every) : detector_(std::move(detector)), every_(every) {}

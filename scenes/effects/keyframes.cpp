@@ -9,8 +9,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Poses bones by keys, as an animator does. Parameters other than the few below name bones; the rotation
-// vectors of all those that name a bone add up.
+// Poses bones by keys, as an animator does. Every parameter other than those in kRows names bones. If
+// several parameters name a bone, their rotation vectors add up.
 class Keyframes final : public Effect {
  public:
   Keyframes(const Parameters& p, const Shape& shape, std::span<const ParameterRow> rows)
@@ -54,7 +54,7 @@ class Keyframes final : public Effect {
  private:
   Envelope envelope_;
   std::vector<KeyCurve> curves_;
-  std::vector<std::vector<std::size_t>> of_bone_;  // which curves turn it
+  std::vector<std::vector<std::size_t>> of_bone_;  // [bones]: curves that turn the bone
   std::size_t root_ = SIZE_MAX;                    // the curve of the translation
 };
 

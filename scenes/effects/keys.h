@@ -7,14 +7,15 @@
 
 namespace cscd::scenes {
 
-// A weight between 0 and 1 that fades in after `start` and is gone again at `end`, in frames.
+// A weight that fades in after `start` and has faded out at `end`. Times are in frames.
 struct Envelope {
   double start = 0;
   double end = std::numeric_limits<double>::infinity();
-  double fade = 0;    // how long either takes
-  double weight = 1;  // in between
+  double fade = 0;    // time to fade in, and to fade out
+  double weight = 1;  // weight between both
 
-  // Of the parameters start, end, fade and weight, each optional. Throws InputError where they leave no time.
+  // Reads the parameters start, end, fade and weight, each of them optional. Throws InputError unless end
+  // is after start.
   static Envelope from(const Parameters& parameters);
   double at(double frame) const;
 };

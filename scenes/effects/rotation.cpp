@@ -3,10 +3,10 @@
 namespace cscd::scenes {
 
 Eigen::Matrix3d smallest_rotation(const Vec3& from, const Vec3& to) {
-  const Vec3 axis = from.cross(to);  // of length sin(angle)
+  const Vec3 axis = from.cross(to);  // its length is the sine of the angle
   const double cosine = from.dot(to);
   if (cosine < -0.999999) {
-    // A half turn about any axis across.
+    // Make a half turn about any axis perpendicular to `from`.
     int least = 0;
     from.cwiseAbs().minCoeff(&least);
     const Vec3 across = from.cross(Vec3::Unit(least)).normalized();

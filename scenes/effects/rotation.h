@@ -7,8 +7,8 @@
 
 namespace cscd::scenes {
 
-// Products of rotations, term by term. Eigen's own fuse multiply and add where the processor can, whatever
-// -ffp-contract says, and frames must be the same bits on every processor.
+// Products of rotations, term by term. Eigen's own products fuse multiply and add where the processor can,
+// whatever -ffp-contract says, but frames must have the same bits on every processor.
 inline Vec3 rotated(const Eigen::Matrix3d& r, const Vec3& v) {
   return {r(0, 0) * v.x() + r(0, 1) * v.y() + r(0, 2) * v.z(),
           r(1, 0) * v.x() + r(1, 1) * v.y() + r(1, 2) * v.z(),
@@ -21,7 +21,9 @@ inline Eigen::Matrix3d composed(const Eigen::Matrix3d& after, const Eigen::Matri
   return product;
 }
 
-// About a unit vector. Made orthogonal to the last bits, which circle_point has cut off: poses multiply many.
+// The rotation about a unit vector, by an angle in turns. circle_point cuts off the last bits of the sine
+// and cosine; the rotation is made orthogonal to the last bits again, because poses multiply many
+// rotations.
 inline Eigen::Matrix3d rotation_about(const Vec3& axis, double turns) {
   CirclePoint point = circle_point(turns);
   const double length = std::sqrt(point.cosine * point.cosine + point.sine * point.sine);
@@ -43,7 +45,7 @@ inline Eigen::Matrix3d rotation_about(const Vec3& axis, double turns) {
   return rotation;
 }
 
-// About the direction of `vector`, by its length in turns.
+// The rotation about the direction of `vector`, by the length of `vector` in turns.
 inline Eigen::Matrix3d rotation_by(const Vec3& vector) {
   const double turns = vector.norm();
   if (turns == 0) return Eigen::Matrix3d::Identity();

@@ -2,7 +2,7 @@
 
 namespace cscd::scenes {
 
-// One per file of this folder.
+// One row for each effect, defined in the effect's own file of this folder.
 EffectRow chain_contact_row();
 EffectRow chain_dynamics_row();
 EffectRow contact_response_row();

@@ -16,22 +16,23 @@ struct EffectCall {
   Parameters parameters;
 };
 
-// The effects of one scene, in its order. Only the effects named are constructed and evaluated.
+// The effects of one scene, in the scene's order. Only the effects that the scene names are constructed and
+// evaluated.
 class EffectSequence {
  public:
-  // Throws InputError for a name that is not among `rows` and for unusable parameters. The shape must outlive
-  // the sequence.
+  // `substeps` is the number of substeps of a frame. Throws InputError for a name that is not among `rows`
+  // and for unusable parameters. The shape must outlive the sequence.
   EffectSequence(std::span<const EffectCall> calls, const Shape& shape, int substeps,
                  std::span<const EffectRow> rows = effects());
 
-  // Called with an effect's place in the sequence as it is entered, and with size() when the frame is done,
-  // so that a caller's clock can tell whom the time belongs to.
+  // A function that is called with the place of an effect in the sequence when that effect begins, and with
+  // size() when the frame is done. A caller's clock uses it to charge time to effects.
   using Watch = std::function<void(std::size_t effect)>;
 
   // Advances the state from frame - 1 to frame.
   void advance(SceneState& state, int frame, const Watch& watch = {});
 
-  // Whether frames come with predictions: one of the effects makes them.
+  // True if frames come with predictions, because one of the effects makes predictions.
   bool predicts() const { return predicts_; }
 
   std::size_t size() const { return entries_.size(); }

@@ -8,7 +8,7 @@
 namespace cscd::scenes {
 namespace {
 
-// What the instrumented effects below did, in order.
+// One call of an instrumented effect below.
 struct Call {
   std::string effect;
   double time, step;

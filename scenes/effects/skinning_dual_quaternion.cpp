@@ -7,11 +7,13 @@
 namespace cscd::scenes {
 namespace {
 
-// Dual quaternion skinning: each vertex is carried by the rigid motion that lies between those of its bones,
-// so that a twisted limb keeps its thickness where linear blending lets it collapse. Kavan, Collins, Zara,
-// O'Sullivan, "Geometric skinning with approximate dual quaternion blending", ACM TOG 27(4), 2008, without
-// scale. Every quaternion stands for the same motion as its negative; bones are taken with the sign that lies
-// nearer to the bone of the largest weight, so that what is blended never cancels out.
+// Dual quaternion skinning (Kavan, Collins, Zara, O'Sullivan, "Geometric skinning with approximate dual
+// quaternion blending", ACM TOG 27(4), 2008), without scale.
+//
+// Each vertex is carried by a rigid motion between the rigid motions of its bones. So a twisted limb keeps
+// its thickness, while linear blending lets it collapse. Every quaternion stands for the same motion as its
+// negative. The quaternion of a bone is taken with the sign that brings it nearer to the bone of the
+// largest weight, so that blended quaternions never cancel out.
 struct Quaternion {
   double w;
   Vec3 v;
@@ -32,8 +34,8 @@ struct DualQuaternion {
   Quaternion real, dual;
 };
 
-// Of a rotation matrix, from its largest component (Shepperd, "Quaternion from rotation matrix", J. Guidance
-// and Control 1978).
+// The quaternion of a rotation matrix, computed from its largest component (Shepperd, "Quaternion from
+// rotation matrix", J. Guidance and Control 1978).
 Quaternion quaternion(const Eigen::Matrix3d& r) {
   const double trace = r(0, 0) + r(1, 1) + r(2, 2);
   int largest = 0;
@@ -84,7 +86,7 @@ class SkinningDualQuaternion final : public Effect {
     return at + 2 * v.cross(v.cross(at) + w * at) + 2 * (w * dual_v - dual_w * v + v.cross(dual_v));
   }
 
-  std::vector<DualQuaternion> motion_;  // [bones], from the reference pose
+  std::vector<DualQuaternion> motion_;  // [bones]: motion from the reference pose
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 namespace cscd::scenes {
 namespace {
 
-// Linear blend skinning: each vertex is the weighted mean of where its bones would carry it.
-// Magnenat-Thalmann, Laperriere, Thalmann, "Joint-dependent local deformations for hand animation and object
-// grasping", Graphics Interface 1988. Bones turn about their heads and do not stretch.
+// Linear blend skinning (Magnenat-Thalmann, Laperriere, Thalmann, "Joint-dependent local deformations for
+// hand animation and object grasping", Graphics Interface 1988). Each vertex is the weighted mean of the
+// places to which its bones would carry the vertex. Bones turn about their heads and do not stretch.
 class SkinningLinear final : public Effect {
  public:
   void step(SceneState& state) override {

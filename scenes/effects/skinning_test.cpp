@@ -25,7 +25,7 @@ Shape limb(int bones = 2) {
   return tube(p);
 }
 
-// Skins the shape as it is posed.
+// The positions after the given skinning effects, for the pose of the state.
 std::vector<Vec3> skinned(SceneState state, const std::vector<std::string>& effects, Values values = {}) {
   std::vector<EffectCall> calls;
   for (const std::string& effect : effects)
@@ -48,7 +48,7 @@ double volume(const Shape& shape, const std::vector<Vec3>& positions) {
   return six / 6;
 }
 
-// Distance from the x axis of the ring in the middle.
+// The mean distance of the ring in the middle from the x axis.
 double waist(const std::vector<Vec3>& positions) {
   double sum = 0;
   for (int side = 0; side < 24; ++side)
@@ -88,7 +88,8 @@ TEST(Skinning, KeepsATwistedLimbThickOnlyByDualQuaternions) {
   const Shape shape = limb();
   for (const double turns : {0.0, 0.125, 0.25, 0.375, 0.49}) {
     const SceneState state = turned(shape, {Vec3::Zero(), {turns, 0, 0}});
-    // Half-way between the bones, linear blending halves the chord between two points of a circle.
+    // Half-way between the bones, linear blending gives the middle of the chord between two points of a
+    // circle.
     EXPECT_NEAR(waist(skinned(state, {"skinning_linear"})), std::cos(std::numbers::pi * turns), 1e-10);
     const std::vector<Vec3> positions = skinned(state, {"skinning_dual_quaternion"});
     EXPECT_NEAR(waist(positions), 1, 1e-12);
@@ -99,8 +100,9 @@ TEST(Skinning, KeepsATwistedLimbThickOnlyByDualQuaternions) {
 }
 
 TEST(SkinningDualQuaternion, TakesTheShortWayRound) {
-  // Both bones turned by the same, then the second on to 0.55 turns and more in all: its quaternion changes
-  // sign against the first's, and the surface between must not go the long way round.
+  // Both bones turn by the same angle, then the second turns on, up to more than half a turn in all. Its
+  // quaternion changes sign against the quaternion of the first bone, and the surface between must not go
+  // the long way round.
   const Shape shape = limb();
   for (const double whole : {0.0, 0.2, 0.4, 0.45, 0.55, 0.7, 0.95}) {
     const SceneState state = turned(shape, {{whole, 0, 0}, {0.2, 0, 0}});

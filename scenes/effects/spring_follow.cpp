@@ -5,11 +5,13 @@
 namespace cscd::scenes {
 namespace {
 
-// Secondary motion: bones lag behind their pose, and swing past it. At each bone's end sits a point mass,
-// drawn by a damped spring to where the pose, carried along by the bones before it, has that end; the bone
-// turns the shortest way to its mass, which is put back to the bone's length as in position-based dynamics
-// (Mueller et al., VRIPHYS 2006). Each step is implicit Euler's, and masses stay on spheres round their
-// bones' heads: nothing grows without bound whatever the stiffness, the damping and the step.
+// Secondary motion: bones lag behind their pose and swing past it.
+//
+// A point mass sits at the end of each bone. A damped spring draws the mass to its goal: the place of the
+// bone's end in the pose, carried along by the parent bones. The bone turns the shortest way to its mass,
+// and the mass is put back to the bone's length, as in position-based dynamics (Mueller et al., VRIPHYS
+// 2006). Each step is an implicit Euler step, and masses stay on spheres round the heads of their bones. So
+// nothing grows without bound, whatever the stiffness, the damping and the step are.
 class SpringFollow final : public Effect {
  public:
   SpringFollow(const Parameters& p, const Shape& shape)
@@ -38,7 +40,7 @@ class SpringFollow final : public Effect {
       const Vec3 place = goal.head + mass.length * found;
       mass.velocity = (place - mass.place) / h;
       mass.place = place;
-      // What turns the bone in the world, in the axes that the bone has carried along.
+      // Take the turn of the bone in the world into the axes that the bone has carried along.
       const Eigen::Matrix3d& rotation = state.rotations[bone];
       return composed(rotation.transpose(), composed(smallest_rotation(wanted, found), rotation));
     });
@@ -46,7 +48,7 @@ class SpringFollow final : public Effect {
 
  private:
   struct Mass {
-    double length = 0;  // of its bone; 0 for a bone without
+    double length = 0;  // length of the bone; 0 for a bone without a mass
     Vec3 place = Vec3::Zero(), velocity = Vec3::Zero();
   };
   double stiffness_, damping_;

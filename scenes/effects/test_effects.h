@@ -25,7 +25,7 @@ inline SceneState run(const Shape& shape, const std::vector<EffectCall>& calls, 
   return state;
 }
 
-// What the effect's refusal says; nothing if it is accepted.
+// The text of the InputError with which the effect refuses its parameters or the shape, or an empty text.
 inline std::string refusal(const Shape& shape, const EffectCall& effect) {
   try {
     EffectSequence({&effect, 1}, shape, 1);

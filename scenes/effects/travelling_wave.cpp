@@ -8,11 +8,11 @@
 namespace cscd::scenes {
 namespace {
 
-// A wave that runs along chains of bones, as through tentacles and tails. In turns, and with time in frames,
-// the bone at place s of n + 1 in chain c turns by
-//   envelope(time) (a + (b - a) s / n) sin(time / period - s / wave_length + phase + c chain_phase),
-// the amplitude going from a at the first bone to b at the last. Without period and wave length, at phase
-// 1/4, it is a bend.
+// A wave that runs along chains of bones, as through tentacles and tails. With angles in turns and times in
+// frames, the bone at place s of chain c, which has n + 1 places, turns by
+//   envelope(time) (a + (b - a) s / n) sin(time / period - s / wave_length + phase + c chain_phase).
+// The amplitude goes from a at the first bone to b at the last bone. Without a period and a wave length, at
+// phase 1/4, the wave is a bend.
 class TravellingWave final : public Effect {
  public:
   TravellingWave(const Parameters& p, const Shape& shape)

@@ -9,7 +9,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Whether a name is one of those that the pattern stands for.
+// True if the pattern stands for the name.
 bool matches(std::string_view pattern, std::string_view name) {
   if (pattern.empty()) return name.empty();
   if (pattern.front() != '*')
@@ -43,7 +43,7 @@ void pose_from_rest(SceneState& state) {
 void turn_bones(SceneState& state, const BoneTurn& turn) {
   const Rig& rig = state.shape.rig;
   const std::vector<Bone> before = state.bones;
-  std::vector<Eigen::Matrix3d> change(before.size());  // of each bone's rotation, in world axes
+  std::vector<Eigen::Matrix3d> change(before.size());  // change of each bone's rotation, in world axes
   for (std::size_t bone = 0; bone < before.size(); ++bone) {
     Bone& now = state.bones[bone];
     Eigen::Matrix3d& rotation = state.rotations[bone];
@@ -82,8 +82,8 @@ std::vector<std::size_t> select_bones(const Shape& shape, std::string_view names
 
 std::vector<ChainBone> select_chains(const Shape& shape, std::string_view names, const std::string& who) {
   std::vector<ChainBone> chosen;
-  std::vector<std::size_t> length;                                 // of each chain
-  std::vector<std::size_t> at(shape.rig.parent.size(), SIZE_MAX);  // of each bone, in `chosen`
+  std::vector<std::size_t> length;                                 // [chains]
+  std::vector<std::size_t> at(shape.rig.parent.size(), SIZE_MAX);  // [bones]: place in `chosen`
   for (const std::size_t bone : select_bones(shape, names, who)) {
     const BoneId parent = shape.rig.parent[bone];
     at[bone] = chosen.size();

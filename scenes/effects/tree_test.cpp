@@ -10,7 +10,8 @@
 namespace cscd::scenes {
 namespace {
 
-// A trunk along z with two arms at its top, each of three bones of length 1: along x, and against it.
+// A trunk along z with two arms at its top. Each arm has three bones of length 1; one arm points along x,
+// the other against x.
 Shape tree() {
   Shape shape;
   const auto add = [&](const std::string& name, int parent, const Vec3& head, const Vec3& tail) {
@@ -45,7 +46,7 @@ TEST(KeyCurve, RepeatsSmoothly) {
   }
   EXPECT_EQ(curve.at(5, 1), 1);
   EXPECT_EQ(curve.at(-1, 1), -1);
-  const double h = 1e-6;  // the seam lies at frame 2, in the midst of a rise with slope 1 / 3
+  const double h = 1e-6;  // the periods meet at frame 2, in the middle of a rise with slope 1 / 3
   EXPECT_NEAR((curve.at(2 + h, 1) - curve.at(2, 1)) / h, 1.0 / 3, 1e-5);
   EXPECT_NEAR((curve.at(2, 1) - curve.at(2 - h, 1)) / h, 1.0 / 3, 1e-5);
   EXPECT_EQ(KeyCurve::periodic({{3, 7}}, 5, "test").at(4.5, 1), 7);
@@ -80,7 +81,7 @@ TEST(TurnBones, CarriesWhatHangsOnABone) {
     return rotation_by(bone == 0 ? Vec3(0, 0, 0.25) : bone == 2 ? Vec3(0, 0.25, 0) : Vec3::Zero());
   });
   expect_near(state.bones[1].tail, {0, 1, 2});
-  // right_1 turned about y, which the trunk has carried to -x: from along y to downwards.
+  // right_1 turns about y, which the trunk has carried to -x. So it turns from the y axis downwards.
   expect_near(state.bones[2].tail, {0, 1, 1});
   expect_near(state.bones[3].tail, {0, 1, 0});
   expect_near(state.bones[6].tail, {0, -3, 2});
@@ -128,7 +129,7 @@ TEST(Keyframes, TurnsBonesByTheirKeys) {
   const SceneState state = run(shape, calls, 10);
   expect_near(state.bones[1].tail, {7, 1, 2});
   expect_near(state.bones[3].head, {7, 2, 2});
-  expect_near(state.bones[3].tail, {7, 1, 2});  // folded back
+  expect_near(state.bones[3].tail, {7, 1, 2});  // the bone is folded back
   expect_near(state.bones[6].tail, {4, 0, 2});
   expect_near(run(shape, calls, 5).bones[1].tail, {3.5 + std::sqrt(0.5), std::sqrt(0.5), 2});
   expect_near(run(shape, calls, 25).bones[1].tail, {7, 1, 2});
@@ -194,7 +195,7 @@ TEST(TravellingWave, RunsAlongItsChains) {
                          {"wave_length", 4.0}, {"period", 16.0},
                          {"phase", 0.125},     {"chain_phase", 0.5}};
   const SceneState state = run(shape, {call("travelling_wave", values)}, 6);
-  // At frame 6 of 16: phases 3/8 + 1/8 - place/4; the second chain half a turn later.
+  // At frame 6 of a period of 16 the phases are 3/8 + 1/8 - place/4. The second chain is half a turn later.
   const double turns[] = {0.1 * 0, 0.15 * 1, 0.2 * 0};  // sines of 1/2, 1/4, 0 turns
   double angle = 0;
   Vec3 right(0, 0, 2), left(0, 0, 2);
@@ -243,7 +244,7 @@ TEST(Twist, SharesItsTurnsAmongTheBones) {
   expect_near(rotated(state.rotations[3], Vec3::UnitY()), -Vec3::UnitY());
   expect_near(state.bones[3].tail, {3, 0, 2});
   EXPECT_EQ(state.rotations[4], Eigen::Matrix3d::Identity());
-  // About the bone where it is, not where it was at rest.
+  // A bone twists about its present axis, not about its axis at rest.
   const SceneState bent = run(shape, {call("keyframes", {{"right_2", Table{{0, 0, 0, 0.25}}}}), twist}, 8);
   expect_near(bent.bones[3].tail, {2, 0, 3});
   expect_near(rotated(bent.rotations[3], Vec3::UnitZ()), {1, 0, 0});
@@ -251,7 +252,7 @@ TEST(Twist, SharesItsTurnsAmongTheBones) {
 
 TEST(SpringFollow, SwingsLikeADampedSpringAndSettles) {
   const Shape shape = tree();
-  // The trunk jumps aside; small angles make the mass a damped oscillator in one dimension.
+  // The trunk jumps aside. At small angles the mass is a damped oscillator in one dimension.
   const double jump = 1e-4;
   const EffectCall keys = call("keyframes", {{"trunk", Table{{0, 0, jump, 0}}}});
   const EffectCall spring =

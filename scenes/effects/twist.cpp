@@ -6,8 +6,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Wrings chains of bones: each bone but the first turns about its own axis, against the bone before it, by
-// the same share of the turns that the keys ask for between first and last.
+// Wrings chains of bones. Each bone but the first turns about its own axis against its parent bone. All
+// bones turn by the same share of the turns that the keys give between the first bone and the last bone.
 class Twist final : public Effect {
  public:
   Twist(const Parameters& p, const Shape& shape)
@@ -40,7 +40,7 @@ class Twist final : public Effect {
  private:
   KeyCurve turns_;
   std::vector<double> share_;  // [bones]
-  std::vector<Vec3> axis_;     // [bones], where there is a share
+  std::vector<Vec3> axis_;     // [bones]; set for the bones of chains
 };
 
 }  // namespace

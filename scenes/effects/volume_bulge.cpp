@@ -5,14 +5,16 @@
 namespace cscd::scenes {
 namespace {
 
-// Gives back the volume that skinning lost where bones bend: the surface there bulges along its normals (or
-// shrinks, where skinning gained). For a vertex with weights w of joints between bone b and its parent p,
-//   displacement = s sum over joints of 4 w_b w_p sin^2(turn between b and p / 2),
-// which is largest half-way between two bones that are folded on each other and 0 where no bone bends. The
-// one factor s is that which restores the volume at rest to first order, cut off where a vertex would move by
-// more than `most`. Ours; spreading a correction of the volume over the vertices by weights is from Rohmer,
-// Hahmann, Cani, "Exact volume preserving skinning with shape control", SCA 2009, who solve for it exactly.
-// Runs after skinning.
+// Restores the volume that skinning loses where bones bend. There the surface bulges along its normals, or
+// shrinks if skinning has gained volume. For a vertex with weights w, the displacement is
+//   s sum over joints of 4 w_b w_p sin^2(turn between b and p / 2),
+// where a joint is between a bone b and its parent p. The displacement is largest half-way between two
+// bones that are folded on each other, and 0 if no bone bends. The common factor s restores the volume at
+// rest to first order; it is limited so that no vertex moves by more than `most`.
+//
+// The method is ours. The idea of spreading a correction of the volume over the vertices by weights is from
+// Rohmer, Hahmann, Cani, "Exact volume preserving skinning with shape control", SCA 2009, who solve for it
+// exactly. The effect runs after skinning.
 class VolumeBulge final : public Effect {
  public:
   VolumeBulge(const Parameters& p, const Shape& shape)
@@ -27,14 +29,14 @@ class VolumeBulge final : public Effect {
       if (shape.rig.parent[bone] != BoneId{-1})
         bend_[bone] = bend(state.rotations[+shape.rig.parent[bone]], state.rotations[bone]);
 
-    // The volume's derivative by each vertex: a third of the area vectors round it.
+    // The derivative of the volume by each vertex is a third of the sum of the area vectors round the vertex.
     gradient_.assign(state.positions.size(), Vec3::Zero());
     for (const Triangle& t : shape.triangles) {
       const Vec3& a = state.positions[+t[0]];
       const Vec3 sixth = (state.positions[+t[1]] - a).cross(state.positions[+t[2]] - a) / 6;
       for (const VertexId vertex : t) gradient_[+vertex] += sixth;
     }
-    double gain = 0, largest = 0;  // of s = 1
+    double gain = 0, largest = 0;  // gain in volume and largest displacement for s = 1
     for (std::size_t vertex = 0; vertex < gradient_.size(); ++vertex) {
       const double amount = bulge(shape, shape.weights[vertex]);
       const double area = gradient_[vertex].norm();
@@ -58,6 +60,7 @@ class VolumeBulge final : public Effect {
     return std::clamp((3 - trace) / 4, 0.0, 1.0);
   }
 
+  // The displacement of a vertex for s = 1.
   double bulge(const Shape& shape, const JointWeights& weights) const {
     double sum = 0;
     for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k) {
@@ -79,7 +82,7 @@ class VolumeBulge final : public Effect {
 
   double share_, most_, at_rest_;
   std::vector<double> bend_;    // [bones]
-  std::vector<Vec3> gradient_;  // [vertices], then each vertex's displacement for s = 1
+  std::vector<Vec3> gradient_;  // [vertices]; turned into the displacements for s = 1
 };
 
 }  // namespace

@@ -7,7 +7,7 @@ Query make(Kind kind, Random& random) {
   const Vec3 a = lattice_point(random, 6), d = lattice_direction(random, 3),
              way = lattice_direction(random, 5);
   const int s = random.integer(-1, 5), b = random.integer(0, 4), c = random.integer(0, 4);
-  // For one instant only: the corners spread as time goes from 1/2.
+  // If true, the features are collapsed for one instant only: the corners spread as time goes away from 1/2.
   const bool instant = flip(random);
   const auto spread = [&](const Vec3& p) {
     return through(p, instant ? lattice_point(random, 3) : Vec3(Vec3::Zero()));

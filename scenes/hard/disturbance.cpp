@@ -19,6 +19,7 @@ void map_points(Query& query, const Map& map) {
   for (MovingPoint& p : query.points) p = {map(p.start), map(p.end)};
 }
 
+// Turns about an axis by 90 degrees, or by the angle with cosine 3/5 and sine 4/5 while scaling by 5.
 void turn_exactly(Query& query, Random& random) {
   const int axis = random.integer(0, 2), y = (axis + 1) % 3, z = (axis + 2) % 3;
   const bool quarter = random.integer(0, 1) == 1;
@@ -32,7 +33,7 @@ void turn_exactly(Query& query, Random& random) {
   });
 }
 
-// By a random quaternion of integers.
+// Turns by a random quaternion of integers.
 void turn_anyhow(Query& query, Random& random) {
   const double a = random.integer(1, 9), b = random.integer(-9, 9), c = random.integer(-9, 9),
                d = random.integer(-9, 9), norm = a * a + b * b + c * c + d * d;
@@ -68,6 +69,7 @@ double off_by_ulps(double x, int ulps, Random& random) {
   return x + steps * (0x1p-53 * x);
 }
 
+// A generator whose seed is a hash of the arguments.
 Random random_of(const Family& family, Kind kind, std::size_t number, std::uint64_t seed) {
   std::uint64_t hash = 0xcbf29ce484222325u ^ seed;
   const auto mix = [&](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3u; };

@@ -7,22 +7,26 @@
 #include "core/elementary/queries/query_file.h"
 #include "scenes/random/surface.h"
 
-// Elementary queries that are hard on purpose: one family a file, each with its story. Every query is made on
-// a lattice, its coordinates integers times a power of two, so that it is degenerate exactly and its answer
-// can be proved; `disturbance.h` then moves it off the lattice by ulps or by shares of its size.
+// Families of elementary queries that are hard on purpose. Each family has its own file and a story that
+// tells why its queries are hard.
+//
+// Every query is made on a lattice: its coordinates are integers times a power of two. So the query is
+// degenerate exactly, and its answer can be proved. `disturbance.h` then moves the query off the lattice by
+// ulps or by shares of its size.
 namespace cscd::scenes::hard {
 
 enum class Kind { vertex_face, edge_edge };
 
 struct Family {
   std::string_view name, story;
-  Query (*make)(Kind kind, Random& random);  // without truth: the referee gives it
+  // Makes a query on the lattice. The query has no truth; the referee gives it (in_contact).
+  Query (*make)(Kind kind, Random& random);
 };
 
-// Every family; a new one is a file and a row in families.cpp.
+// All families. A new family is a file and a row in families.cpp.
 std::span<const Family> families();
 
-// The referee's answer.
+// The referee's answer: true if the features of the query touch at some t in [0, 1].
 bool in_contact(const Query& query, Kind kind);
 
 }  // namespace cscd::scenes::hard

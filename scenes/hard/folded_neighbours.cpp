@@ -8,7 +8,7 @@ Query make(Kind kind, Random& random) {
              pr = lattice_direction(random, 4);
   const Vec3 normal = pq.cross(pr);
   const int u = random.integer(-1, 4), v = random.integer(0, 4);
-  const Vec3 shut = p + u * pq + v * pr;  // where the other apex comes to lie
+  const Vec3 shut = p + u * pq + v * pr;  // the place of the other apex when the triangles are shut
   const double beyond = pick(random, {0, 0, 1, -1});
   const MovingPoint apex{shut + normal, shut - beyond * normal};
   const Vec3 q = p + 4 * pq, r = p + 4 * pr;

@@ -4,7 +4,7 @@ namespace cscd::scenes::hard {
 namespace {
 
 Query make(Kind kind, Random& random) {
-  // The height of the one over the other is z0 - 2 r s (x0 + 2 p s) / 8, with s = t - 1/2.
+  // The height of one feature over the other is z0 - 2 r s (x0 + 2 p s) / 8, with s = t - 1/2.
   const double ulp = 0x1p-52;
   const double p = random.integer(1, 6), r = pick(random, {-3, -1, 1, 2, 5});
   const double z0 = pick(random, {0.0, 0.0, ulp, -ulp, 0x1p-30, -0x1p-30}),

@@ -34,7 +34,7 @@ std::optional<exact::TimeEnclosure> truth_of(const Query& query, Kind kind) {
                                    : exact::first_contact(as_edge_edge(query));
 }
 
-// Calls with every family, kind and number.
+// Calls check(family, kind, number) for every family, every kind, and numbers below `count`.
 template <class Check>
 void for_each_case(std::size_t count, const Check& check) {
   for (const Family& family : families())
@@ -78,7 +78,7 @@ TEST(HardCases, DependOnTheSeedAlone) {
   });
 }
 
-// The truth has a second proof that shares no algorithm with the first.
+// The brute-force referee gives the truth a second time and shares no algorithm with the referee.
 TEST(HardCases, ASecondRefereeAgreesOnTheLattice) {
   for_each_case(6, [](const Family& family, Kind kind, std::size_t i) {
     Random random(kSeed + i);
@@ -105,7 +105,8 @@ TEST(HardCases, ProofsHoldOnTheSuite) {
       if (row.contact_is_proof && !truth) {
         EXPECT_NE(answer.verdict, Verdict::contact) << row.name << "\n" << text(query);
       }
-      // Exact both ways: the referee's bits, hence the same with every compiler and instruction set.
+      // A test that is exact both ways gives the referee's bits as the time. So its time is the same with
+      // every compiler and instruction set.
       if (row.apart_is_proof && row.contact_is_proof && truth) {
         EXPECT_EQ(answer.time, truth->lo) << row.name << "\n" << text(query);
       }
@@ -139,7 +140,7 @@ Query swapped(Query query, std::size_t a, std::size_t b) {
   return query;
 }
 
-// Nothing where a coordinate would lose digits or overflow.
+// The query times 2^exponent, or nullopt if a coordinate would lose digits or overflow.
 std::optional<Query> scaled_exactly(const Query& query, int exponent) {
   bool exact = true;
   const Query there = mapped(query, [&](const Vec3& p) {
@@ -153,7 +154,7 @@ std::optional<Query> scaled_exactly(const Query& query, int exponent) {
   return exact ? std::optional(there) : std::nullopt;
 }
 
-// Rows that are exact both ways must not be moved by what leaves the truth alone.
+// Tests that are exact both ways must keep their answers under symmetries that keep the truth.
 TEST(HardCases, ExactAnswersKeepUnderSymmetries) {
   for_each_case(48, [](const Family& family, Kind kind, std::size_t i) {
     const Query query = suite_query(family, kind, i, kSeed);
@@ -186,10 +187,10 @@ TEST(HardCases, ExactAnswersKeepUnderSymmetries) {
   });
 }
 
-// Translation by an amount that every coordinate can be moved by without rounding.
+// The translation moves every coordinate without rounding.
 TEST(HardCases, ExactAnswersKeepUnderExactTranslation) {
   for (const Family& family : families()) {
-    if (family.name == "extreme_scale" || family.name == "grazing") continue;  // no room in the digits
+    if (family.name == "extreme_scale" || family.name == "grazing") continue;  // would round
     for (const Kind kind : kKinds)
       for (int i = 0; i < 24; ++i) {
         Random random(kSeed + static_cast<std::uint64_t>(i));

@@ -2,15 +2,16 @@
 
 #include "scenes/hard/family.h"
 
-// What families are built of.
+// Building blocks of the families.
 namespace cscd::scenes::hard {
 
+// A point with integer coordinates in [-reach, reach].
 inline Vec3 lattice_point(Random& random, int reach) {
   const auto coordinate = [&] { return static_cast<double>(random.integer(-reach, reach)); };
   const double x = coordinate(), y = coordinate(), z = coordinate();
   return {x, y, z};
 }
-// Not zero.
+// The same, but never zero.
 inline Vec3 lattice_direction(Random& random, int reach) {
   for (;;)
     if (const Vec3 v = lattice_point(random, reach); v != Vec3::Zero()) return v;
@@ -18,7 +19,7 @@ inline Vec3 lattice_direction(Random& random, int reach) {
 inline MovingPoint at_rest(const Vec3& p) {
   return {p, p};
 }
-// Is at x when t = 1/2.
+// A point that is at x at t = 1/2 and moves by `half_way` in half the interval.
 inline MovingPoint through(const Vec3& x, const Vec3& half_way) {
   return {x - half_way, x + half_way};
 }
@@ -33,11 +34,11 @@ T pick(Random& random, std::initializer_list<T> from) {
   return from.begin()[random.integer(0, static_cast<int>(from.size()) - 1)];
 }
 
-// Features in general position that touch at t = 1/2, or pass each other by one lattice step: what families
-// of place and scale start from. Coordinates up to 64.
+// Features in general position that touch at t = 1/2 or pass each other by one lattice step. Families of
+// place and scale start from them. Coordinates are at most 64.
 inline Query crossing(Kind kind, Random& random) {
   const Vec3 away = lattice_direction(random, 6);
-  // The touching point is a quarter of the features' size or more inside, or one such quarter outside.
+  // The touching point, in quarters of the features' size. It is inside, on a border, or one quarter outside.
   const int u = random.integer(-1, 3), v = random.integer(0, 3 - std::max(u, 0));
   if (kind == Kind::vertex_face) {
     const Vec3 a = lattice_point(random, 8), ab = lattice_direction(random, 6),

@@ -14,7 +14,7 @@ Query make(Kind kind, Random& random) {
     return moved(z, {px, py, 0}, {px, py, 0});
   };
   if (kind == Kind::vertex_face) {
-    const bool sliver = flip(random);  // the third corner between the others, or beside the first
+    const bool sliver = flip(random);  // the third corner is between the others, else beside the first
     const double y = random.integer(-1, 2);
     return {{at(sliver ? length / 2 : x, y), at_rest({0, 0, 0}), at_rest({length, 0, 0}),
              at_rest({sliver ? length / 2 : 0, 1, 0})},

@@ -6,7 +6,8 @@ namespace {
 Query make(Kind kind, Random& random) {
   const Vec3 d = lattice_direction(random, 3), a = lattice_point(random, 8);
   const int length = random.integer(1, 6), from = random.integer(-8, 8), other = random.integer(-6, 6);
-  // How the second comes to the first's line: across, along it, or not at all.
+  // The motion of the second feature relative to the line of the first: across the line, along the line, or
+  // none.
   const Vec3 way = pick<Vec3>(random, {lattice_direction(random, 4), 2 * d, Vec3::Zero()});
   if (kind == Kind::vertex_face) {
     const Vec3 c = a + lattice_direction(random, 6);

@@ -3,7 +3,7 @@
 #include "scenes/hard/family.h"
 #include "scenes/hard/lattice.h"
 
-// The families, one a file.
+// The families. Each family is defined in its own file.
 namespace cscd::scenes::hard {
 
 extern const Family kCoplanarSliding, kParallel, kThroughBorder, kGrazing, kIntervalEnds, kNeedles,

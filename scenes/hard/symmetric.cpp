@@ -10,7 +10,7 @@ Query make(Kind, Random& random) {
                  z = flip(random) ? half : -half;
     return Vec3(x, y, z);
   };
-  const bool hollow = flip(random);  // the middles of the cube's edges instead
+  const bool hollow = flip(random);  // points are middles of the cube's edges, else corners
   Query query;
   for (MovingPoint& p : query.points) {
     Vec3 start = corner();

@@ -7,7 +7,7 @@ Query make(Kind kind, Random& random) {
   const Vec3 way = lattice_direction(random, 6), drift = lattice_point(random, 2);
   const Vec3 a = lattice_point(random, 8), ab = lattice_direction(random, 4),
              ac = lattice_direction(random, 4);
-  const int s = pick(random, {-1, 0, 1, 2, 3, 4, 5});  // in quarters; the first and the last miss
+  const int s = pick(random, {-1, 0, 1, 2, 3, 4, 5});  // quarters along the border; -1 and 5 miss
   if (kind == Kind::vertex_face) {
     const int side = random.integer(0, 2);
     const Vec3 target = side == 0   ? Vec3(a + s * ab)

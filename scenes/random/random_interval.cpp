@@ -10,10 +10,10 @@
 namespace cscd::scenes {
 namespace {
 
-// How space is bent and moved at one end of the interval; applied to the surface and to the bones alike.
+// A map that bends and moves space at one end of the interval. The surface and the bones are mapped alike.
 struct Warp {
   double bend = 0;    // radians per unit of z: wraps z onto a circle
-  double spiral = 0;  // by how much that circle tightens, per unit of z
+  double spiral = 0;  // how much that circle tightens per unit of z
   double pitch = 0;   // sideways rise along the circle, per unit of z
   double twist = 0;   // radians per unit of z about the z axis
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
@@ -32,16 +32,17 @@ struct Warp {
   }
 };
 
+// An interval before its warps and its noise are applied.
 struct Build {
   Surface surface;
-  std::vector<Vec3> target;  // of the vertices at the end, before the warp; empty where they stay
+  std::vector<Vec3> target;  // the vertices at the end, before the warp; empty if they stay
   std::vector<BoneId> parent;
   std::vector<Bone> bones;
   Warp start, end;
-  double start_noise = 0.02, noise = 0;  // of every vertex at the start and at the end, in units of space
-  bool lattice = false;                  // small integers that have to stay exact
+  double start_noise = 0.02, noise = 0;  // largest noise of a vertex at the start and at the end, as a length
+  bool lattice = false;                  // coordinates are small integers that have to stay exact
 
-  // A chain of bones along z inside a tube, or one bone where that is all there is room for.
+  // Adds a chain of `count` bones along z over a length of 0.9 * length, round `centre`.
   void add_chain(int count, double length, const Vec3& centre = Vec3::Zero()) {
     for (int i = 0; i < count; ++i) {
       const auto z = [&](int k) { return (static_cast<double>(k) / count - 0.5) * 0.9 * length; };
@@ -98,7 +99,8 @@ Build tightening_spiral(Random& random) {
   return build;
 }
 
-// One long bone through a bumpy tube: the case for segment observers, and for looking at all three vertices.
+// One long bone goes through a bumpy tube. This is the case for segment observers, and for looking at all
+// three vertices (rule three-vertices).
 Build bumpy_segment(Random& random) {
   Build build;
   const double length = random.uniform(3, 6);
@@ -135,7 +137,7 @@ Build nested_components(Random& random) {
     build.noise = random.uniform(0.2, 1.2);
     build.add_chain(random.integer(1, 2), 2);
   } else {
-    // The outer shell closes down on the inner one; both stay positive.
+    // The outer shell closes down on the inner shell, and both stay positive.
     build.target = build.surface.positions;
     const double shrink = random.uniform(0.1, 0.4);
     for (std::size_t i = 0; i < outer; ++i) build.target[i] *= shrink;
@@ -145,7 +147,7 @@ Build nested_components(Random& random) {
   return build;
 }
 
-// A flat slab that closes like a book.
+// A flat slab closes like a book.
 Build closing_fold(Random& random) {
   Build build;
   Tube tube{random.integer(8, 14), 4, 6, {1, 1}};
@@ -159,8 +161,8 @@ Build closing_fold(Random& random) {
   return build;
 }
 
-// A ball that is positive almost everywhere, so that culling drops nearly all it could: only horns stand out
-// and come down on it, or on each other, from the side.
+// A ball is positive almost everywhere, so culling drops nearly all pairs that it ever could. Only horns
+// stand out and come down on the ball, or on each other, from the side.
 Build horned_ball(Random& random) {
   Build build;
   append_sphere(build.surface, 2, 1, Vec3::Zero());
@@ -180,7 +182,7 @@ Build horned_ball(Random& random) {
   return build;
 }
 
-// A smooth tube round one or a few bones whose middle is dented from the side until the walls meet, or whose
+// A smooth tube round one bone or a few is dented in its middle from the side until the walls meet, or its
 // ends are bent onto each other.
 Build dented_tube(Random& random) {
   Build build;
@@ -201,8 +203,8 @@ Build dented_tube(Random& random) {
   return build;
 }
 
-// A fingertip whose underside is positive towards the bone from one corner and negative from another: the
-// case in which a segment observer has to look at all three vertices.
+// The underside of a fingertip is positive towards the bone at one corner and negative at another. In this
+// case a segment observer has to look at all three vertices (rule three-vertices).
 Build finger_over_segment(Random& random) {
   Build build;
   build.start_noise = 0;
@@ -218,8 +220,8 @@ Build finger_over_segment(Random& random) {
   return build;
 }
 
-// Boxes and octahedra with integer corners that come to touch exactly: face on face, edge on edge, tip on
-// face. Bounds that are too tight by a single ulp lose them.
+// Boxes and octahedra with integer corners come to touch exactly: face on face, edge on edge, tip on face.
+// Bounds that are too tight by a single ulp lose these contacts.
 Build touching_lattice(Random& random) {
   Build build;
   build.lattice = true;
@@ -232,7 +234,7 @@ Build touching_lattice(Random& random) {
     const double side = random.integer(0, 1) == 0 ? -1 : 1;
     const int size = random.integer(1, 3);
     Vec3 centre(random.integer(-5, 5), random.integer(-5, 5), random.integer(-5, 5));
-    centre[axis] = side * (4 + size);  // touches the side of the box, where it is not beside it
+    centre[axis] = side * (4 + size);  // at the end it touches the side of the box, or lies beside it
     const std::size_t first = build.surface.positions.size();
     if (random.integer(0, 1) == 0)
       append_sphere(build.surface, 0, size, centre);
@@ -273,7 +275,7 @@ constexpr auto kNames = [] {
   return names;
 }();
 
-// Where the whole interval happens: near or far, tiny or huge, resting or rushing by.
+// The place of the whole interval: near or far, tiny or huge, resting or rushing by.
 struct Place {
   double scale = 1;
   Vec3 offset = Vec3::Zero(), rush = Vec3::Zero();

@@ -9,20 +9,22 @@
 
 namespace cscd::scenes {
 
-// A family of small noisy closed meshes with bones in large motion: what verification runs on, as it shows
-// what animations spare us.
+// The names of the families of random intervals. Each family is a kind of small noisy closed mesh with
+// bones in large motion. Verification runs on them, because they show cases that animations hardly contain.
 std::span<const std::string_view> random_families();
 
 struct RandomInterval {
   std::string_view family;
-  Clip clip;  // two frames: the reference pose, where the interval starts, and its end
+  Clip clip;  // two frames: the reference pose, where the interval starts, and the end
 };
 
-// Depends on the seed alone; seeds take turns through the families.
+// Makes a random interval. The interval depends on the seed alone, and consecutive seeds take the families
+// in turn.
 RandomInterval make_random_interval(std::uint64_t seed);
 
-// The same interval backwards, so that it mostly starts by meeting itself, on what is left of the surface:
-// some of its triangles are missing, turned round or there twice. For what promises to take any input.
+// Makes the random interval of the seed backwards, on a torn surface: some triangles are missing, turned
+// round, or there twice. Played backwards, most intervals start with surfaces that cross. Code that
+// promises to take any input is tested on these intervals.
 RandomInterval make_torn_interval(std::uint64_t seed);
 
 }  // namespace cscd::scenes

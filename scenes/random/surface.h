@@ -9,7 +9,8 @@
 
 namespace cscd::scenes {
 
-// The same numbers with every standard library, which its distributions do not promise.
+// A generator that gives the same numbers with every standard library. The distributions of the standard
+// library do not promise that.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -25,21 +26,20 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// A small closed surface, outward oriented. Components are appended one after the other.
+// A small closed surface, oriented outward. Each of the functions below appends one connected component.
 struct Surface {
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
+  std::vector<Vec3> positions;      // [vertices]
+  std::vector<Triangle> triangles;  // [triangles]
 };
 
-// Octahedron with every face split in four, `splits` times, on a sphere of the given radius: 8 * 4^splits
-// triangles.
+// Appends a sphere of the given radius: an octahedron with every face split in four, `splits` times. It has
+// 8 * 4^splits triangles.
 void append_sphere(Surface& surface, int splits, double radius, const Vec3& centre);
 
-// Twelve triangles.
+// Appends a box of twelve triangles.
 void append_box(Surface& surface, const Vec3& low, const Vec3& high);
 
-// Tube along z from -length / 2 to length / 2 with pointed ends; radius(s) for s in [0, 1] along it. 2 sides
-// * rings triangles.
+// A tube along z from -length / 2 to length / 2, with pointed ends. It has 2 * sides * rings triangles.
 struct Tube {
   int rings, sides;
   double length;
@@ -47,10 +47,12 @@ struct Tube {
 };
 void append_tube(Surface& surface, const Tube& tube);
 
-// A pointed finger over the segment from (-1, 0, 0) to (1, 0, 0) whose other end is led round in two bends to
-// a small face before its tip: one connected surface. The finger is the first four vertices, the tip the very
-// first; moved by kFingerPoke the tip goes through the face. Its underside changes sign towards the segment
-// between the tip (negative) and the other corners (positive); all else at tip and face is positive.
+// Appends a pointed finger over the segment from (-1, 0, 0) to (1, 0, 0). The other end of the finger is
+// led round in two bends to a small face in front of the finger's tip, so that all is one connected
+// surface. The finger is the first four vertices, and the tip is the first of these. Moved by kFingerPoke,
+// the tip goes through the face. The underside of the finger changes its sign towards the segment: it is
+// negative at the tip and positive at its other corners. All other triangles at the tip and the face are
+// positive.
 void append_hooked_finger(Surface& surface);
 inline const Vec3 kFingerPoke = -0.155 * Vec3(-0.85, 0, 0.52678);
 

@@ -9,9 +9,9 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr int kTable = 512;
+constexpr int kTable = 512;  // cells of the table of sections
 
-// std::pow differs between libraries, and frames must not.
+// base^exponent for an even exponent. The results of std::pow differ between libraries, and frames must not.
 double even_power(double base, int exponent) {
   double result = 1;
   for (int i = 0; i < exponent; i += 2) result *= base * base;

@@ -13,7 +13,7 @@ std::size_t BoxGrid::vertex_count() const {
 VertexId BoxGrid::at(const Node& node) const {
   const auto [x, y, z] = node;
   const auto [a, b, c] = cells_;
-  const int layer = (a + 1) * (b + 1), rim = 2 * (a + b);  // nodes of the ends, and of a layer in between
+  const int layer = (a + 1) * (b + 1), rim = 2 * (a + b);  // nodes of an end layer, of a layer between
   if (z == 0 || z == c) return VertexId{(z == 0 ? 0 : layer + (c - 1) * rim) + y * (a + 1) + x};
   const int first = layer + (z - 1) * rim;
   if (y == 0) return VertexId{first + x};
@@ -33,7 +33,7 @@ BoxGrid::Node BoxGrid::node(const Face& face, int u, int v) const {
 std::array<VertexId, 4> BoxGrid::cell(const Face& face, int u, int v) const {
   std::array<VertexId, 4> corner = {at(node(face, u, v)), at(node(face, u + 1, v)),
                                     at(node(face, u + 1, v + 1)), at(node(face, u, v + 1))};
-  // u x v points along x and z, but against y.
+  // The cross product of the axes u and v points along x or z, but against y.
   if (face.upper == (face.axis == 1)) std::swap(corner[1], corner[3]);
   return corner;
 }

@@ -7,14 +7,15 @@
 
 namespace cscd::scenes {
 
-// The surface of a box of a x b x c cells: nodes with whole coordinates, square cells between them. Faces lie
-// across an axis, at its lower or upper end; on a face, u and v are the other two axes in the order x, y, z.
+// The surface of a box of a x b x c cells, with nodes at whole coordinates and square cells between them. A
+// face lies across an axis, at its lower or upper end. On a face, u and v are the other two axes in the
+// order x, y, z.
 class BoxGrid {
  public:
   using Node = std::array<int, 3>;
   struct Face {
     int axis;    // 0, 1, 2
-    bool upper;  // at which end of the axis
+    bool upper;  // true at the upper end of the axis
     int u() const { return axis == 0 ? 1 : 0; }
     int v() const { return axis == 2 ? 1 : 2; }
   };

@@ -17,7 +17,7 @@ KeyCurve KeyCurve::periodic(const Parameters::Table& keys, double period, const 
   const std::size_t count = keys.size();
   if (!(keys.back()[0] - keys.front()[0] < period))
     throw InputError(who + ": its keys must lie within less than the period");
-  // The neighbours in the periods before and after; they give the slopes at both ends.
+  // Add the neighbouring keys of the periods before and after. They give the slopes at both ends.
   const auto moved = [&](std::size_t key, double periods) {
     std::vector<double> row = keys[key];
     row[0] += periods * period;

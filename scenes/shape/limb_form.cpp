@@ -8,9 +8,9 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr int kPerBone = 32;   // samples of the centre line
-constexpr int kStops = 400;    // of the silhouette
-constexpr int kTipStops = 40;  // of its rounded end
+constexpr int kPerBone = 32;   // samples of the centre line for each bone
+constexpr int kStops = 400;    // stops along the silhouette up to the tip
+constexpr int kTipStops = 40;  // stops along the rounded tip
 
 Vec3 reflected(const Vec3& v, const Vec3& across) {
   const double squared = across.squaredNorm();
@@ -45,8 +45,8 @@ LimbForm::LimbForm(Spec spec, const std::string& who)
     along[i].normalize();
   }
 
-  // Cubic Hermite curves from joint to joint, then frames that do not spin: Wang, Juettler, Zheng, Liu,
-  // "Computation of rotation minimizing frames", ACM Trans. Graph. 2008.
+  // The centre line is made of cubic Hermite curves from joint to joint. Its frames do not spin (Wang,
+  // Juettler, Zheng, Liu, "Computation of rotation minimizing frames", ACM Trans. Graph. 2008).
   const auto tangent = [&](std::size_t joint) -> Vec3 {
     if (joint == 0 || joint == bones) return along[joint == 0 ? 0 : bones - 1];
     const Vec3 sum = along[joint - 1] + along[joint];

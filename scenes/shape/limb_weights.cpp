@@ -27,8 +27,9 @@ JointWeights limb_weights(const WeightPlace& place, const WeightChain& body,
   std::size_t bones = body.bones.size();
   for (const LimbChain& limb : limbs) bones += limb.chain.bones.size();
   Shares shares(bones, 0.0);
-  // Where several limbs are felt, each has what it would have alone times that it comes before each other
-  // one; of such products no more than 1 comes together.
+  // If several limbs share a vertex, the share of a limb is the share that it would have alone, times a
+  // factor for each other limb that tells how far this limb comes before the other. The sum of such
+  // products is at most 1.
   double left = 1;
   for (const WeightPlace::OnLimb& on : place.limbs) {
     const LimbChain& limb = limbs[on.limb];

@@ -50,7 +50,8 @@ void check(const LimbedSphereParameters& p) {
     throw InputError("limbed_sphere: two bones are called " + *twice + "; give each a name of its own");
 }
 
-// On the square from -1 to 1: its boundary goes to the unit circle, at equal angles.
+// Maps a point of the square from -1 to 1 to the unit circle. Equal steps along the boundary of the square
+// become equal angles.
 CirclePoint on_circle(double u, double v) {
   if (std::abs(v) <= u) return circle_point(v / u / 8);
   if (std::abs(u) <= v) return circle_point(0.25 - u / v / 8);
@@ -58,7 +59,7 @@ CirclePoint on_circle(double u, double v) {
   return circle_point(0.75 - u / v / 8);
 }
 
-// A node of a limb's patch, and where it lies on the square from -1 to 1.
+// A node of a limb's patch, and its place when the patch is the square from -1 to 1.
 struct PatchNode {
   VertexId vertex;
   double u, v;
@@ -71,7 +72,7 @@ PatchNode patch_node(const BoxGrid& grid, const Limb& limb, int i, int j) {
           2.0 * j / limb.size - 1};
 }
 
-// The patch's outline, counter-clockwise seen from outside.
+// The outline of the limb's patch, counter-clockwise seen from outside.
 std::vector<PatchNode> outline(const BoxGrid& grid, const Limb& limb) {
   std::vector<PatchNode> nodes;
   const int m = limb.size;
@@ -85,7 +86,7 @@ std::vector<PatchNode> outline(const BoxGrid& grid, const Limb& limb) {
 
 using Quad = std::array<VertexId, 4>;
 
-// Quads of the body that no limb covers. Throws where two patches overlap.
+// The quads of the body that no limb covers. Throws InputError if two patches overlap.
 std::vector<Quad> body_quads(const BoxGrid& grid, const LimbedSphereParameters& p) {
   std::vector<Quad> quads;
   for (const BoxGrid::Face& face : BoxGrid::faces()) {
@@ -111,7 +112,7 @@ std::vector<Quad> body_quads(const BoxGrid& grid, const LimbedSphereParameters& 
   return quads;
 }
 
-// Neighbours along the edges of quads, as compressed rows.
+// The neighbours of every vertex along the edges of quads, as compressed rows.
 class QuadGraph {
  public:
   QuadGraph(std::span<const Quad> quads, std::size_t vertices) : offset_(vertices + 1, 0) {
@@ -172,7 +173,7 @@ class Builder {
   }
 
  private:
-  // Where a limb's centre line leaves the body.
+  // The arc length at which a limb's centre line leaves the body.
   double exit(std::size_t limb) const {
     const LimbForm& form = forms_[limb];
     constexpr int steps = 512;
@@ -183,7 +184,8 @@ class Builder {
     throw InputError(who(p_.limbs[limb]) + ": never leaves the body; lengthen it");
   }
 
-  // Limbs' outlines first, each round its centre line; all other vertices then settle between them.
+  // Places the vertices of the body. The outlines of the limbs are placed first, each round its centre
+  // line. All other vertices then settle between the outlines.
   void place_body() {
     positions_.resize(grid_.vertex_count());
     on_limb_.resize(grid_.vertex_count());
@@ -194,7 +196,8 @@ class Builder {
       positions_[+vertex] = body_.projected(body_.towards(direction));
     });
 
-    std::map<VertexId, std::pair<Vec3, int>> held;  // outlines may share vertices, which then lie halfway
+    // The sum and the number of places of each outline vertex: a vertex of two outlines lies halfway between.
+    std::map<VertexId, std::pair<Vec3, int>> held;
     std::vector<bool> settled(positions_.size(), false);
     for (std::size_t limb = 0; limb < p_.limbs.size(); ++limb) {
       exit_.push_back(exit(limb));
@@ -217,13 +220,15 @@ class Builder {
         if (!settled[vertex]) positions_[vertex] = body_.projected(graph.mean(vertex, positions_));
   }
 
+  // Extrudes the patch of a limb.
   void grow(std::size_t index) {
     const Limb& limb = p_.limbs[index];
     const LimbForm& form = forms_[index];
     const std::vector<PatchNode> root = outline(grid_, limb);
     const auto sides = root.size();
 
-    // The outline in the limb's own terms: arc length, and how far off the limb's section.
+    // A vertex of the outline in the limb's own terms: its arc length, and its distance from the limb's
+    // section.
     struct Foot {
       double arc, off_u, off_v;
     };
@@ -293,7 +298,7 @@ class Builder {
         return Placed{form.point(place.arc, root[side].direction(), place.scale), place.arc};
       });
 
-    // The cap: the patch itself, with the last ring for its outline.
+    // Make the cap out of the patch itself. The last ring takes the place of the patch's outline.
     std::map<VertexId, VertexId> moved;
     for (std::size_t side = 0; side < sides; ++side) moved[root[side].vertex] = ring[side];
     for (int i = 1; i < limb.size; ++i)
@@ -312,11 +317,12 @@ class Builder {
       }
   }
 
+  // Records that the bones of a limb can move the vertex (WeightPlace::OnLimb).
   void feel(VertexId vertex, std::size_t limb, double beyond, double arc) {
     on_limb_[+vertex].push_back({limb, beyond, arc});
   }
 
-  // Laplacian sweeps about the outlines, which fade away over a few edges.
+  // Smooths the surface about the outlines by Laplacian sweeps that fade away over a few edges.
   void smooth(const QuadGraph& graph) {
     constexpr int reach = 5;
     std::vector<int> edges(positions_.size(), reach);
@@ -355,7 +361,7 @@ class Builder {
     for (std::size_t index = 0; index < p_.limbs.size(); ++index) {
       const Limb& limb = p_.limbs[index];
       LimbChain chain;
-      // The outline itself has most of its weight from the limb.
+      // The outline itself gets most of its weight from the limb.
       chain.root = {-limb.root_blend / 4, limb.root_blend};
       int parent = static_cast<int>(std::find(p_.body_bones.begin(), p_.body_bones.end(), limb.parent) -
                                     p_.body_bones.begin());
@@ -372,12 +378,13 @@ class Builder {
     }
   }
 
-  // What is off a limb feels it by the way along the surface to its outline.
+  // Makes the weights. The share of a limb in a vertex off the limb depends on the way along the surface
+  // from the vertex to the limb's outline.
   void add_weights(const QuadGraph& graph, Shape& shape) {
     for (std::size_t limb = 0; limb < p_.limbs.size(); ++limb) {
       const double furthest = limb_chains_[limb].root.width;
       std::map<VertexId, double> way;
-      std::priority_queue<std::pair<double, VertexId>> todo;  // nearest first: ways count down from 0
+      std::priority_queue<std::pair<double, VertexId>> todo;  // nearest first, because ways count down from 0
       const auto reach = [&](VertexId vertex, double at) {
         const auto [place, added] = way.try_emplace(vertex, at);
         if (!added && place->second >= at) return;
@@ -410,12 +417,12 @@ class Builder {
   BoxGrid grid_;
   BodyForm body_;
   std::vector<Quad> quads_;
-  std::vector<LimbForm> forms_;  // [limbs], as the next
-  std::vector<double> exit_;
-  std::vector<LimbChain> limb_chains_;
+  std::vector<LimbForm> forms_;         // [limbs]
+  std::vector<double> exit_;            // [limbs]: the arc length at which the centre line leaves the body
+  std::vector<LimbChain> limb_chains_;  // [limbs]
   WeightChain body_chain_;
-  std::vector<Vec3> positions_;  // [vertices], as the next
-  std::vector<std::vector<WeightPlace::OnLimb>> on_limb_;
+  std::vector<Vec3> positions_;                            // [vertices]
+  std::vector<std::vector<WeightPlace::OnLimb>> on_limb_;  // [vertices]
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "scenes/shape/limbed_sphere.h"
 
-// How a scene file describes a limbed sphere.
+// Reads the description of a limbed sphere in a scene file.
 namespace cscd::scenes {
 namespace {
 
@@ -73,7 +73,8 @@ Limb read_limb(const Parameters& p, const std::vector<std::string>& body_bones) 
   return limb;
 }
 
-// The patch keeps its middle on the face, and its share of the triangles where its size has to be rounded.
+// A limb at another resolution. Its patch keeps its middle on the face. If the size of the patch has to be
+// rounded, the number of rings makes up for it, so that the limb keeps its share of the triangles.
 Parameters scaled_limb(const Parameters& limb, double factor, int cells, double scaled_cells) {
   const int size = limb.integer("size");
   const double scaled_size = scaled_count(size, factor, 1);

@@ -10,8 +10,8 @@
 namespace cscd::scenes {
 namespace {
 
-// A straight tapering limb that grows out of a face of a ball of radius 1, from the patch with that lowest
-// cell.
+// A straight tapering limb that grows out of a face of a ball of radius 1. (u, v) is the lowest cell of its
+// patch.
 Limb limb(const std::string& name, BoxGrid::Face face, int u, int v, int size, int rings, int cells) {
   Vec3 out;
   out[face.axis] = face.upper ? 1 : -1;
@@ -48,7 +48,7 @@ LimbedSphereParameters ball(int cells) {
   return p;
 }
 
-// `count` limbs of size m, at most two a face, `rings` in all.
+// A ball with `count` limbs of size m, at most two on a face, with `rings` rings in all.
 LimbedSphereParameters with_limbs(int cells, int m, int count, int rings) {
   LimbedSphereParameters p = ball(cells);
   for (int i = 0; i < count; ++i) {

@@ -12,22 +12,22 @@
 
 namespace cscd::scenes {
 
-// What a parameter of a shape or an effect may be.
+// The kinds of value that a parameter of a shape or an effect may have.
 enum class ParameterKind { number, integer, vector, table, text, objects };
 
 // One parameter that a shape or an effect takes.
 struct ParameterRow {
-  std::string_view name;  // "*" for any name that no other row has: a bone's, say
+  std::string_view name;  // "*" stands for any name that no other row has, such as the name of a bone
   ParameterKind kind;
-  std::string_view meaning;  // with units, in a line
+  std::string_view meaning;  // with units, in one line
   bool required = true;
-  double least = std::numeric_limits<double>::lowest();  // of a number or an integer
+  double least = std::numeric_limits<double>::lowest();  // range of a number or an integer
   double most = std::numeric_limits<double>::max();
-  std::size_t columns = 0;  // of a table
+  std::size_t columns = 0;  // columns of a table
 };
 
-// Named values out of a scene file, without the file's format. `where` ("scene rope, effect skinning_linear")
-// begins the error texts.
+// Named values from a scene file, independent of the file's format. `where` ("scene rope, effect
+// skinning_linear") begins the texts of errors.
 class Parameters {
  public:
   using Table = std::vector<std::vector<double>>;
@@ -40,7 +40,8 @@ class Parameters {
   const std::string& where() const { return where_; }
   bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
 
-  // Each throws InputError when the value is missing or of another kind.
+  // Return the value of that name, or `otherwise` if it is given and the value is missing. They throw
+  // InputError if the value is missing without an `otherwise`, is not finite, or is of another kind.
   double number(std::string_view name) const;
   double number(std::string_view name, double otherwise) const;
   int integer(std::string_view name) const;
@@ -53,7 +54,7 @@ class Parameters {
 
   const std::map<std::string, Value, std::less<>>& values() const { return values_; }
 
-  // The same but for one value.
+  // A copy with one value set.
   Parameters with(const std::string& name, Value value) const;
 
  private:
@@ -62,8 +63,8 @@ class Parameters {
   std::map<std::string, Value, std::less<>> values_;
 };
 
-// Throws InputError that names the first parameter which no row knows, which is missing, of another kind, or
-// out of its range.
+// Throws InputError if a parameter has no row, is missing although its row requires it, is of another kind,
+// or is out of its range. The error names the first such parameter.
 void check(const Parameters& parameters, std::span<const ParameterRow> rows);
 
 }  // namespace cscd::scenes

@@ -7,14 +7,14 @@
 
 namespace cscd::scenes {
 
-// Every shape that a scene file can name.
+// All shapes that a scene file can name.
 std::span<const ShapeRow> shapes();
 
-// Checks the parameters and builds the shape. Throws InputError for an unknown name, listing the known ones,
-// and for unusable parameters.
+// Checks the parameters and builds the shape. Throws InputError for an unknown name, with a list of the
+// known names, and for unusable parameters.
 Shape make_shape(std::string_view name, const Parameters& parameters);
 
-// The row of that name. Throws InputError for an unknown name, listing the known ones.
+// The row of that name. Throws InputError for an unknown name, with a list of the known names.
 const ShapeRow& shape_row(std::string_view name, const Parameters& parameters);
 
 }  // namespace cscd::scenes

@@ -5,7 +5,7 @@
 namespace cscd::scenes {
 namespace {
 
-// A weighted mean of vertices: of where they are, and of the bones that move them.
+// A weighted mean of vertices: of their positions and of their skinning weights.
 class Mean {
  public:
   explicit Mean(const Shape& shape) : shape_(shape) {}
@@ -68,7 +68,7 @@ Shape subdivided(const Shape& shape) {
     const double share = around.size() == 3 ? 3.0 / 16 : 3 / (8 * valence);
     Mean mean(shape);
     mean.add(vertex, 1 - valence * share);
-    for (const TriangleId triangle : around) {  // each neighbour is the next corner in one of them
+    for (const TriangleId triangle : around) {  // every neighbour is the next corner in one triangle
       const Triangle& corners = mesh.corners(triangle);
       const auto own = static_cast<std::size_t>(std::ranges::find(corners, vertex) - corners.begin());
       mean.add(corners[(own + 1) % 3], share);

@@ -32,7 +32,7 @@ TEST(Subdivided, HasFourTimesTheTrianglesOfAWellFormedShape) {
 }
 
 TEST(Subdivided, KeepsAPlanePlaneAndMovesALineByItsRule) {
-  // An octahedron: every vertex has four neighbours, whose mean is the centre.
+  // In an octahedron every vertex has four neighbours, whose mean is the centre.
   Shape shape;
   shape.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (const auto& [a, b] : {std::pair{0, 2}, {2, 1}, {1, 3}, {3, 0}}) {

@@ -16,8 +16,8 @@ inline double volume(const Shape& shape) {
   return six / 6;
 }
 
-// What every shape promises: a closed surface of genus 0 that faces outwards, weights that sum to one, a
-// skeleton whose bones have names of their own.
+// Checks the promises of every shape: a closed surface of genus 0 that faces outward, weights that sum to
+// one, and a skeleton whose bones have different names.
 inline void expect_well_formed(const Shape& shape) {
   ASSERT_EQ(shape.weights.size(), shape.positions.size());
   const TriangleMesh mesh(shape.triangles, shape.positions.size());
@@ -43,7 +43,7 @@ inline void expect_well_formed(const Shape& shape) {
   }
 }
 
-// The most by which a bone's weight differs between the two ends of an edge.
+// The largest difference of a bone's weight between the two ends of an edge.
 inline double steepest_weight(const Shape& shape) {
   const TriangleMesh mesh(shape.triangles, shape.positions.size());
   const auto weight_of = [&](VertexId vertex, BoneId bone) {

@@ -12,11 +12,12 @@
 namespace cscd::scenes {
 namespace {
 
-// A point of the profile: distance along the axis from the first pole, distance from the axis.
+// A point of the profile: its distance along the axis from the first pole, and its distance from the axis.
 struct ProfilePoint {
   double along, out;
 };
 
+// The point at an arc length of the profile.
 ProfilePoint profile_at(double arc, double radius, double length) {
   const double cap = std::numbers::pi / 2 * radius;
   const double straight = length - 2 * radius;
@@ -66,7 +67,8 @@ class Axis {
     section.centre += along * section.tangent;
     return section;
   }
-  // The unit vector across the axis that lies nearest to `side`; any, where side gives no answer.
+  // The unit vector perpendicular to the axis that lies nearest to `side`, or any perpendicular unit vector
+  // if `side` lies along the axis.
   static Vec3 across(const Vec3& axis, const Vec3& side) {
     const Vec3 part = side - side.dot(axis) * axis;
     if (part.norm() > 1e-9 * side.norm()) return part.normalized();

@@ -13,17 +13,18 @@ struct TubeParameters {
   double radius = 1;
   double length = 190;             // from pole to pole, more than two radii
   Vec3 start = Vec3::Zero();       // the first pole
-  Vec3 direction = Vec3::UnitZ();  // in which the axis leaves it; need not be a unit vector
-  double arc_turns = 0;            // how far the axis turns in its middle: 0 for straight, 0.5 for a hairpin
-  double arc_radius = 0;           // of that arc; above the tube's radius where there is one
+  Vec3 direction = Vec3::UnitZ();  // of the axis at the first pole; need not be a unit vector
+  double arc_turns = 0;            // turns of the axis in its middle: 0 for straight, 0.5 for a hairpin
+  double arc_radius = 0;           // radius of that arc; larger than the tube's radius if there is an arc
   Vec3 arc_side =
-      Vec3::UnitX();  // to which the axis turns; need not be a unit vector, nor across the direction
+      Vec3::UnitX();  // the side to which the axis turns; need not be a unit vector or perpendicular
 };
 
-// rings * sides + 2 vertices (ring by ring, then the first pole, then the last) and 2 rings * sides
-// triangles, genus 0. Rings stand at equal arc lengths of the profile. Joints at equal arc lengths of the
-// axis reach from the centre of one cap to that of the other; a vertex follows at most three of them, by
-// quadratic B-splines over the bones' middles, so that the skinned axis has a continuous tangent.
+// Builds the tube. It has rings * sides + 2 vertices (ring by ring, then the first pole, then the last
+// pole), 2 * rings * sides triangles, and genus 0. The rings stand at equal arc lengths of the profile. The
+// joints stand at equal arc lengths of the axis, from the centre of one cap to the centre of the other. A
+// vertex follows at most three bones, by quadratic B-splines over the middles of the bones, so that the
+// skinned axis has a continuous tangent. Throws InputError for parameters out of these ranges.
 Shape tube(const TubeParameters& parameters);
 
 ShapeRow tube_row();

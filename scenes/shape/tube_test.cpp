@@ -51,7 +51,7 @@ TEST(Tube, IsClosedOrientedAndOfGenusZero) {
 }
 
 TEST(Tube, EnclosesACapsulesVolumeOutwards) {
-  // By Pappus the hairpin has the volume of the straight tube.
+  // By the theorem of Pappus the hairpin has the volume of the straight tube.
   const double expected = std::numbers::pi * 188 + 4 * std::numbers::pi / 3;
   EXPECT_NEAR(volume(tube({})), expected, 0.01 * expected);
   EXPECT_NEAR(volume(tube(hairpin())), expected, 0.01 * expected);
@@ -67,7 +67,7 @@ TEST(Tube, KeepsItsRadiusAroundItsBones) {
         const double t = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
         nearest = std::min(nearest, (to - t * along).norm());
       }
-      // The chords of the arc lie up to 0.12 inside of it.
+      // The bones are chords of the arc and lie up to 0.12 inside the arc.
       EXPECT_NEAR(nearest, 1, p.arc_turns > 0 ? 0.13 : 1e-9) << "vertex " << vertex;
     }
   }

@@ -6,13 +6,14 @@
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/geometry/triple_product_lanes.h"
 
-// The time of a contact that the stage in double precision has proved, in twice that precision.
+// Computes the time of a contact that the stage in double precision has proved, in twice that precision.
 //
-// The root is t + d with d = -f(t) / f'(x) for some x between it and t. For a double t near the root, f(t) is
-// evaluated in pairs of doubles (error-free sums and products; Dekker 1971, Knuth), f' bounded in doubles.
-// The largest double not above the root is certain unless the root is within some 2^-90 of a double.
+// The time is a root of the coplanarity cubic f. For a double t near the root, the root is t + d with
+// d = -f(t) / f'(x), for some x between t and the root. f(t) is evaluated in pairs of doubles (error-free
+// sums and products; Dekker 1971, Knuth), and f' is bounded in doubles. This makes the largest double not
+// above the root certain, unless the root is within some 2^-90 of a double.
 //
-// One text for a query and for eight side by side, as in sides.h.
+// The code is written once for a single query and for eight queries side by side, as in sides.h.
 namespace cscd {
 
 // A number as the unevaluated sum of two doubles, the second at most half an ulp of the first.
@@ -22,11 +23,13 @@ struct PairOf {
 };
 using Pair = PairOf<double>;
 
+// `exact_sum` and `exact_product` are exact: the pair is the sum or the product of the two numbers.
 template <class Real>
 PairOf<Real> exact_sum(Real a, Real b) {
   const Real sum = a + b, b_part = sum - a;
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
+// exact_sum for |large| >= |small|, in fewer operations.
 template <class Real>
 PairOf<Real> exact_sum_of_ordered(Real large, Real small) {
   const Real sum = large + small;
@@ -37,14 +40,14 @@ PairOf<Real> exact_product(Real a, Real b) {
   const Real product = a * b;
 #ifdef __FMA__
   return {product, rounded_once(a, b, -product)};
-#else  // the same, by Dekker's halves
+#else  // the same result from Dekker's halves of a and b
   constexpr double kSplit = 0x1p27 + 1;
   const Real a_wide = kSplit * a, a_high = a_wide - (a_wide - a), a_low = a - a_high;
   const Real b_wide = kSplit * b, b_high = b_wide - (b_wide - b), b_low = b - b_high;
   return {product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)};
 #endif
 }
-// Off by less than 2^-103 (|a| + |b|).
+// The sum is off by less than 2^-103 (|a| + |b|).
 template <class Real>
 PairOf<Real> operator+(const PairOf<Real>& a, const PairOf<Real>& b) {
   const PairOf<Real> high = exact_sum(a.high, b.high);
@@ -58,13 +61,14 @@ template <class Real>
 PairOf<Real> operator-(const PairOf<Real>& a, const PairOf<Real>& b) {
   return a + -b;
 }
-// Off by less than 2^-103 |a b|.
+// The product is off by less than 2^-103 |a b|.
 template <class Real>
 PairOf<Real> operator*(const PairOf<Real>& a, const PairOf<Real>& b) {
   const PairOf<Real> high = exact_product(a.high, b.high);
   return exact_sum_of_ordered<Real>(high.high, high.low + (a.high * b.low + a.low * b.high));
 }
 
+// The coordinate of a moving point along an axis, at t = `end`, which is 0 or 1.
 inline double coordinate(const MovingPoint& p, int end, int axis) {
   return (end == 0 ? p.start : p.end)[axis];
 }
@@ -90,8 +94,9 @@ VectorOfPairs<Real> difference_at(const Point& from, const Point& to, Real t) {
   }
   return d;
 }
-// Off by less than 2^-95 times the product of those largest components: 6 products of three, each factor off
-// by a relative 2^-100, and five operations.
+// (p x q) . r. The result is off by less than 2^-95 times the product of the largest components of p, q and r
+// at t = 0 and t = 1: it sums 6 products of three factors, each factor is off by a relative 2^-100, and five
+// operations round.
 template <class Real>
 PairOf<Real> triple_product(const VectorOfPairs<Real>& p, const VectorOfPairs<Real>& q,
                             const VectorOfPairs<Real>& r) {
@@ -100,6 +105,7 @@ PairOf<Real> triple_product(const VectorOfPairs<Real>& p, const VectorOfPairs<Re
 }
 constexpr double kPairError = 0x1p-95;
 
+// The value of the coplanarity cubic at time t.
 template <class Real, class Point>
 PairOf<Real> coplanarity_at(const TriplePoints<Point>& v, Real t) {
   return triple_product(difference_at(v.from, v.p_to, t), difference_at(v.q_from, v.q_to, t),
@@ -126,7 +132,7 @@ template <class Real, class Point>
 CertainTime<Real> time_in_pairs(const TriplePoints<Point>& points, const Sizes<Real>& size,
                                 const CubicOf<Real>& f, Real low, Real high) {
   using Mask = MaskOf<Real>;
-  // No part of a product may underflow or overflow.
+  // In this range no part of a product underflows or overflows.
   const Mask in_range = (size.p > 1e-80) & (size.q > 1e-80) & (size.r > 1e-80) & (size.p < 1e80) &
                         (size.q < 1e80) & (size.r < 1e80);
   const Real(&c)[4] = f.f.c;
@@ -134,11 +140,12 @@ CertainTime<Real> time_in_pairs(const TriplePoints<Point>& points, const Sizes<R
   const PairOf<Real> value = coplanarity_at(points, t);
   const Real slope = f.slope(t);
   const Real bend = 6 * larger(absolute(c[0] - 2 * c[1] + c[2]), absolute(c[1] - 2 * c[2] + c[3]));
-  // Of the slope anywhere between low and high; 1.01 for the roundings of bounds.
+  // Bounds the difference of `slope` to the slope anywhere between low and high. The factor 1.01 pays for the
+  // roundings of the bound.
   const Real slope_error = 1.01 * ((high - low) * (bend + 24 * f.error) + 8 * f.error);
   const Real least_slope = absolute(slope) - slope_error;
   const Real step = -value.high / slope;
-  // value.low, and the quotient's rounding.
+  // The step leaves out value.low, and its quotient is rounded. The error pays for both.
   const Real error =
       1.01 * ((absolute(step) * slope_error + absolute(value.low) + kPairError * size.p * size.q * size.r) /
                   least_slope +

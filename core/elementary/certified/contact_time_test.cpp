@@ -61,7 +61,7 @@ struct Count {
   }
 };
 
-// The largest double below the root, nearly always.
+// The pairs find the largest double not above the root for nearly all contacts.
 TEST(TimeInPairs, IsTheReferees) {
   QueryMaker make(5);
   Count vf, ee;
@@ -76,7 +76,7 @@ TEST(TimeInPairs, IsTheReferees) {
   }
 }
 
-// Roots at doubles exactly, or next to them: nothing, or right.
+// The roots are doubles, or next to doubles. The pairs must give no answer or the right answer.
 TEST(TimeInPairs, SaysNothingThatIsNotCertain) {
   QueryMaker make(6);
   Count vf, ee;

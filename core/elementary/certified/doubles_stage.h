@@ -7,10 +7,12 @@
 #include "core/elementary/certified/sides.h"
 #include "core/elementary/question/filter.h"
 
-// The stage of `filtered_exact` in double precision: contact decided by certified signs, or not at all.
+// The stage of `filtered_exact` in double precision. It decides a contact by certified signs (rule
+// certain-sign, core/soundness.md), or leaves the query to exact arithmetic.
 //
-// The roots of the coplanarity cubic are enclosed between doubles by certain signs; at each, over its whole
-// enclosure, it is told where the features are (sides.h). What is not certain is left to exact arithmetic.
+// The stage encloses each root of the coplanarity cubic between two doubles by certain signs. For the whole
+// enclosure it then tells whether the features are certainly apart or certainly touch where they are in one
+// plane (sides.h).
 namespace cscd {
 
 // Both kinds of query are made of vectors p, q and r between points; the first and the last begin at the same
@@ -34,6 +36,7 @@ inline Triple triple(const TriplePoints<MovingPoint>& v) {
   return {difference(v.from, v.p_to), difference(v.q_from, v.q_to), difference(v.from, v.r_to)};
 }
 
+// The vector seen along axis k.
 inline SeenAlong<double> along(const MovingVector& v, int k) {
   const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
   return {{{v.start[i], v.start[j]}, {v.end[i], v.end[j]}}};
@@ -44,10 +47,12 @@ Place<double> place_along(const Triple& v, const Sizes<double>& size, int k) {
   return place_along<Query, Bounds>(along(v.p, k), along(v.q, k), along(v.r, k), size);
 }
 
+// The part of a moving vector between two times, as a vector that moves over [0, 1].
 inline MovingVector between(const MovingVector& x, double low, double high) {
   return {(1 - low) * x.start + low * x.end, (1 - high) * x.start + high * x.end};
 }
 
+// The place of the features between the times `low` and `high`.
 template <class Query, class Bounds>
 Place<double> place_between(const Triple& v, const Sizes<double>& size, double low, double high) {
   const Triple part{between(v.p, low, high), between(v.q, low, high), between(v.r, low, high)};
@@ -61,9 +66,9 @@ Place<double> place_between(const Triple& v, const Sizes<double>& size, double l
   return place;
 }
 
-// The coplanarity cubic with one bound for all that is computed from it: 10 u times the largest coefficient
-// pays for `at` and for control points of a part of the interval (three levels of (1 - t) x + t y, each off
-// by 3 u).
+// The coplanarity cubic with one error bound for everything that is computed from it. Besides the error of
+// the coefficients, 10 u times the largest coefficient pays for `at` and for the control points of a part of
+// the interval (three levels of (1 - t) x + t y, each off by 3 u).
 template <class Real>
 struct CubicOf {
   BernsteinCubicOf<Real> f;
@@ -99,6 +104,7 @@ inline Roots count_roots(const Cubic& f, const double (&control)[4]) {
 inline double mix(double x, double y, double t) {
   return (1 - t) * x + t * y;
 }
+// Counts the roots between `low` and `high`.
 inline Roots count_roots(const Cubic& f, double low, double high) {
   const auto polar = [&](double r, double s, double t) {
     const double a = mix(f.f.c[0], f.f.c[1], r), b = mix(f.f.c[1], f.f.c[2], r),
@@ -124,9 +130,10 @@ struct Parts {
   }
 };
 
-// In ascending order; the cubic has no root elsewhere in [0, 1]. Cut near the critical points and near ends
-// that may be roots. Where a sign is not certain there, a narrow part round it is cut out. Any cuts give
-// right parts.
+// Returns the parts of [0, 1] that may hold roots, in ascending order; the cubic has no root elsewhere in
+// [0, 1]. The interval is cut near the critical points of the cubic and near ends that may be roots. If the
+// sign of the cubic at a critical point is uncertain, a narrow part round that point is cut out. The parts
+// are right for any choice of cuts.
 inline Parts parts_with_roots(const Cubic& f) {
   const double(&c)[4] = f.f.c;
   Parts parts;
@@ -152,7 +159,7 @@ inline Parts parts_with_roots(const Cubic& f) {
     if (f.sign(f.at(t)) != 0) {
       add_cut(t);
     } else {
-      // f is near f(t) + 3 (a t + b) (s - t)^2 there.
+      // Near t, f(s) is about f(t) + 3 (a t + b) (s - t)^2.
       const double reach = 1.5 * std::sqrt(f.error / std::abs(a * t + b));
       add_cut(t - reach);
       add_cut(t + reach);
@@ -164,7 +171,7 @@ inline Parts parts_with_roots(const Cubic& f) {
   return parts;
 }
 
-// Narrows a part with one root to about the error bound.
+// Narrows a part with one root until the cubic at its ends is about as small as the error bound.
 inline void narrow(const Cubic& f, Part& part) {
   const double at_low = f.at(part.low), at_high = f.at(part.high);
   const bool falls = at_low > 0;
@@ -197,7 +204,8 @@ struct DoublesResult {
   double low = 0, high = 0;
 };
 
-// `cubic` is the coplanarity cubic with a finite error.
+// Decides one query. `cubic` is the query's coplanarity cubic, with a finite error. `Bounds` holds the error
+// bounds; tests pass other bounds than the proven ones (ProvenBounds, sides.h) to show that each is needed.
 template <class Query, class Bounds = ProvenBounds>
 DoublesResult decide_in_doubles(const Triple& v, const BernsteinCubic& cubic) {
   const Sizes<double> size = v.sizes();

@@ -9,8 +9,9 @@
 namespace cscd {
 namespace {
 
-constexpr int kSteps = 12;  // of Newton's; nearly all queries need four or five
+constexpr int kSteps = 12;  // the most steps of Newton's iteration; nearly all queries need four or five
 
+// Loads the queries into lanes. Lanes without a query hold the last query again.
 template <class Query>
 TriplePoints<VectorLanes> load(std::span<const Query> queries) {
   TriplePoints<VectorLanes> out;
@@ -34,8 +35,8 @@ VectorLanes between(const VectorLanes& x, Lane8 low, Lane8 high) {
   return out;
 }
 
-// Where the cubic falls from certainly positive to certainly negative through its only root in [0, 1], by
-// Descartes' rule as in doubles_stage.h.
+// The lanes in which the cubic falls from certainly positive to certainly negative through its only root in
+// [0, 1], by Descartes' rule as in doubles_stage.h.
 Sign8 falls_once(const CubicOf<Lane8>& cubic) {
   const Lane8(&c)[4] = cubic.f.c, e = cubic.error;
   return (c[0] > e) & (c[3] < -e) & ((c[1] > e) | (c[2] < -e));
@@ -43,9 +44,9 @@ Sign8 falls_once(const CubicOf<Lane8>& cubic) {
 
 struct Enclosure {
   Lane8 low, high;
-  Sign8 certain;
+  Sign8 certain;  // the root is certainly between `low` and `high`
 };
-// Of the only root of each cubic in `which`.
+// Encloses the only root of each falling cubic in the lanes `which`.
 Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
   Lane8 low = {}, high = low + 1, t = cubic.f.c[0] / (cubic.f.c[0] - cubic.f.c[3]), value, slope;
   for (int step = 0;; ++step) {
@@ -63,11 +64,11 @@ Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
   return {low, high, (cubic.at(low) > cubic.error) & (cubic.at(high) < -cubic.error)};
 }
 
-// The axis along which to look at each plane.
+// The axis along which each lane looks at its plane.
 struct Axis {
-  Sign8 x, y;  // else z
+  Sign8 x, y;  // in all other lanes the axis is z
 
-  // The one that shows most of p x q.
+  // Chooses the axis along which p x q has its largest component at the start.
   Axis(const VectorLanes& p, const VectorLanes& q) {
     Lane8 size[3];
     for (int i = 0; i < 3; ++i) {

@@ -10,7 +10,7 @@ namespace cscd {
 
 // The answers of filtered_exact to some of eight queries: one bit for each query that has an answer.
 struct LaneAnswers {
-  unsigned decided = 0;
+  unsigned decided = 0;  // bit l is set if answer[l] holds the answer to query l
   std::array<Answer, kLanes> answer;
 };
 

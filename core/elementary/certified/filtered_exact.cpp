@@ -1,12 +1,13 @@
-// Exact answers at the price of floating-point ones.
+// Exact answers at the price of floating-point answers.
 //
-// Four stages, each of which leaves what it cannot prove to the next:
-//   filter    the four points are coplanar at no time, or the relative boxes are apart (as for `exact`);
-//   doubles   certain signs in double precision (doubles_stage.h); the time of a contact then takes pairs of
-//             doubles (contact_time.h);
-//   integers  exact integers of fixed capacity (integer_contact.h);
-//   referee   for coordinates whose bits span more than those can hold.
-// Nothing allocates before the last.
+// There are four stages. Each stage passes the queries that it cannot prove on to the next:
+//   filter    proves that the four points are coplanar at no time, or that the relative boxes are apart
+//             (the row `exact` of the catalogue has the same filter);
+//   doubles   uses certain signs in double precision (doubles_stage.h), and pairs of doubles for the time
+//             of a contact (contact_time.h);
+//   integers  uses exact integers of fixed capacity (integer_contact.h);
+//   referee   answers queries that the integer stage gives up on (exact.h).
+// Only the last stage allocates.
 #include "core/elementary/certified/filtered_exact.h"
 
 #include <algorithm>
@@ -50,7 +51,8 @@ Decision time_by_integers(const Query& query, const DoublesResult& contact) {
   return {{Verdict::contact, result.time}, ExactStage::integers};
 }
 
-// Where products of coordinates may underflow or overflow.
+// Decides a query whose products of coordinates may underflow or overflow: scales the query's axes to the
+// size of 1 first.
 template <class Query>
 Decision decide_beyond_range(const Query& query) {
   const Query scaled = axes_scaled_to_unit(query);
@@ -79,7 +81,7 @@ Decision decide(const Query& query) {
   return {{Verdict::contact, certain.time}, ExactStage::doubles};
 }
 
-constexpr std::size_t kWorthLanes = 2;  // a query by itself is answered sooner alone
+constexpr std::size_t kWorthLanes = 2;  // the fewest queries for which lanes are faster than scalar code
 
 template <class Query>
 void decide_all(std::span<const Query> queries, std::span<Answer> answers) {

@@ -37,7 +37,8 @@ bool same(const Answer& a, const Answer& b) {
   return a.verdict == b.verdict && (a.verdict == Verdict::apart || a.time == b.time);
 }
 
-// Whether the row is right about these queries, by the referee; and which stages they took.
+// A family of queries. `add` compares the answer with the referee's and counts the stage that gave the
+// answer.
 struct Family {
   int queries = 0, contacts = 0;
   std::map<ExactStage, int> stages;
@@ -61,7 +62,7 @@ struct Family {
   }
 };
 
-// Many at once have the answers that they have one by one.
+// Queries that are asked together have the same answers as one by one.
 template <class Query>
 void expect_same_of_all(const std::vector<FourMovingPoints>& points) {
   std::vector<Query> queries;
@@ -74,7 +75,7 @@ void expect_same_of_all(const std::vector<FourMovingPoints>& points) {
 
 class FilteredExact : public testing::Test {
  protected:
-  // Both kinds of query with the points that `make_points` gives.
+  // Adds `count` queries of both kinds, with the points that make_points(i) gives.
   template <class MakePoints>
   void compare(int count, MakePoints&& make_points) {
     std::vector<FourMovingPoints> all;
@@ -95,7 +96,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
   compare(10'000, [&](int) { return make_.any(); });
   vf_.expect_both_answers();
   ee_.expect_both_answers();
-  // Exact arithmetic is for the rest.
+  // None of these queries needs exact arithmetic.
   for (const Family* family : {&vf_, &ee_})
     EXPECT_EQ(family->stages.at(ExactStage::filter) + family->stages.at(ExactStage::doubles), 10'000);
 }
@@ -110,7 +111,8 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnLattices) {
   }
 }
 
-// The same with bits in the last places: thirds of a lattice, far from the origin, at many scales.
+// The coordinates are thirds and tenths of a lattice, some of them far from the origin, so their last
+// places hold rounded bits.
 TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
   compare(8000, [&](int i) {
     FourMovingPoints p = make_.lattice(1 + i % 4);
@@ -123,7 +125,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
   ee_.expect_both_answers();
 }
 
-// Touching exactly on a lattice, then one coordinate moved by an ulp or a few.
+// The features touch exactly on a lattice. Then one coordinate is moved by one ulp or a few.
 TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
   const auto move = [&](FourMovingPoints& p) {
     MovingPoint& x = p[static_cast<std::size_t>(make_.below(4))];
@@ -131,7 +133,8 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
     const double away = make_.below(2) ? 1e9 : -1e9;
     for (int ulps = 1 << make_.below(4); ulps > 0; --ulps) c = std::nextafter(c, away);
   };
-  const auto apart_from_zero = [](FourMovingPoints p) {  // ulps of 1, not of 0
+  // Moves the points away from 0, so that an ulp of a coordinate is not tiny.
+  const auto apart_from_zero = [](FourMovingPoints p) {
     for (MovingPoint& x : p) x = {x.start + Vec3(17, 33, 65), x.end + Vec3(17, 33, 65)};
     return p;
   };
@@ -154,7 +157,8 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
   ee_.expect_both_answers();
 }
 
-// Zeros of a lattice moved to the smallest of doubles: coordinates with a thousand places between their bits.
+// Coordinates of a lattice are moved by single doubles, which takes zeros to the smallest doubles. The bits
+// of such coordinates lie a thousand places apart.
 TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
   compare(1500, [&](int i) {
     FourMovingPoints p = make_.lattice(1 + i % 3);
@@ -173,7 +177,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
   }
 }
 
-// Features that touch at borders, corners and ends up to the rounding of the coordinates.
+// The features touch at borders, corners and ends, up to the rounding of the coordinates.
 TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
   const double places[] = {0, 0.5, 1, 1e-16, 1 - 1e-16, 1e-9, -1e-16};
   const auto place = [&] { return places[make_.below(7)]; };
@@ -187,7 +191,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
   EXPECT_GT(ee_.contacts, 300);
 }
 
-// Cubics with double and triple roots, or nearly.
+// The cubics have double and triple roots, exactly or nearly.
 TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
   compare(4000, [&](int i) {
     FourMovingPoints p = i % 2 ? make_.any() : make_.lattice(4);
@@ -202,7 +206,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
   ee_.expect_both_answers();
 }
 
-// The range of doubles: neither underflow nor overflow decides anything.
+// The coordinates span the range of doubles. Neither underflow nor overflow may decide a query.
 TEST_F(FilteredExact, AgreesWithTheRefereeAtExtremesOfRange) {
   for (const double scale : {0x1p-1070, 1e-320, 1e-300, 0x1p-700, 1e-110, 1e110, 1e150, 1e300, 0x1p1019}) {
     vf_ = ee_ = {};
@@ -233,7 +237,8 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
   ee_.expect_both_answers();
 }
 
-// Vectors that are subnormal beside others that are not: what is lost between the ends of an interval counts.
+// Some vectors are subnormal beside others that are not. The digits that such a vector loses between the
+// ends of an interval must count as an error.
 TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
   const FourMovingPoints lost = {
       MovingPoint{{0x1p-1074, 0x1p-1073, 0x1p-1073}, {0x1p-1072, 3 * 0x1p-1074, -3 * 0x1p-1074}},
@@ -256,7 +261,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
   ee_.expect_both_answers();
 }
 
-// A second opinion that shares no algorithm with the referee either.
+// The brute-force referee shares no algorithm with filtered_exact or the referee.
 TEST_F(FilteredExact, AgreesWithBruteForceOnSmallIntegers) {
   const auto check = [](const FourMovingPoints& p, const Answer& answer, const brute::Predicate& predicate) {
     const brute::Four points{brute::moving(p[0]), brute::moving(p[1]), brute::moving(p[2]),
@@ -298,7 +303,7 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
         mapped([](const Vec3& p) { return Vec3(p.y(), p.z(), p.x()); }),
         mapped([](const Vec3& p) { return Vec3(p.y(), p.x(), p.z()); }),
         mapped([](const Vec3& p) { return Vec3(0x1p-300 * p.x(), 0x1p200 * p.y(), p.z()); })};
-    if (i % 4 != 0)  // where the sum is exact
+    if (i % 4 != 0)  // the sum is exact for lattices
       alike.push_back(mapped([](const Vec3& p) { return Vec3(p + Vec3(1 << 20, -12345.5, 0x1p-20)); }));
     for (const FourMovingPoints& p : alike) {
       EXPECT_TRUE(same(vf, ask(query_of<MovingVertexFace>(p))));
@@ -313,8 +318,8 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
   }
 }
 
-// A vertex that passes the tilted plane z = x by the smallest of doubles, beside a large triangle: more bits
-// than the integers hold.
+// A vertex passes the tilted plane z = x by the smallest double, and the triangle is huge. This takes more
+// bits than the integers hold.
 TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
   constexpr double tiny = 0x1p-1074, far = 0x1p900;
   const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
@@ -328,9 +333,9 @@ TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
   EXPECT_EQ(ask(stays).verdict, Verdict::apart);
 }
 
-// Side by side, nearly all that meets inside is decided, and much of what goes through more roots than one.
+// Lanes decide nearly all queries whose features meet inside, and many of the queries in general position.
 TEST_F(FilteredExact, DecidesMostQueriesSideBySide) {
-  // Share of 500 blocks of one to eight.
+  // The share of queries that lanes decide, in 500 blocks of one to eight queries.
   const auto decided = [](auto&& make_query) {
     double count = 0, asked = 0;
     for (int i = 0; i < 500; ++i) {
@@ -360,8 +365,8 @@ TEST_F(FilteredExact, DecidesMostQueriesSideBySide) {
             0.9);
 }
 
-// The tests of the tests: with one bound gone, the stage in double precision claims what is not so, and the
-// families above would show it.
+// Mutation: without one of the error bounds, the stage in double precision makes wrong claims. The families
+// above would show them.
 struct NoComponentBound : ProvenBounds {
   static constexpr double component = 0;
 };
@@ -369,14 +374,15 @@ struct NoCubicBound : ProvenBounds {
   static constexpr double cubic = 0;
 };
 
-// Three points on one line, at distances so different that their differences are rounded, and one aside: the
-// middle one stays on the edge between the others.
+// Three points at rest on one line and a fourth point aside. The distances on the line are so different that
+// differences of points are rounded. The first point stays on the edge between the second and the third.
 FourMovingPoints on_an_edge(QueryMaker& make) {
   const auto whole = [&] { return Vec3((make.vector() * 0x1p20).array().round()); };
   const Vec3 d = whole(), near = std::ldexp(1, -30 - make.below(30)) * d, far = std::ldexp(1, 30) * d;
   return {{{d, d}, {near, near}, {far, far}, {whole(), whole()}}};
 }
 
+// The number of queries about which the stage in double precision claims a wrong answer.
 template <class Bounds, class Query>
 int wrong_claims(QueryMaker& make) {
   int wrong = 0;

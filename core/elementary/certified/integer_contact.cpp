@@ -1,23 +1,27 @@
 // The integer stage of `filtered_exact`.
 //
-// Both kinds of query are three moving vectors p, q, r: two edges of the face and the vertex, all from one
-// corner; or the two edges and what leads from the first to the second. With n = p x q, g = p x r, h = r x q,
-// the four points are coplanar where n . r = 0, and then, seen along any axis k, the features touch
-//   vertex-face:  only if g_k, h_k and (n - g - h)_k have one sign, zero allowed,
-//   edge-edge:    only if -g_k, (n + g)_k, h_k and (n - h)_k have,
-// and surely if besides one of these is not zero, for they sum to n_k or 2 n_k, and where n_k is not zero the
-// projection along k is one to one on the common plane. These polynomials are called sides. If they are zero
-// along all three axes the four points lie on one line, and the features are apart exactly if, along some
-// axis, all differences of the points of the one to those of the other have one strict sign (a vertex on its
-// triangle and two segments are convex sets on that line).
+// A query of either kind is three moving vectors p, q, r. For a vertex and a face, p and q are two edges of
+// the face and r leads to the vertex, all from one corner. For two edges, p and q are the edges and r leads
+// from the start of the first to the start of the second. Let n = p x q, g = p x r, h = r x q. The four
+// points are coplanar where n . r = 0. At such a time the *sides* along an axis k decide whether the
+// features touch:
+//   vertex-face:  g_k, h_k and (n - g - h)_k,
+//   edge-edge:    -g_k, (n + g)_k, h_k and (n - h)_k.
+// The features touch only if the sides along k have one sign, zero allowed. They surely touch if, besides,
+// one of these sides is not zero: the sides sum to n_k or 2 n_k, and where n_k is not zero the projection
+// along k is one to one on the common plane. If the sides are zero along all three axes, the four points
+// lie on one line. Then the features are apart exactly if, along some axis, all differences from the points
+// of one feature to the points of the other have one strict sign (a vertex, a triangle and a segment are
+// convex sets on that line).
 //
-// Where n . r is zero throughout, contact can begin only at t = 0 or at a root of a side or of n_k for one
-// axis k along which n is not zero throughout; if n is zero throughout, two sides along an axis have opposite
-// signs or all are zero, so any one side that is not zero throughout has all contacts among its roots; and if
-// all of them are zero, contact begins at a root of one of the differences on the line.
+// Suppose that n . r is zero throughout. If n_k is not zero throughout for some axis k, contact can begin
+// only at t = 0, at a root of a side along k, or at a root of n_k. If n is zero throughout, two sides along
+// an axis have opposite signs or all sides are zero, so the roots of any side that is not zero throughout
+// include all contact times. If all sides are zero throughout, contact begins at t = 0 or at a root of one
+// of the differences on the line.
 //
-// Each axis is scaled by its own power of two: contact does not depend on it, and it keeps the integers
-// short.
+// Each axis is scaled by its own power of two. Contacts do not depend on this scaling, and it keeps the
+// integers short.
 #include "core/elementary/certified/integer_contact.h"
 
 #include <algorithm>
@@ -51,6 +55,7 @@ Polynomial polynomial(const Line& line) {
   return p;
 }
 
+// The double mantissa * 2^exponent.
 struct Scaled {
   std::int64_t mantissa = 0;  // odd, or zero
   int exponent = 0;
@@ -63,12 +68,14 @@ Scaled scaled(double x) {
   return {mantissa >> spare, exponent - 53 + spare};  // exact: the low bits are zero
 }
 
+// The vectors p, q, r in integers: [axis].
 struct FeatureTriple {
   Line p[3], q[3], r[3];
-  int bits[3];  // on each axis
+  int bits[3];  // the most bits of a number on each axis
 };
 
-// Points in the order of `points`: corner, corner, corner, vertex; or first edge, second edge.
+// Makes the vectors from four points: the three corners and the vertex, or the ends of the first edge and
+// the ends of the second edge. An axis whose numbers are too long has its `bits` set and no vectors.
 FeatureTriple triple(Kind kind, const MovingPoint* const (&points)[4]) {
   FeatureTriple result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +91,7 @@ FeatureTriple triple(Kind kind, const MovingPoint* const (&points)[4]) {
     }
     // A difference of differences has two bits more.
     result.bits[axis] = std::max(0, highest - lowest) + 2;
-    if (result.bits[axis] > Wide::kBits / 8) continue;  // given up
+    if (result.bits[axis] > Wide::kBits / 8) continue;  // `Contact` gives up on so many bits
     const auto at = [&](int i) {
       return part[i].mantissa == 0 ? Wide() : Wide(part[i].mantissa) << part[i].exponent - lowest;
     };
@@ -129,11 +136,13 @@ Polynomial negated(Polynomial a) {
   return a;
 }
 
+// One query, whose polynomials are made on demand.
 class Contact {
  public:
   Contact(Kind kind, const MovingPoint* const (&points)[4]) : kind_(kind), v_(triple(kind, points)) {
-    // The longest number is a quadratic at a fraction made of the cubic and itself: with s bits in the cubic
-    // and d in a quadratic, 2 s + 5 d and some carries.
+    // The longest number is the value of a quadratic at a fraction that is made of the cubic and this
+    // quadratic. With s bits in the cubic and d bits in the quadratic, it has 2 s + 5 d bits and some
+    // carries.
     const int all = v_.bits[0] + v_.bits[1] + v_.bits[2];
     const int two = all - std::min({v_.bits[0], v_.bits[1], v_.bits[2]});
     fits_ = 2 * all + 5 * two + 80 <= Wide::kBits;
@@ -172,7 +181,7 @@ class Contact {
 
   int side_count() const { return kind_ == Kind::vertex_face ? 3 : 4; }
 
-  // Made when first asked for.
+  // The sides along axis k. They are computed at the first call.
   const Polynomial* sides(int k) {
     Polynomial(&side)[kMostSides] = side_[k];
     if (have_sides_[k]) return side;
@@ -191,7 +200,8 @@ class Contact {
     return side;
   }
 
-  // From the points of one feature to those of the other, along one axis.
+  // Writes the differences from the points of one feature to the points of the other along axis k. Returns
+  // their number.
   int line_differences(int k, Polynomial (&out)[kMostSides]) const {
     const Line &p = v_.p[k], &q = v_.q[k], &r = v_.r[k];
     out[0] = polynomial(r);
@@ -205,7 +215,7 @@ class Contact {
     return 4;
   }
 
-  // Do the features touch at a root of the coplanarity cubic?
+  // True if the features touch at `root`, at which their points are coplanar.
   bool touches(Root& root) {
     for (int k = 0; k < 3; ++k) {
       const Polynomial* side = sides(k);
@@ -217,7 +227,7 @@ class Contact {
       }
       if (seen != 0) return true;
     }
-    // On one line.
+    // All sides are zero, so the points lie on one line.
     for (int k = 0; k < 3; ++k) {
       Polynomial step[kMostSides];
       const int count = line_differences(k, step);
@@ -228,6 +238,7 @@ class Contact {
     return true;
   }
 
+  // Decides features that are coplanar throughout.
   Result planar() {
     Root start;
     start.denominator = Wide(1);
@@ -251,7 +262,8 @@ class Contact {
         for (int i = 0, n = line_differences(k, step[k]); i < n; ++i) add(step[k][i]);
     }
     for (int i = 0; i < count; ++i) solver_.tighten(candidates[i]);
-    // In ascending order of the doubles below them: that double is the answer.
+    // Try the candidates in ascending order of the largest doubles not above them. That double is the
+    // answer, so the order of candidates with the same double does not matter.
     for (; count > 0 && !solver_.gave_up(); --count) {
       Root* first = std::min_element(candidates, candidates + count,
                                      [](const Root& a, const Root& b) { return a.low < b.low; });
@@ -261,6 +273,7 @@ class Contact {
     return {solver_.gave_up() ? Outcome::gave_up : Outcome::apart};
   }
 
+  // Any side that is not zero throughout, or null.
   const Polynomial* some_side() {
     for (int k = 0; k < 3; ++k)
       for (int i = 0; i < side_count(); ++i)

@@ -7,6 +7,8 @@
 // doubles beside others up to 2^60; the coordinates of a simulation span 60 to 120.
 namespace cscd::integer {
 
+// `gave_up` means that the query needs longer integers, or that its roots are too close for the solver
+// (RootSolver, integer_roots.h). It says nothing about the features.
 enum class Outcome { apart, contact, gave_up };
 
 struct Result {
@@ -14,6 +16,7 @@ struct Result {
   double time = 0;  // for a contact: the largest double not above the earliest time
 };
 
+// Decides whether the features touch at some t in [0, 1], and when first.
 Result first_contact(const MovingVertexFace& query);
 Result first_contact(const MovingEdgeEdge& query);
 

@@ -12,7 +12,7 @@ int Polynomial::bits() const {
   return longest;
 }
 
-Dyadic dyadic(double t) {  // 0 <= t <= 1
+Dyadic dyadic(double t) {
   if (t == 0) return {0, 0};
   int exponent = 0;
   auto numerator = static_cast<std::int64_t>(std::ldexp(std::frexp(t, &exponent), 53));

@@ -1,14 +1,16 @@
 // Roots of integer polynomials of degree at most 3, for the integer stage of `filtered_exact`.
 //
-// Isolation: Descartes' rule (sign variations of the Bernstein coefficients on a piece) says "none", "one",
-// or nothing; then the discriminant tells whether there can be more than one. If it is zero the root of even
-// order is a fraction, and so are all. Else [0, 1] is cut near the critical points and near the fraction that
-// would be the double root, and then halved. Two roots between neighbouring doubles are on either side of
-// that fraction. The floating-point guesses decide how soon an answer comes, never what it is: every sign is
-// computed in integers.
+// Isolation starts with Descartes' rule (sign variations of the Bernstein coefficients on a piece), which
+// says "none", "one", or nothing. If it says nothing, the discriminant tells whether there can be more than
+// one root. If the discriminant is zero, the root of even order is a fraction, and so are all roots.
+// Otherwise [0, 1] is cut near the critical points and near the fraction that would be the double root (the
+// turn, integer_roots.h), and then halved. Two roots between neighbouring doubles lie on either side of
+// that fraction.
 //
-// The referee (algebraic.h) was written before and shares no code with this, so that each can be tested
-// against the other.
+// Floating-point guesses decide how soon an answer comes, never what the answer is: every sign is computed in
+// integers.
+//
+// The referee (algebraic.h) shares no code with this file, so that each can be tested against the other.
 #include "core/elementary/certified/integer_roots.h"
 
 #include <algorithm>
@@ -19,10 +21,11 @@
 namespace cscd::integer {
 namespace {
 
-// Halving of [0, 1] while two roots are not told apart.
+// The most halvings of a piece while two roots are not told apart.
 constexpr int kDeepestSearch = 100;
 
-// Doubles >= 0 are ordered like their bit patterns.
+// The rank of a double t >= 0 among all doubles. Doubles that are not negative are ordered like their bit
+// patterns.
 std::uint64_t rank_of(double t) {
   return std::bit_cast<std::uint64_t>(t + 0.0);
 }
@@ -30,7 +33,7 @@ double at_rank(std::uint64_t rank) {
   return std::bit_cast<double>(rank);
 }
 
-// Approximates the only root of p in (0, 1), where p has this sign at 0.
+// Approximates the only root of p in (0, 1). `sign_at_0` is the sign of p at 0.
 double approximate_root(const Polynomial& p, int sign_at_0) {
   const Rounded r = rounded(p);
   double low = 0, high = 1;
@@ -48,7 +51,7 @@ double approximate_root(const Polynomial& p, int sign_at_0) {
       s = next;
       break;
     }
-    // After some steps without an end, halve.
+    // After 12 steps without an end, every other step halves the bracket.
     s = step < 12 || step % 2 == 0 ? next : 0.5 * (low + high);
   }
   return std::clamp(s, 0.0, 1.0);
@@ -78,6 +81,7 @@ Root RootSolver::isolated_root(const Polynomial& p, double low, double high) {
   return root;
 }
 
+// Appends the root numerator / denominator to `roots`, tightened, if it is in [0, 1].
 void RootSolver::add_fraction(Wide numerator, Wide denominator, Root* roots, int& count) {
   if (denominator.sign() < 0) numerator = -numerator, denominator = -denominator;
   if (numerator.sign() < 0 || (denominator - numerator).sign() < 0) return;
@@ -93,7 +97,8 @@ void RootSolver::add_fraction(Wide numerator, Wide denominator, Root* roots, int
   tighten(root);
 }
 
-// Of a quadratic the vertex; of a cubic the root of p modulo p', which is the middle of its Hessian.
+// The turn of a quadratic is its vertex. The turn of a cubic p is the root of p modulo p', which is the
+// middle of p's Hessian.
 Turn RootSolver::turn_of(const Polynomial& p) {
   Turn turn;
   const int bits = p.bits() + 3;
@@ -116,7 +121,7 @@ Turn RootSolver::turn_of(const Polynomial& p) {
   return turn;
 }
 
-// All roots, where one of them is of even order, or of order 3.
+// Finds all roots of a polynomial with discriminant zero: one root is of even order, or of order 3.
 void RootSolver::find_fractions(const Polynomial& p, const Turn& turn, Root* roots, int& count) {
   const Wide &n = turn.numerator, &d = turn.denominator;
   if (d.sign() == 0) {
@@ -129,7 +134,7 @@ void RootSolver::find_fractions(const Polynomial& p, const Turn& turn, Root* roo
   if (!fits(p.bits() + std::max(n.bits(), d.bits()) + 3)) return;
   add_fraction(-(p.c[2] * d) - (p.c[3] * n << 1), p.c[3] * d, roots, count);
   if (count < 2 || roots[0].low < roots[1].low) return;
-  // Of two that tighten to the same double either may be the earlier.
+  // If both roots tighten to the same double, either of them may be the earlier root.
   if (!fits(std::max(roots[0].numerator.bits(), roots[1].numerator.bits()) +
             std::max(roots[0].denominator.bits(), roots[1].denominator.bits())))
     return;
@@ -138,7 +143,8 @@ void RootSolver::find_fractions(const Polynomial& p, const Turn& turn, Root* roo
     std::swap(roots[0], roots[1]);
 }
 
-// Two sign variations between neighbouring doubles: there are two roots if p has the other sign at its turn.
+// Finds the roots between two neighbouring doubles where p has two sign variations. There are two roots if
+// the sign of p at its turn differs from the sign just above `low`; otherwise the solver gives up.
 void RootSolver::cut_in_two(const Polynomial& p, const Turn& turn, double low, double high, int sign_below,
                             Root* roots, int& count) {
   const Wide &n = turn.numerator, &d = turn.denominator;
@@ -150,7 +156,7 @@ void RootSolver::cut_in_two(const Polynomial& p, const Turn& turn, double low, d
   if (p.degree == 2) {
     sign = sign_at_fraction(p, n, d);
   } else {
-    // There p is p' times (3 c3 x + c2) / (9 c3).
+    // At the turn x the value of p is p' times (3 c3 x + c2) / (9 c3).
     Polynomial slope;
     slope.c[0] = p.c[1];
     slope.c[1] = p.c[2] << 1;
@@ -177,13 +183,14 @@ void RootSolver::cut_in_two(const Polynomial& p, const Turn& turn, double low, d
   }
 }
 
+// Appends the roots in the open interval (low, high) to `roots`, in ascending order.
 void RootSolver::search(const Polynomial& p, const Turn& turn, double low, double high, Root* roots,
                         int& count, int depth) {
   if (gave_up_) return;
   const Signs signs = bernstein_signs(stretched(p, low, high));
   if (gave_up_) return;
   int most = signs.variations;
-  if (turn.discriminant < 0 && most > 1) most -= 2;  // there is no pair of them
+  if (turn.discriminant < 0 && most > 1) most -= 2;  // two of the roots are not real
   if (most == 0) return;
   if (most == 1) {
     Root& root = roots[count++];
@@ -223,7 +230,7 @@ int RootSolver::find_roots(const Polynomial& p, Root* roots) {
   }
   if (p.c[0].sign() == 0) roots[count++] = root_at_double(0);
 
-  // Cut near the critical points, and round the turn.
+  // Cut near the critical points, and at the doubles round the turn.
   double cut[6] = {0, 1};
   int cuts = 1;
   if (turn.discriminant > 0) {
@@ -255,7 +262,7 @@ int RootSolver::find_roots(const Polynomial& p, Root* roots) {
 
 void RootSolver::tighten(Root& root) {
   if (root.polynomial == nullptr) {
-    // A fraction near a double: step until it is enclosed.
+    // The fraction is near root.low: step from there until two neighbouring doubles enclose the fraction.
     const auto side = [&](double t) {
       const Dyadic at = dyadic(t);
       if (!fits(std::max(root.numerator.bits() + at.places, root.denominator.bits() + 64) + 2)) return 0;
@@ -288,7 +295,7 @@ void RootSolver::tighten(Root& root) {
     if (side <= 0) high = rank;
     return side;
   };
-  // From the guess outwards in growing steps until the root is overtaken.
+  // Step from the guess towards the root, in growing steps, until the root is overtaken.
   const int direction = probe(std::clamp(rank_of(guess), low + 1, high - 1));
   for (std::uint64_t step = 1; direction != 0 && step < high - low && !gave_up_; step *= 8) {
     const std::uint64_t next = direction > 0 ? low + step : high - step;

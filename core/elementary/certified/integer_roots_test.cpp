@@ -9,7 +9,7 @@
 namespace cscd::integer {
 namespace {
 
-// A polynomial for this solver and for the referee's.
+// A polynomial in the types of this solver and of the referee's solver.
 struct Both {
   Polynomial ours;
   exact::Polynomial referee;
@@ -33,8 +33,9 @@ class Polynomials {
   std::int64_t in(std::int64_t low, std::int64_t high) {
     return std::uniform_int_distribution<std::int64_t>(low, high)(random_);
   }
-  // Products of factors m t - n with roots in or near [0, 1], so that roots come together, at ends, at dyadic
-  // points; or any small integers; or such a product with one coefficient a little off.
+  // Returns coefficients by ascending power. They are a product of factors m t - n with roots in or near
+  // [0, 1], so that roots fall together, on ends, and on dyadic points; or any small integers; or such a
+  // product with one coefficient a little off.
   std::vector<std::int64_t> any(int degree = 3) {
     const auto kind = in(0, 3);
     if (kind == 0) {
@@ -81,7 +82,7 @@ TEST(IntegerRoots, AgreeWithTheReferees) {
     repeated += count > 0 && count < p.ours.degree;
     for (int k = 0; k < count; ++k) {
       auto& root = expected[static_cast<std::size_t>(k)];
-      if (i % 2) solver.tighten(roots[k]);  // before or after the signs: it must not matter
+      if (i % 2) solver.tighten(roots[k]);  // signs must not depend on whether the root is tight
       const int sign = solver.sign_at(q.ours, roots[k]);
       ASSERT_EQ(sign, root.sign_of(q.referee)) << i << ", root " << k;
       zero_signs += sign == 0 && !q.ours.is_zero();
@@ -97,9 +98,10 @@ TEST(IntegerRoots, AgreeWithTheReferees) {
   EXPECT_GT(repeated, 100);
 }
 
-// A hair's breadth from a common root: resolved only far below the spacing of doubles.
+// Two polynomials have roots that are equal or apart by far less than the spacing of doubles.
 TEST(IntegerRoots, TellsRootsApartFarBelowTheSpacingOfDoubles) {
-  // p = 3 t - 1; q = (3 N) t - (N + e) has its root at 1/3 + e / (3 N).
+  // p = 3 t - 1 has its root at 1/3, and q = (3 N) t - (N + e) has its root at 1/3 + e / (3 N), with
+  // N = 2^places.
   for (const int places : {60, 250, 1000}) {
     for (const int e : {-1, 0, 1}) {
       Polynomial p, q;
@@ -125,10 +127,12 @@ Wide wide(const mpz_class& value) {
   return sgn(value) < 0 ? -result : result;
 }
 
-// Two roots 2^(-places/2) apart, or none, by as little: between the same two doubles. And signs of
-// polynomials that turn there too.
+// Polynomials have two roots that are about 2^(-places/2) apart, between the same two doubles, or miss
+// having them by as little. The test also compares signs of other polynomials that turn at the same place.
 TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
-  const auto near_third = [](int degree, int places, int off) {  // a double root at 1/3, or off it
+  // A polynomial that has a double root at 1/3 for off = 0, and nearly has one otherwise. Degree 1 has a
+  // single root.
+  const auto near_third = [](int degree, int places, int off) {
     const mpz_class one = mpz_class(1) << static_cast<unsigned>(places);
     Both p;
     mpz_class c[4] = {one, -6 * one, 9 * one, 0};  // (3 t - 1)^2

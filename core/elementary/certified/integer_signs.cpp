@@ -1,8 +1,9 @@
-// Exact signs of integer polynomials at doubles, at fractions and at the roots of others.
+// Exact signs of integer polynomials at doubles, at fractions, and at roots of other polynomials.
 //
-// Sign of q at an isolated root r of p: certain if q has no sign variation between the neighbouring doubles
-// that enclose r. Otherwise r is compared with the root of q there, without refining either: p at that root
-// is p modulo q, which is linear, and its sign follows from that of q at a fraction.
+// The sign of q at an isolated root r of p is certain if q has no sign variation between the neighbouring
+// doubles that enclose r. Otherwise q has a root x between these doubles, and r is compared with x without
+// refining either: at x the value of p is that of p modulo q, which is linear, and the sign of this linear
+// polynomial at x follows from the sign of q at a fraction.
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +12,8 @@
 namespace cscd::integer {
 namespace {
 
-// A multiple of p modulo q, q of degree 2, p of degree 3 or less: {constant, slope}.
+// Returns a multiple of p modulo q as {constant, slope}, for q of degree 2 and p of degree at most 3. The
+// factor is the square of q's leading coefficient if p has degree 3, and that coefficient otherwise.
 std::pair<Wide, Wide> remainder(const Polynomial& p, const Polynomial& q) {
   const auto coefficient = [&](int i) { return i <= p.degree ? p.c[i] : Wide(); };
   Wide r2 = coefficient(2), r1 = coefficient(1), r0 = coefficient(0);
@@ -61,7 +63,8 @@ Polynomial RootSolver::stretched(const Polynomial& p, double low, double high) {
   return stretched_by(p, from, (Wide(b.numerator) << places - b.places) - from, places);
 }
 
-// numerator / denominator, which is positive, against a bound: -1, 0 or 1.
+// The order of numerator / denominator and a bound: -1, 0 or 1, as the fraction is below, at or above the
+// bound. The denominator is positive.
 int RootSolver::compared(const Wide& numerator, const Wide& denominator, const Bound& bound) {
   if (bound.is_fraction) {
     if (!fits(std::max(numerator.bits() + bound.denominator.bits(),
@@ -80,13 +83,13 @@ int RootSolver::sign_at_bound(const Polynomial& p, const Bound& bound) {
                            : sign_at_double(p, bound.at);
 }
 
-// The sign of q at an isolated root between bounds between which, and at
-// which, q has at most one root, and that simple.
+// The sign of q at an isolated root that lies between two bounds. In the closed interval of the bounds q
+// has at most one root, and that root is simple.
 int RootSolver::sign_at_side(const Polynomial& q, const Root& root, const Bound& low, const Bound& high) {
   const Polynomial& p = *root.polynomial;
   const int below = sign_at_bound(q, low), above = sign_at_bound(q, high);
   if (below * above >= 0) return below != 0 ? below : above;
-  // q has a root there, x. What is the sign of p at x?
+  // q has a root x between the bounds. Find the sign of p at x.
   int sign = 0;
   if (q.degree == 1) {
     const bool flip = q.c[1].sign() < 0;
@@ -97,14 +100,14 @@ int RootSolver::sign_at_side(const Polynomial& q, const Root& root, const Bound&
   } else {
     if (!fits(p.bits() + 2 * q.bits() + 8)) return 0;
     auto [r0, r1] = remainder(p, q);
-    if (p.degree == 2 && q.c[2].sign() < 0) r0 = -r0, r1 = -r1;  // else the multiple is positive
+    if (p.degree == 2 && q.c[2].sign() < 0) r0 = -r0, r1 = -r1;  // for degree 3 the factor is positive
     sign = r1.sign();
     if (sign == 0) {
       sign = r0.sign();
     } else {
       Wide numerator = -r0, denominator = r1;
       if (sign < 0) numerator = -numerator, denominator = -denominator;
-      // x against the root of the remainder.
+      // Compare x with the root of the remainder.
       int side = 0;
       if (compared(numerator, denominator, low) <= 0) {
         side = 1;

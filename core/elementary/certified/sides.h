@@ -6,22 +6,25 @@
 #include "core/geometry/feature_motion.h"
 #include "core/geometry/lanes.h"
 
-// Where features in one plane are, by the sides of integer_contact.cpp: combinations of components of n = p x
-// q, g = p x r and h = r x q along an axis. Two with certain opposite signs all through an interval prove
-// "apart" there; all with one certain sign prove "contact" wherever they are in one plane. After the idea of
-// Bernstein sign classification (Tang, Tong, Wang and Manocha, TOG 2014); what differs: every sign has a
-// forward error bound.
+// Tells whether features touch wherever they are in one plane, from the signs of their *sides*. The sides are
+// combinations of components of n = p x q, g = p x r and h = r x q along an axis; integer_contact.cpp derives
+// them. If two sides have certain opposite signs all through an interval, the features are apart in that
+// interval. If all sides have one certain sign, the features touch whenever they are in one plane.
 //
-// One text for a query and for eight side by side: with doubles and bools, and with lanes and their masks.
+// The idea is Bernstein sign classification (Tang, Tong, Wang and Manocha, TOG 2014). This implementation
+// differs in that every sign has a forward error bound (rule certain-sign, core/soundness.md).
+//
+// The code is written once for a single query (Real = double, with bools as masks) and for eight queries side
+// by side (Real = Lane8, with the masks of lanes).
 namespace cscd {
 
 template <class Query>
 constexpr bool kIsVertexFace = std::is_same_v<Query, MovingVertexFace>;
 
-// A moving vector seen along an axis: its other two components at both ends of an interval.
+// A moving vector seen along an axis: its components along the two other axes at both ends of an interval.
 template <class Real>
 struct SeenAlong {
-  Real at[2][2];
+  Real at[2][2];  // [end][component]
 };
 
 // A component of a product of two moving vectors over an interval: Bernstein coefficients, and a bound on the
@@ -32,18 +35,28 @@ struct Component {
   Real error;
 };
 
-// One vector component is off by at most 4 u L: a difference, and two products and a sum between the ends of
-// the interval; L is the largest component at t = 0 and 1. A coefficient has two products of two of those,
-// (2 * 2 * 4 + 2) u L L', and a difference of them, 2 u L L'; the middle one is half of twice as much, and
-// one more sum: 22 u L L' altogether. Sides add up to three of these, at most 4 u more for each. 28 also pays
-// for terms in u^2 and the bound's own roundings. What underflows in a product is less than the last term;
-// what does in a vector counts as little only if the vector is no smaller than kLeastSize.
+// The error bounds of components and of the cubic.
+//
+// Let L and L' be the largest components of the two vectors at t = 0 and t = 1. A vector component is off by
+// at most 4 u L: it is a difference at each end, and two products and a sum for a time between the ends. A
+// Bernstein coefficient of the cross product contains two products of two vector components, (2 * 2 * 4 + 2)
+// u L L', and their difference, 2 u L L'. The middle coefficient is half of twice as much, with one more sum:
+// 22 u L L' altogether. A side adds up to three components, which costs at most 4 u more for each. The
+// constant 28 also pays for terms in u^2 and for the bound's own roundings.
+//
+// An underflow in a product costs less than kUnderflow. An underflow in a vector component is negligible only
+// if the vector is at least as large as kLeastSize.
 struct ProvenBounds {
-  static constexpr double component = 28 * kUnitRoundoff, cubic = 1;  // the latter in units of the proven one
+  // `component` is relative to L L'; `cubic` is a factor on the bound of the cubic (CubicOf,
+  // doubles_stage.h).
+  static constexpr double component = 28 * kUnitRoundoff, cubic = 1;
 };
 inline constexpr double kUnderflow = 1e-300;
-inline constexpr double kLeastSize = 1e-290, kLargestSize = 1e145;  // of vectors, for that and for overflow
+// The range of the largest components of vectors in which the bounds hold: no smaller, because of underflow,
+// and no larger, because of overflow.
+inline constexpr double kLeastSize = 1e-290, kLargestSize = 1e145;
 
+// The component of x cross y along the axis along which both are seen. `size` is L L' of ProvenBounds.
 template <class Bounds, class Real>
 Component<Real> component(const SeenAlong<Real>& x, const SeenAlong<Real>& y, Real size) {
   const auto wedge = [&](int m, int n) { return x.at[m][0] * y.at[n][1] - x.at[m][1] * y.at[n][0]; };
@@ -63,13 +76,15 @@ Component<Real> operator-(const Component<Real>& x) {
   return {{-x.b[0], -x.b[1], -x.b[2]}, x.error};
 }
 
-// What is certain all through an interval.
+// The place of the features, as far as it is certain all through an interval. `outside` proves that they
+// never touch in the interval. `inside` proves that they touch at every time in the interval at which their
+// four points are in one plane. At most one of both is true.
 template <class Real>
 struct Place {
   MaskOf<Real> outside, inside;
 };
 
-// The signs that sides certainly have.
+// Collects the signs of the sides that are certain.
 template <class Real>
 struct SideSigns {
   using Mask = MaskOf<Real>;
@@ -90,7 +105,7 @@ struct SideSigns {
   }
 };
 
-// Largest components.
+// The largest absolute components of the vectors p, q and r at t = 0 and t = 1.
 template <class Real>
 struct Sizes {
   Real p, q, r;
@@ -101,6 +116,8 @@ struct Sizes {
   }
 };
 
+// The place of the features by their sides along one axis. `size` holds the sizes over all of [0, 1], also if
+// p, q and r are given over a part of it.
 template <class Query, class Bounds, class Real>
 Place<Real> place_along(const SeenAlong<Real>& p, const SeenAlong<Real>& q, const SeenAlong<Real>& r,
                         const Sizes<Real>& size) {

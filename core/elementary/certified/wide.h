@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 
-// Integers of up to 18,432 bits that live where they are declared: no allocation, schoolbook products. For
-// the integers of one elementary query, which have one to forty words, and up to 280 where some coordinates
-// are subnormal; there this is faster than GMP, whose numbers each own a block of memory. Words that are not
-// in use are not touched. The caller bounds the bits beforehand (Wide::kBits).
+// Integers of up to 18,432 bits that hold their words in place: nothing is allocated, and products are
+// computed by the schoolbook method.
+//
+// They serve the integers of one elementary query, which have one to forty words, and up to 280 where some
+// coordinates are subnormal. At these sizes they are faster than GMP, whose numbers each own a block of
+// memory. Words that are not in use are not touched. The caller makes sure beforehand that every result has
+// at most Wide::kBits bits.
 namespace cscd {
 
 class Wide {
@@ -30,7 +33,7 @@ class Wide {
   }
 
   int sign() const { return size_ == 0 ? 0 : negative_ ? -1 : 1; }
-  // Of the magnitude; 0 for zero.
+  // The number of bits of the magnitude; 0 for zero.
   int bits() const { return size_ == 0 ? 0 : 64 * size_ - std::countl_zero(word_[size_ - 1]); }
 
   Wide operator-() const {
@@ -47,7 +50,8 @@ class Wide {
     assert(a.size_ + b.size_ <= kWords);
     result.negative_ = a.negative_ != b.negative_;
     result.word_[longer.size_] = multiply_word(longer, shorter.word_[0], result.word_);
-    for (int i = 1; i < shorter.size_; ++i)  // of one large and one tiny part most words are zero
+    for (int i = 1; i < shorter.size_;
+         ++i)  // a sum of a large and a tiny part has mostly words that are zero
       result.word_[longer.size_ + i] =
           shorter.word_[i] == 0 ? 0 : add_product_of_word(longer, shorter.word_[i], result.word_ + i);
     result.size_ = a.size_ + b.size_;
@@ -81,7 +85,8 @@ class Wide {
     double value;
     int exponent;
   };
-  // value * 2^exponent within a relative 2^-52 of the number, value in [1/2, 1] or the same negative, or 0.
+  // Returns `value` and `exponent` such that value * 2^exponent is within a relative 2^-52 of the number. The
+  // magnitude of `value` is in [1/2, 1]; for zero `value` is 0.
   Leading leading() const {
     if (size_ == 0) return {0, 0};
     const int zeros = std::countl_zero(word_[size_ - 1]);
@@ -97,6 +102,7 @@ class Wide {
   void copy_words(const Wide& other) {
     for (int i = 0; i < other.size_; ++i) word_[i] = other.word_[i];
   }
+  // Writes the magnitude of a times `factor` to `out`, a.size_ words long. Returns the word that is carried.
   static std::uint64_t multiply_word(const Wide& a, std::uint64_t factor, std::uint64_t* out) {
     std::uint64_t carry = 0;
     for (int i = 0; i < a.size_; ++i) {
@@ -106,6 +112,7 @@ class Wide {
     }
     return carry;
   }
+  // Adds the magnitude of a times `factor` to `out`, a.size_ words long. Returns the word that is carried.
   static std::uint64_t add_product_of_word(const Wide& a, std::uint64_t factor, std::uint64_t* out) {
     std::uint64_t carry = 0;
     for (int i = 0; i < a.size_; ++i) {
@@ -121,7 +128,7 @@ class Wide {
       if (a.word_[i] != b.word_[i]) return a.word_[i] < b.word_[i];
     return false;
   }
-  // a + b with b's sign replaced.
+  // a + b, with the sign of b given by `b_negative`.
   static Wide sum(const Wide& a, const Wide& b, bool b_negative) {
     const bool swap = smaller_magnitude(a, b);
     const Wide &large = swap ? b : a, &small = swap ? a : b;

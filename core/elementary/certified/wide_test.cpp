@@ -7,7 +7,7 @@
 namespace cscd {
 namespace {
 
-// A number in both arithmetics; runs of zeros and ones make carries go far.
+// A number in both arithmetics.
 struct Both {
   Wide wide;
   mpz_class gmp;
@@ -16,6 +16,7 @@ struct Both {
 class Numbers {
  public:
   explicit Numbers(unsigned seed) : random_(seed) {}
+  // A number of at most so many words. It has runs of zeros and ones, so that carries go far.
   Both any(int words) {
     Both x;
     for (int i = static_cast<int>(random_() % static_cast<unsigned>(words + 1)); i > 0; --i) {
@@ -41,7 +42,7 @@ void expect_same(const Wide& wide, const mpz_class& gmp) {
   ASSERT_EQ(wide.bits(), gmp == 0 ? 0 : static_cast<int>(mpz_sizeinbase(gmp.get_mpz_t(), 2)));
   Wide rest = wide;
   mpz_class gmp_rest = gmp;
-  // Leading digits off, one after the other, until nothing is left.
+  // Take the leading digits off, one after the other, until nothing is left.
   for (int step = 0; rest.sign() != 0; ++step) {
     ASSERT_LT(step, Wide::kBits);
     const Wide::Leading lead = rest.leading();

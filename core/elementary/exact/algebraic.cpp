@@ -1,13 +1,16 @@
 // Real roots in [0, 1] of integer polynomials, and exact signs at them.
 //
-// Isolation: the square-free part has simple roots only, so halving intervals until Descartes' rule (sign
-// variations of the Bernstein coefficients) says "none" or "one" ends; a split point that is a root is
-// recorded as the dyadic number it is and divided out. Proves: every root is found once, whatever the
-// coefficients. Sign of g at a root alpha of f: the root is shared if and only if gcd(f, g) changes sign
-// across alpha's interval; otherwise the interval is narrowed until g keeps one sign on it. Narrowing is by a
-// floating-point guess whose neighbours are then tested exactly: the guess may be as bad as it likes, it
-// costs time and not truth. Cost: one to ten microseconds for a root whose coefficients have a few hundred
-// bits.
+// Isolation works on the square-free part of a polynomial, which has simple roots only. It halves intervals
+// until Descartes' rule (sign variations of the Bernstein coefficients) says "none" or "one". This ends,
+// because all roots are simple. A split point that is a root is recorded as a dyadic number and divided
+// out. So every root is found once, whatever the coefficients are.
+//
+// The sign of g at a root alpha of f is 0 if and only if gcd(f, g) changes sign across alpha's interval.
+// Otherwise the interval is narrowed until g keeps one sign on it.
+//
+// Narrowing starts from a floating-point guess and tests its neighbours exactly. A bad guess costs time,
+// but it never makes an answer wrong. A root whose coefficients have a few hundred bits takes one to ten
+// microseconds.
 #include "core/elementary/exact/algebraic.h"
 
 #include <algorithm>
@@ -20,7 +23,8 @@
 namespace cscd::exact {
 namespace {
 
-// Doubles >= 0 are ordered like their bit patterns.
+// The rank of a double x >= 0 among all doubles. Doubles that are not negative are ordered like their bit
+// patterns.
 std::uint64_t to_rank(double x) {
   return std::bit_cast<std::uint64_t>(x + 0.0);
 }
@@ -128,7 +132,7 @@ void AlgebraicNumber::tighten() {
   };
   const auto gap = [&] { return to_rank(high) - to_rank(low); };
   if (!is_dyadic() && gap() > 1) {
-    // From the guess outwards in growing steps until the root is overtaken.
+    // Step from the guess towards the root, in growing steps, until the root is overtaken.
     const std::uint64_t start =
         std::clamp(to_rank(std::clamp(guess(), low, high)), to_rank(low) + 1, to_rank(high) - 1);
     const int direction = probe(start);
@@ -159,7 +163,8 @@ int AlgebraicNumber::sign_of(const Polynomial& p) {
     if (const int sign = certain_sign(); sign != 0 || is_dyadic()) return sign;
   }
   const Polynomial shared = greatest_common_divisor(polynomial_, p);
-  // `shared` divides the polynomial: it has at most one root inside, a simple one, and none at the ends.
+  // `shared` divides polynomial_. So it has at most one root inside the interval, which is simple, and no
+  // root at the ends.
   if (shared.degree() > 0 && sign_at(shared, lower_) != sign_at(shared, upper_)) return 0;
   for (int steps = 4;; steps *= 2) {
     for (int i = 0; i < steps; ++i) bisect();
@@ -192,7 +197,7 @@ std::vector<AlgebraicNumber> roots_in_unit_interval(const Polynomial& polynomial
       if (count <= 1) continue;
       const Dyadic middle = midpoint(interval.lower, interval.upper);
       if (sign_at(f, middle) == 0) {
-        // Start again without this root, so that no interval ever ends in a root.
+        // Divide the root out and start again, so that no interval ever ends in a root.
         roots.emplace_back(middle);
         f = exact_quotient(f, linear_factor(middle));
         isolating.clear();

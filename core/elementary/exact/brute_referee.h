@@ -1,9 +1,10 @@
 #pragma once
 
-// For tests only: contact decided a second time, sharing no algorithm with the referee. Rational arithmetic,
-// parameters of the touching points (barycentric coordinates, positions along the edges) instead of projected
-// orientations, Sturm sequences instead of Descartes' rule, Tarski queries instead of greatest common
-// divisors. Slow (up to tens of milliseconds); for coordinates that are small integers.
+// For tests only: a second referee that shares no algorithm with the first (exact.h). It uses rational
+// arithmetic, parameters of the touching points (barycentric coordinates, positions along the edges) instead
+// of projected orientations, Sturm sequences instead of Descartes' rule, and Tarski queries instead of
+// greatest common divisors. It is slow (up to tens of milliseconds) and meant for coordinates that are small
+// integers.
 
 #include <algorithm>
 #include <array>
@@ -68,7 +69,8 @@ inline mpq_class value(const Poly& p, const mpq_class& t) {
   return sum;
 }
 
-// Over the roots of f in (lower, upper), neither end a root: how many have g > 0, less how many have g < 0.
+// A Tarski query. Among the roots of f in (lower, upper), it returns the number with g > 0 minus the number
+// with g < 0. Neither end may be a root of f.
 inline int tarski_query(const Poly& f, const Poly& g, const mpq_class& lower, const mpq_class& upper) {
   std::vector<Poly> chain{f, derivative(f) * g};
   while (!chain.back().empty())
@@ -88,7 +90,7 @@ inline int tarski_query(const Poly& f, const Poly& g, const mpq_class& lower, co
 
 struct Root {
   Poly f;
-  mpq_class lower, upper;  // the only root of f between these
+  mpq_class lower, upper;  // the root is the only one of f between these
   int sign_of(const Poly& g) const { return tarski_query(f, g, lower, upper); }
   void narrow(const mpq_class& width) {
     while (upper - lower > width) {
@@ -102,6 +104,7 @@ struct Root {
   }
 };
 
+// Appends the roots of f in (lower, upper) to `roots`, in ascending order.
 inline void isolate(const Poly& f, const mpq_class& lower, const mpq_class& upper, std::vector<Root>& roots) {
   const int count = tarski_query(f, {1}, lower, upper);
   if (count == 0) return;
@@ -115,7 +118,7 @@ inline void isolate(const Poly& f, const mpq_class& lower, const mpq_class& uppe
   isolate(f, middle, upper, roots);
 }
 
-// Ascending, in the closed unit interval.
+// The roots of f in [0, 1], in ascending order.
 inline std::vector<Root> unit_roots(const Poly& f) {
   mpq_class lower = mpq_class(-1, 3), upper = mpq_class(4, 3);
   while (value(f, lower) == 0) lower /= 2;
@@ -144,7 +147,8 @@ inline PolyPoint moving(const MovingPoint& p) {
   return result;
 }
 
-// Every predicate is given as the polynomials whose signs decide it, and the decision from those signs.
+// Every predicate is given in two functions. One lists the polynomials whose signs decide the predicate, its
+// events; the other decides the predicate from these signs.
 inline void add_segment_events(std::vector<Poly>& events, const PolyPoint& p, const PolyPoint& a,
                                const PolyPoint& b) {
   const PolyPoint ab = b - a, ap = p - a;
@@ -181,7 +185,7 @@ inline bool vertex_on_triangle(const std::vector<Poly>& e, const SignOf& sign) {
 
 inline std::vector<Poly> edge_edge_events(const Four& p) {
   const PolyPoint &a = p[0], &b = p[1], &c = p[2], &d = p[3], u = b - a, w = d - c, m = cross(u, w);
-  // a + s u = c + r w, s and r times the square of m
+  // The lines meet where a + s u = c + r w. The variables s and r hold these numbers times the square of m.
   const Poly whole = dot(m, m), s = dot(cross(c - a, w), m), r = dot(cross(c - a, u), m);
   std::vector<Poly> events{whole, dot(m, c - a), s, whole - s, r, whole - r};
   add_segment_events(events, a, c, d);
@@ -209,7 +213,7 @@ struct Enclosure {
   mpq_class lower, upper;
 };
 
-// The earliest contact in [0, 1].
+// Encloses the earliest contact time in [0, 1] to within 2^-60. Returns nullopt if there is no contact.
 inline std::optional<Enclosure> first_contact(const Four& points, const Predicate& predicate) {
   const std::vector<Poly> events = predicate.events(points);
   const Poly volume = dot(cross(points[1] - points[0], points[2] - points[0]), points[3] - points[0]);
@@ -217,7 +221,7 @@ inline std::optional<Enclosure> first_contact(const Four& points, const Predicat
   if (!volume.empty()) {
     candidates = unit_roots(volume);
   } else {
-    // Coplanar throughout: contact begins at once or where a deciding sign changes.
+    // If the points are coplanar throughout, contact begins at t = 0 or where a deciding sign changes.
     if (touches_at(events, predicate, 0)) return Enclosure{0, 0};
     for (const Poly& p : events)
       if (p.size() > 1)

@@ -1,12 +1,17 @@
 // The exact referee.
 //
-// Doubles are rationals: scaled by a power of two, the moving points have integer polynomials for
-// coordinates. Features in contact are coplanar, so contact can only be at a root of the coplanarity cubic;
-// there it is decided by exact signs (touch.h). Where the cubic is identically zero the features move within
-// one plane, and contact can only begin at t = 0 or where one of the deciding signs changes: those roots are
-// the candidates. (The contact set is closed, and constant between neighbouring candidates, so its least
-// element is one.) "No" is a proof, and so is "yes"; the time is enclosed by neighbouring doubles, or met.
-// Cost: a few microseconds without a root in [0, 1], some tens with one, hundreds when coplanar throughout.
+// Doubles are rational numbers: scaled by a power of two, the coordinates of the moving points are integer
+// polynomials in t. Features in contact are coplanar, so a contact can only be at a root of the coplanarity
+// cubic. At each root exact signs decide whether the features touch (touch.h).
+//
+// If the cubic is identically zero, the features are coplanar throughout. Contact can then begin only at
+// t = 0 or where one of the deciding signs changes, so the roots of the polynomials with these signs are
+// the candidates. (The set of contact times is closed, and contact does not change between neighbouring
+// candidates, so the least contact time is a candidate.)
+//
+// "Apart" and "contact" are both proofs. The time is enclosed by neighbouring doubles, or is itself a
+// double. A query takes a few microseconds without a root in [0, 1], some tens with one root, and hundreds
+// if the features are coplanar throughout.
 #include "core/elementary/exact/exact.h"
 
 #include <algorithm>
@@ -30,8 +35,9 @@ std::optional<TimeEnclosure> first_coplanar_contact(const FourPoints& points, To
     if (event.degree() <= 0) continue;
     for (AlgebraicNumber& root : roots_in_unit_interval(event)) candidates.push_back(std::move(root));
   }
-  // Roots of different polynomials may be equal or too close to be ordered by their enclosures. No matter:
-  // the earliest contact is not after this candidate's time, nor before its lower bound, the least one left.
+  // Roots of different polynomials may be equal, or too close to be ordered by their enclosures. The result
+  // is right in any such order: the earliest contact is not after the first candidate that touches, and not
+  // before that candidate's lower bound, which is the smallest lower bound of all candidates that are left.
   std::sort(candidates.begin(), candidates.end(), [](AlgebraicNumber& a, AlgebraicNumber& b) {
     const TimeEnclosure first = a.enclosure(), second = b.enclosure();
     return first.lo != second.lo ? first.lo < second.lo : first.hi < second.hi;

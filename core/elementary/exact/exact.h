@@ -7,9 +7,10 @@
 
 namespace cscd::exact {
 
-// The referee. Decides, for the coordinates exactly as they stand (any finite doubles), whether the closed
-// features touch at some t in [0, 1], and encloses the earliest such t. Nothing is rounded. Slow (tens of
-// microseconds): it has the last word, it does not have to be first.
+// The referee: the elementary test whose answer is final (the method is in exact.cpp). It takes the
+// coordinates exactly as they stand, any finite doubles, and decides whether the closed features touch at
+// some t in [0, 1]. It returns an enclosure of the earliest such t, or nullopt if there is none. Nothing is
+// rounded. A query takes tens of microseconds.
 std::optional<TimeEnclosure> first_contact(const MovingVertexFace& query);
 std::optional<TimeEnclosure> first_contact(const MovingEdgeEdge& query);
 

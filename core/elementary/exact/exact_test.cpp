@@ -23,12 +23,12 @@ MovingPoint moving(Vec3 from, Vec3 to) {
   return {from, to};
 }
 
-// The triangle (0,0,0), (4,0,0), (0,4,0) at rest.
+// A vertex and the triangle (0,0,0), (4,0,0), (0,4,0) at rest.
 MovingVertexFace against_triangle(MovingPoint vertex) {
   return {vertex, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
 }
 
-// The first edge from (0,0,0) to (4,0,0), at rest.
+// An edge cd and the edge from (0,0,0) to (4,0,0) at rest.
 MovingEdgeEdge against_edge(MovingPoint c, MovingPoint d) {
   return {{still(0, 0, 0), still(4, 0, 0)}, {c, d}};
 }
@@ -58,7 +58,7 @@ TEST(ExactVertexFace, TouchesCornersAndEdges) {
        {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(1, 3, 0)}) {
     const Vec3 up(0.5, -0.25, 1);
     expect_contact_at(first_contact(against_triangle(moving(on + up, on - up))), 0.5);
-    // One unit in the last place beyond is a miss.
+    // A vertex that passes one unit in the last place beyond misses.
     const Vec3 out = on + 0x1p-51 * (on - Vec3(1, 1, 0));
     EXPECT_FALSE(first_contact(against_triangle(moving(out + Vec3(0, 0, 1), out - Vec3(0, 0, 1)))));
   }
@@ -82,9 +82,9 @@ TEST(ExactVertexFace, CoplanarThroughout) {
   expect_contact_at(first_contact(against_triangle(moving({-1, 1, 0}, {3, 1, 0}))), 0.25);
   expect_contact_around(first_contact(against_triangle(moving({-1, 1, 0}, {2, 1, 0}))), mpq_class(1, 3));
   expect_contact_at(first_contact(against_triangle(moving({8, 0, 0}, {0, 0, 0}))),
-                    0.5);  // along an edge's line
+                    0.5);  // the vertex moves along the line of an edge
   EXPECT_FALSE(first_contact(against_triangle(moving({-1, 1, 0}, {-1, 9, 0}))));
-  // Passes the corner (0,4,0) exactly, and misses it by little.
+  // The vertex passes through the corner (0,4,0) exactly, then misses the corner by little.
   expect_contact_at(first_contact(against_triangle(moving({-1, 4, 0}, {1, 4, 0}))), 0.5);
   EXPECT_FALSE(
       first_contact(against_triangle(moving({-1, std::nextafter(4, 5), 0}, {1, std::nextafter(4, 5), 0}))));
@@ -115,16 +115,15 @@ TEST(ExactVertexFace, DegenerateTriangles) {
   }
   expect_contact_at(first_contact(MovingVertexFace{onto_a, {a, a, a}}), 0.25);
   EXPECT_FALSE(first_contact(MovingVertexFace{through, {a, a, a}}));
-  // A triangle that is a segment at t = 1/2 only, where the vertex lies on its plane throughout but on the
-  // segment's line beyond the end.
+  // The triangle is a segment at t = 1/2 only. The first vertex lies in the triangle's plane throughout, on
+  // the segment's line beyond its end. The second vertex crosses the segment.
   const MovingPoint flips = moving({0, 4, 0}, {0, -4, 0});
   EXPECT_FALSE(first_contact(MovingVertexFace{still(5, 0, 0), {a, b, flips}}));
   expect_contact_at(first_contact(MovingVertexFace{moving({3, -1, 0}, {3, 1, 0}), {a, b, flips}}), 0.5);
 }
 
 TEST(ExactVertexFace, GrazesWithADoubleRoot) {
-  // The plane of a = (0,0,0), b = (1,0,3t-1), c = (0,1,0) and v = (3t-1, y, 0) are coplanar where (3t-1)^2 =
-  // 0.
+  // The points a = (0,0,0), b = (1,0,3t-1), c = (0,1,0) and v = (3t-1, y, 0) are coplanar where (3t-1)^2 = 0.
   const MovingPoint a = still(0, 0, 0), c = still(0, 1, 0), b = moving({1, 0, -1}, {1, 0, 2});
   expect_contact_around(first_contact(MovingVertexFace{moving({-1, 0.5, 0}, {2, 0.5, 0}), {a, b, c}}),
                         mpq_class(1, 3));
@@ -140,17 +139,18 @@ TEST(ExactVertexFace, TripleRoot) {
 }
 
 TEST(ExactVertexFace, FirstOfTwoRootsMisses) {
-  // The triangle swings; the vertex is in its plane twice and on it only the second time.
+  // The triangle swings. The vertex is in the triangle's plane twice.
   const MovingPoint a = still(0, 0, 0), c = still(0, 4, 0), b = moving({4, 0, -2}, {4, 0, 2});
-  // v - a = (x, 1, z): coplanar where 4 z = x b_z(t) = x (4t - 2). With x = 8t - 2, z = 0: t = 1/4 or t =
-  // 1/2.
+  // For v - a = (x, y, z) the points are coplanar where 4 z = x b_z(t) = x (4t - 2). With x = 8t - 2 and
+  // z = 0 this is so at t = 1/4 and t = 1/2. With y = 1 the vertex is on an edge at t = 1/4.
   expect_contact_at(first_contact(MovingVertexFace{moving({-2, 1, 0}, {6, 1, 0}), {a, b, c}}), 0.25);
-  // With y from -1 to 3, the first is on the edge's line outside, y(1/4) = 0 is the corner; shift it off.
+  // With y from -1.5 to 2.5 the vertex is outside at t = 1/4, on the line of the edge, and inside at t = 1/2.
   expect_contact_at(first_contact(MovingVertexFace{moving({-2, -1.5, 0}, {6, 2.5, 0}), {a, b, c}}), 0.5);
 }
 
 TEST(ExactVertexFace, LeavesOneUlpBeforeOrAfterTouching) {
-  // Inside as long as x = 1 - 2t >= 0, in the plane at t = z: the interval between them is one ulp.
+  // The vertex is inside as long as x = 1 - 2t >= 0, and in the plane at t = z. It leaves the triangle at
+  // t = 1/2, one ulp after or before it is in the plane.
   constexpr double ulp = 0x1p-53;
   const auto passing = [](double z) { return against_triangle(moving({1, 1, z}, {-1, 1, z - 1})); };
   expect_contact_at(first_contact(passing(0.5 - ulp)), 0.5 - ulp);
@@ -159,7 +159,7 @@ TEST(ExactVertexFace, LeavesOneUlpBeforeOrAfterTouching) {
 }
 
 TEST(ExactVertexFace, TwoRootsOneUlpApart) {
-  // As above the plane is level at t = 1/2, when the vertex is still outside; it reaches the edge one ulp
+  // The plane is level at t = 1/2, when the vertex is still outside. The vertex reaches the edge one ulp
   // later.
   constexpr double ulp = 0x1p-53;
   const MovingPoint a = still(0, 0, 0), c = still(0, 4, 0), b = moving({4, 0, -2}, {4, 0, 2});
@@ -211,7 +211,7 @@ TEST(ExactEdgeEdge, CoplanarThroughout) {
   };
   expect_contact_at(first_contact(against_edge(in_plane(1, 1, 1, -3), in_plane(2, 3, 2, -1))), 0.25);
   EXPECT_FALSE(first_contact(against_edge(in_plane(5, 1, 5, -3), in_plane(6, 3, 6, -1))));
-  // Turns about (5, 0) without reaching the edge.
+  // The edge turns about (5, 0) without reaching the other edge.
   EXPECT_FALSE(first_contact(against_edge(still(5, 0, 0), in_plane(5, 2, 7, 0))));
 }
 
@@ -222,7 +222,7 @@ TEST(ExactEdgeEdge, ZeroLength) {
   EXPECT_FALSE(first_contact(against_edge(drop(5, 0), drop(5, 0))));
   const MovingEdgeEdge points{{still(0, 0, 0), still(0, 0, 0)}, {drop(0, 0), drop(0, 0)}};
   expect_contact_at(first_contact(points), 0.5);
-  // Shrinks to a point at t = 1/2 as it passes.
+  // The edge shrinks to a point at t = 1/2 as it passes.
   expect_contact_at(
       first_contact(against_edge(moving({1, 1, 1}, {1, -1, -1}), moving({1, -1, 1}, {1, 1, -1}))), 0.5);
 }
@@ -239,7 +239,7 @@ TEST(ExactReferee, ExtremeCoordinates) {
     expect_contact_at(first_contact(MovingEdgeEdge{{a, b}, {p(1, -1, 1, -3), p(1, 1, 1, -3)}}), 0.25);
     EXPECT_FALSE(first_contact(MovingEdgeEdge{{a, b}, {p(5, -1, 1, -3), p(5, 1, 1, -3)}}));
   }
-  // Everything at once: a subnormal step from a triangle 1e150 wide.
+  // A vertex makes a subnormal step at a triangle that is 1e150 wide.
   const double tiny = 0x1p-1074, huge = 1e150;
   const MovingPoint a = still(-huge, -huge, 0), b = still(huge, -huge, 0), c = still(0, huge, 0);
   expect_contact_at(first_contact(MovingVertexFace{moving({0, 0, tiny}, {0, 0, -tiny}), {a, b, c}}), 0.5);
@@ -260,7 +260,7 @@ TEST(ExactReferee, FarFromTheOrigin) {
                         mpq_class(1, 3));
 }
 
-// Random queries on small integers, where every degeneracy comes up again and again.
+// Random queries on small integers, in which every degeneracy comes up again and again.
 
 enum class Family { general, flat, resting, tight, translating, count_ };
 
@@ -307,7 +307,7 @@ void compare_with_brute_force(const std::array<MovingPoint, 4>& query, const Res
   const auto events = predicate.events(points);
   const auto expected = brute::first_contact(points, predicate);
   ASSERT_EQ(result.has_value(), expected.has_value());
-  // Contact before the reported time would contradict both, whatever they agree on.
+  // A contact before the reported time would contradict both referees, even where they agree.
   for (int i = 0; i <= 16; ++i) {
     const mpq_class t(i, 16);
     if (!result || t < mpq_class(result->lo)) {
@@ -338,7 +338,7 @@ TEST(ExactReferee, AgreesWithBruteForceOnSmallIntegers) {
       touching[1] += ee.has_value();
       if (HasFatalFailure()) return;
     }
-    // Both answers have to come up for the comparison to mean anything.
+    // The comparison means something only if both answers come up.
     for (const int count : touching) {
       EXPECT_GT(count, cases / 100) << "family " << f;
       EXPECT_LT(count, cases) << "family " << f;
@@ -389,7 +389,7 @@ TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
                  ee_back = first_contact(as_edge_edge(reversed));
     EXPECT_EQ(vf.has_value(), vf_back.has_value());
     EXPECT_EQ(ee.has_value(), ee_back.has_value());
-    // The last contact is not before the first.
+    // The first contact of the reversed motion is the last contact, which is not before the first.
     if (vf && vf_back) {
       EXPECT_GE(1 - vf_back->lo, vf->lo);
     }
@@ -401,7 +401,7 @@ TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
 }
 
 TEST(ExactReferee, IrrationalTimes) {
-  // The triangle's plane is z = t x, the vertex at x = t, z = 1/2 meets it at the square root of 1/2.
+  // The triangle's plane is z = t x. The vertex at x = t, z = 1/2 meets the plane at the square root of 1/2.
   const MovingVertexFace query{moving({0, 0, 0.5}, {1, 0, 0.5}),
                                {still(0, -1, 0), moving({1, 0, 0}, {1, 0, 1}), still(0, 1, 0)}};
   const Result result = first_contact(query);

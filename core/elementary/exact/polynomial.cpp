@@ -18,7 +18,7 @@ Dyadic dyadic(double x) {
     numerator <<= static_cast<unsigned long>(exponent);
     return {std::move(numerator), 0};
   }
-  // Short numerators keep everything that is computed from them short.
+  // Make the numerator short, so that all numbers computed from it are short.
   unsigned long places = static_cast<unsigned long>(-exponent);
   if (numerator == 0) return {};
   const unsigned long spare = std::min<unsigned long>(mpz_scan1(numerator.get_mpz_t(), 0), places);
@@ -49,7 +49,7 @@ double double_below(const Dyadic& x) {
   signed long exponent = 0;
   const double fraction = mpz_get_d_2exp(&exponent, x.numerator.get_mpz_t());  // truncated
   const double near = std::ldexp(fraction, static_cast<int>(exponent - static_cast<long>(x.exponent)));
-  // Only a subnormal result is rounded a second time, and possibly upwards.
+  // ldexp rounds only a subnormal result, possibly upwards.
   return compare(dyadic(near), x) > 0 ? std::nextafter(near, -std::numeric_limits<double>::infinity()) : near;
 }
 
@@ -118,7 +118,7 @@ Polynomial Polynomial::stretched(const Dyadic& from, const Dyadic& to) const {
   Polynomial result;
   for (int i = 0; i <= degree_; ++i)
     result.at(i) = (*this)[i] << (k * static_cast<unsigned long>(degree_ - i));
-  // Taylor shift by a (synthetic division), then s -> width s.
+  // Shift the argument by a (Taylor shift by synthetic division), then replace s by width s.
   if (a != 0)
     for (int i = 0; i < degree_; ++i)
       for (int j = degree_ - 1; j >= i; --j) result.at(j) += a * result[j + 1];
@@ -153,7 +153,7 @@ Polynomial greatest_common_divisor(Polynomial a, Polynomial b) {
   a = a.primitive_part();
   b = b.primitive_part();
   if (a.degree_ < b.degree_) std::swap(a, b);
-  // Euclid's algorithm on primitive pseudo-remainders.
+  // This is Euclid's algorithm on primitive pseudo-remainders.
   while (!b.is_zero()) {
     while (a.degree_ >= b.degree_) {
       const int shift = a.degree_ - b.degree_;
@@ -185,7 +185,7 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& divisor) {
 
 int sign_at(const Polynomial& p, const Dyadic& t) {
   if (p.is_zero()) return 0;
-  // Horner for 2^(exponent degree) p(t).
+  // Compute 2^(exponent degree) p(t) by Horner's scheme.
   mpz_class value = p[p.degree()], term;
   for (int i = p.degree() - 1; i >= 0; --i) {
     value *= t.numerator;
@@ -196,8 +196,8 @@ int sign_at(const Polynomial& p, const Dyadic& t) {
 }
 
 UnitIntervalSigns signs_on_unit_interval(const Polynomial& p) {
-  // Bernstein coefficients b_j = sum_i C(j, i) / C(n, i) c_i, times n for n = 2, 3 to stay among the
-  // integers.
+  // The Bernstein coefficients are b_j = sum_i C(j, i) / C(n, i) c_i. For n = 2 and 3 the inner
+  // coefficients are multiplied by n, so that they stay integers.
   std::array<int, Polynomial::kMaxDegree + 1> sign{};
   switch (p.degree()) {
     case 3:

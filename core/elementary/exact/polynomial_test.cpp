@@ -44,7 +44,7 @@ TEST(Dyadic, RoundsOutwardToNeighbours) {
   EXPECT_EQ(std::nextafter(below, 1), above);
   EXPECT_EQ(double_below(dyadic(0.1)), 0.1);
   EXPECT_EQ(double_above(dyadic(0.1)), 0.1);
-  // Three quarters of the least subnormal would be rounded up by the processor.
+  // The processor would round three quarters of the smallest subnormal up.
   const Dyadic tiny{mpz_class(3), 1076};
   EXPECT_EQ(double_below(tiny), 0);
   EXPECT_EQ(double_above(tiny), 0x1p-1074);
@@ -102,7 +102,7 @@ TEST(UnitIntervalSigns, CountRootsOrSayNone) {
   const UnitIntervalSigns none = signs_on_unit_interval(with_roots({{-1, 3}, {5, 2}}));
   EXPECT_EQ(none.variations, 0);
   EXPECT_EQ(none.sign, -1);
-  // A root at an end is not inside.
+  // A root at an end is not inside the open interval.
   const UnitIntervalSigns end = signs_on_unit_interval(with_roots({{0, 1}, {1, 1}}));
   EXPECT_EQ(end.variations, 0);
   EXPECT_EQ(end.sign, -1);
@@ -148,14 +148,14 @@ TEST(Roots, OutsideTheUnitIntervalAreNotReported) {
   EXPECT_TRUE(root_times(cubic(1, 0, 1, 0)).empty());
   EXPECT_TRUE(root_times(Polynomial(mpz_class(7))).empty());
   EXPECT_TRUE(root_times(Polynomial(mpz_class(1) << 2000, mpz_class(1))).empty());
-  // 4 t^2 - 4 t + 1 raised by one part in 2^200: a near miss that only exact arithmetic sees.
+  // 4 t^2 - 4 t + 1, raised by one part in 2^200, is a near miss that only exact arithmetic sees.
   const mpz_class big = mpz_class(1) << 200;
   EXPECT_TRUE(root_times(Polynomial(big + 1, -4 * big, 4 * big, 0)).empty());
   EXPECT_EQ(root_times(Polynomial(big - 1, -4 * big, 4 * big, 0)).size(), 2u);
 }
 
 TEST(Roots, MuchCloserThanDoublesAreToldApart) {
-  // (2^100 t - a)(2^100 t - a - 1) with a / 2^100 near one third.
+  // The polynomial is (2^100 t - a)(2^100 t - a - 1), with a / 2^100 near one third.
   const mpz_class scale = mpz_class(1) << 100, a = scale / 3;
   const Polynomial first(-a, scale), second(-a - 1, scale);
   auto roots = roots_in_unit_interval(first * second);
@@ -169,7 +169,7 @@ TEST(Roots, MuchCloserThanDoublesAreToldApart) {
 }
 
 TEST(Roots, TinyOnesAreEnclosedByNeighbouringDoubles) {
-  // t = 1 / (3 * 2^900) and, below every positive double, t = 1 / 2^1100.
+  // The roots are t = 1 / (3 * 2^900) and t = 1 / 2^1100, which is below every positive double.
   const auto small = root_times(Polynomial(mpz_class(-1), 3 * (mpz_class(1) << 900)));
   ASSERT_EQ(small.size(), 1u);
   EXPECT_GT(small[0].lo, 0);
@@ -195,7 +195,7 @@ TEST(Roots, OfAllSmallCubicsMatchSturmSequences) {
             const TimeEnclosure time = roots[i].enclosure();
             EXPECT_GE(expected[i].sign_of({-mpq_class(time.lo), 1}), 0);
             EXPECT_LE(expected[i].sign_of({-mpq_class(time.hi), 1}), 0);
-            // Signs of other polynomials there, shared roots among them.
+            // Compare the signs of other polynomials at the root. Some of these share the root.
             for (const auto& q :
                  {cubic(-1, 1, 1, 0), cubic(-1, 2, 0, 0), cubic(1, -2, -1, 1), cubic(c0, c1, 0, 0)}) {
               const brute::Poly same{mpq_class(q[0]), mpq_class(q[1]), mpq_class(q[2]), mpq_class(q[3])};

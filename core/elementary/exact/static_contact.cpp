@@ -1,20 +1,23 @@
-// Static contact, exactly.
+// Exact static contact.
 //
-// A cascade, cheapest first: comparisons of coordinates (exact by nature), then determinants in floating
-// point whose sign counts only beyond a forward error bound, then exact integers. Every "apart" of the first
-// two steps is a proof; what they cannot prove, in practice touching features and exact degeneracies, is
-// decided by the referee's predicates. Cost: 5 to 30 ns, microseconds where the exact step is needed.
+// The predicates are a cascade, cheapest step first: comparisons of coordinates, which are exact; then
+// determinants in floating point, whose sign counts only beyond a forward error bound; then exact integers.
+// Every "apart" of the first two steps is a proof. The cases that these steps cannot prove, in practice
+// touching features and exact degeneracies, are decided by the referee's predicates. A call takes 5 to 30
+// ns, and microseconds if the exact step is needed.
 //
-// Error bounds, u = kUnitRoundoff. A coordinate difference has relative error at most u; so, term by term,
-// does every later operation. A 2 x 2 determinant of differences collects 4 factors (1 + e), |e| <= u, in
-// each product (two differences, the product, the subtraction), so it is off by at most ((1 + u)^4 - 1) times
-// the sum of the products' exact magnitudes, their permanent. A 3 x 3 one, expanded along a row, collects 8
-// (two more for the third factor's difference and product, two for the sums). The permanent as computed, of
-// positive terms with the same factors, is at least (1 - u)^8 times the exact one. Constants 6 u and 10 u
-// leave room for the second-order terms and for rounding the bound. Differences never underflow; a product
-// that does is off by at most 2^-1075 and is multiplied by at most one difference, hence the last term,
-// generous but harmless. Overflow makes the permanent infinite or NaN, and no comparison with that certifies
-// anything.
+// The error bounds, with u = kUnitRoundoff: A coordinate difference has a relative error of at most u, and
+// so, term by term, has every later operation. A 2 x 2 determinant of differences collects 4 factors
+// (1 + e), |e| <= u, in each product (two differences, the product, the subtraction). So it is off by at
+// most ((1 + u)^4 - 1) times the sum of the exact magnitudes of the products, their permanent. A 3 x 3
+// determinant, expanded along a row, collects 8 factors (two more for the third factor's difference and
+// product, two for the sums). The computed permanent has positive terms with the same factors, so it is at
+// least (1 - u)^8 times the exact permanent. The constants 6 u and 10 u leave room for the second-order
+// terms and for rounding the bound.
+//
+// Differences never underflow. A product that underflows is off by at most 2^-1075 and is multiplied by at
+// most one difference; the last term of the bound, with kUnderflow, covers this generously. An overflow
+// makes the permanent infinite or NaN, and no comparison with such a number certifies anything.
 #include "core/elementary/exact/static_contact.h"
 
 #include <algorithm>
@@ -33,7 +36,8 @@ int certain_sign(double value, double error_bound) {
   return static_cast<int>(value > error_bound) - static_cast<int>(value < -error_bound);
 }
 
-// The side of the plane a, b, c on which p lies: the sign of the determinant of a - p, b - p, c - p.
+// The side of the plane a, b, c on which p lies, if it is certain, else 0: the sign of the determinant of a
+// - p, b - p, c - p.
 int certain_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const double ax = a.x() - p.x(), ay = a.y() - p.y(), az = a.z() - p.z();
   const double bx = b.x() - p.x(), by = b.y() - p.y(), bz = b.z() - p.z();
@@ -47,13 +51,14 @@ int certain_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
                                        kUnderflow * (1 + std::abs(az) + std::abs(bz) + std::abs(cz)));
 }
 
-// The same seen along axis k: on which side of the line a, b does p lie?
+// Seen along axis k, the side of the line a, b on which p lies, if it is certain, else 0.
 int certain_orientation(const Vec3& a, const Vec3& b, const Vec3& p, int k) {
   const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
   const double left = (b[i] - a[i]) * (p[j] - a[j]), right = (b[j] - a[j]) * (p[i] - a[i]);
   return certain_sign(left - right, 6 * kUnitRoundoff * (std::abs(left) + std::abs(right)) + kUnderflow);
 }
 
+// True if the bounding boxes of two sets of points are apart.
 template <class First, class Second>
 bool boxes_apart(const First& first, const Second& second) {
   for (int k = 0; k < 3; ++k) {
@@ -70,7 +75,7 @@ bool boxes_apart(const First& first, const Second& second) {
 using Ends = std::array<const Vec3*, 2>;
 using Corners = std::array<const Vec3*, 3>;
 
-// Certainly apart because, seen along some axis, the vertex lies beyond an edge of the triangle?
+// True if, seen along some axis, the vertex certainly lies beyond an edge of the triangle.
 bool apart_in_projection(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int k = 0; k < 3; ++k) {
     const int inside = certain_orientation(a, b, c, k);
@@ -82,7 +87,7 @@ bool apart_in_projection(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3
   return false;
 }
 
-// Certainly apart because, seen along some axis, one segment lies on one side of the other's line?
+// True if, seen along some axis, one segment certainly lies on one side of the other segment's line.
 bool segments_apart_in_projection(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   for (int k = 0; k < 3; ++k) {
     if (certain_orientation(a, b, c, k) * certain_orientation(a, b, d, k) > 0) return true;
@@ -91,8 +96,8 @@ bool segments_apart_in_projection(const Vec3& a, const Vec3& b, const Vec3& c, c
   return false;
 }
 
-// Certainly apart because, seen along some axis, both ends lie beyond one edge of the triangle, or the
-// triangle on one side of the segment's line?
+// True if, seen along some axis, both ends of the segment certainly lie beyond one edge of the triangle, or
+// the triangle certainly lies on one side of the segment's line.
 bool segment_apart_in_projection(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   for (int k = 0; k < 3; ++k) {
     const int inside = certain_orientation(a, b, c, k);
@@ -107,10 +112,12 @@ bool segment_apart_in_projection(const Vec3& p, const Vec3& q, const Vec3& a, co
   return false;
 }
 
+// The side of the plane a, b, c on which p lies, from exact integers.
 int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   return sgn(exact::coplanarity(exact::constant_points({p, a, b, c}))[0]);
 }
 
+// The side of the plane a, b, c on which p lies, exactly.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const int side = certain_orientation(a, b, c, p);
   return side != 0 ? side : exact_orientation(a, b, c, p);
@@ -140,26 +147,29 @@ bool segment_touches_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const
   if (boxes_apart(Ends{&p, &q}, Corners{&a, &b, &c})) return false;
   const int certain_p = certain_orientation(a, b, c, p), certain_q = certain_orientation(a, b, c, q);
   if (certain_p * certain_q > 0) return false;
-  // Let x = l1 a + l2 b + l3 c, l >= 0, be a point of the triangle on the line pq. Seen along that line, with
-  // it as the origin, l1 a + l2 b + l3 c = 0; crossing with b gives l1 (a x b) = l3 (b x c), and so on round.
-  // If two of a x b, b x c, c x a have strictly opposite signs, both their weights vanish and x is a corner
-  // on the line, which makes both products zero: a contradiction. So opposite signs prove "apart".
+  // Opposite certain signs of two volumes prove "apart". Let x = l1 a + l2 b + l3 c, with weights l >= 0,
+  // be a point of the triangle on the line pq. Seen along that line, with the line as the origin, l1 a + l2
+  // b + l3 c = 0. Taking the cross product with b gives l1 (a x b) = l3 (b x c), and so on round. If two of
+  // a x b, b x c, c x a have strictly opposite signs, both their weights vanish, so x is a corner on the
+  // line. This makes both products zero: a contradiction.
   const int certain_volume[3] = {certain_orientation(p, q, a, b), certain_orientation(p, q, b, c),
                                  certain_orientation(p, q, c, a)};
   const auto [least, most] = std::minmax_element(certain_volume, certain_volume + 3);
   if (*least < 0 && *most > 0) return false;
-  // The ends are on opposite sides and the line passes inside all three edges.
+  // The segment touches if its ends are on opposite sides of the plane and the line passes inside all three
+  // edges.
   if (certain_p * certain_q < 0 && *least == *most && *least != 0) return true;
   if (segment_apart_in_projection(p, q, a, b, c)) return false;
 
   const int side_p = certain_p != 0 ? certain_p : exact_orientation(a, b, c, p);
   const int side_q = certain_q != 0 ? certain_q : exact_orientation(a, b, c, q);
   if (side_p * side_q > 0) return false;
-  // In one plane, or the triangle is a segment or a point and has no plane.
+  // The segment and the triangle are in one plane, or the triangle is a segment or a point and has no plane.
   if (side_p == 0 && side_q == 0)
     return vertex_touches_triangle(p, a, b, c) || vertex_touches_triangle(q, a, b, c) ||
            segments_touch(p, q, a, b) || segments_touch(p, q, b, c) || segments_touch(p, q, c, a);
-  // The line pq is not in the plane and the segment reaches it, in one point: is that inside?
+  // The line pq is not in the plane and the segment reaches the plane in one point. They touch if that
+  // point is inside the triangle.
   const int volume[3] = {orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)};
   const auto [lowest, highest] = std::minmax_element(volume, volume + 3);
   return *lowest >= 0 || *highest <= 0;

@@ -13,7 +13,7 @@
 namespace cscd {
 namespace {
 
-// The referee at rest: decides without any floating-point filter.
+// The referee, asked about features at rest. It decides without any floating-point filter.
 MovingPoint still(const Vec3& p) {
   return {p, p};
 }
@@ -24,8 +24,9 @@ bool referee_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
   return exact::first_contact(MovingEdgeEdge{{still(a), still(b)}, {still(c), still(d)}}).has_value();
 }
 
-// Rational arithmetic for segment and triangle: the point where the line meets the plane, then that point
-// against the triangle; in one plane, ends and edges.
+// Decides a segment and a triangle in rational arithmetic. It finds the point at which the line meets the
+// plane and tests that point against the triangle. If both are in one plane, it tests the ends and the
+// edges.
 using RationalPoint = std::array<mpq_class, 3>;
 brute::PolyPoint constant(const RationalPoint& p) {
   brute::PolyPoint result;
@@ -105,7 +106,7 @@ TEST(SegmentTouchesTriangle, KnownCases) {
   EXPECT_TRUE(touches({1, 1, 1}, {1, 1, -1}));      // through the interior
   EXPECT_TRUE(touches({2, 2, 1}, {2, 2, -1}));      // through an edge
   EXPECT_TRUE(touches({0, 0, 1}, {0, 0, -1}));      // through a corner
-  EXPECT_TRUE(touches({1, 1, 0}, {1, 1, 5}));       // an end on it
+  EXPECT_TRUE(touches({1, 1, 0}, {1, 1, 5}));       // an end on the triangle
   EXPECT_TRUE(touches({1, 1, 0}, {1.5, 1, 0}));     // inside, in the plane
   EXPECT_TRUE(touches({-1, 1, 0}, {9, 1, 0}));      // right across, in the plane
   EXPECT_TRUE(touches({-1, 4, 0}, {1, 4, 0}));      // touches a corner, in the plane
@@ -175,7 +176,8 @@ TEST(StaticContact, AgreesWithRationalArithmeticOnSmallIntegers) {
   }
 }
 
-// Points that would be in contact but for rounding: the filters must leave these to the exact step.
+// Rounding alone keeps these points out of contact, or in contact. The filters must leave them to the exact
+// step.
 TEST(StaticContact, IsNeverMisledByRounding) {
   constexpr unsigned seed = 4;
   std::mt19937_64 random(seed);
@@ -183,7 +185,7 @@ TEST(StaticContact, IsNeverMisledByRounding) {
   int touching[3] = {0, 0, 0};
   constexpr int cases = 20000;
   for (int i = 0; i < cases; ++i) {
-    // Coordinates with few bits, on or off a coarse grid, near the origin or far from it.
+    // The coordinates have few bits. They are on or off a coarse grid, near the origin or far from it.
     const double grid = std::ldexp(1, -3 - i % 48), offset = i % 3 == 0 ? 0 : std::ldexp(1, i % 7);
     const auto point = [&] {
       Vec3 p(unit(random), unit(random), unit(random));
@@ -216,7 +218,7 @@ TEST(StaticContact, IsNeverMisledByRounding) {
   for (const int count : touching) EXPECT_GT(count, 100);
 }
 
-// Contact does not change when each axis is scaled by its own power of two, but roundings and underflows do.
+// Scaling each axis by its own power of two does not change contact, but it changes roundings and underflows.
 TEST(StaticContact, KeepsItsAnswerWhenAxesAreScaledApart) {
   constexpr unsigned seed = 12;
   std::mt19937_64 random(seed);
@@ -226,7 +228,7 @@ TEST(StaticContact, KeepsItsAnswerWhenAxesAreScaledApart) {
   for (int i = 0; i < 10000; ++i) {
     std::array<Vec3, 5> x;
     for (Vec3& p : x) p = Vec3(coordinate(random), coordinate(random), coordinate(random));
-    // Two thirds of the cases in a common plane.
+    // Two thirds of the cases lie in a common plane.
     if (i % 3 != 0)
       for (Vec3& p : x) p.z() = i % 3 * p.x() - 3 * p.y();
     SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " +
@@ -243,8 +245,8 @@ TEST(StaticContact, KeepsItsAnswerWhenAxesAreScaledApart) {
   }
 }
 
-// Multiples of one vector by factors so different that coordinate differences are rounded: exact contacts
-// that every projection may show a little off.
+// The points are multiples of one vector by factors so different that coordinate differences are rounded.
+// These are exact contacts that every projection may show a little off.
 TEST(StaticContact, FindsContactWhereDifferencesAreRounded) {
   constexpr unsigned seed = 13;
   std::mt19937_64 random(seed);

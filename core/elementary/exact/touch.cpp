@@ -1,7 +1,8 @@
-// Do two coplanar features touch? Decided by signs of polynomials of degree 2: in a coordinate projection
-// that keeps the plane's area, by orientations; where there is no such projection (the triangle is a segment
-// or a point, the edges are parallel or points), by points on segments. No case is left over, nothing is
-// rounded.
+// Decides whether two coplanar features touch, by signs of polynomials of degree 2. The features are
+// projected along a coordinate axis along which their plane keeps an area, and orientations in that
+// projection decide. If there is no such axis (the triangle is a segment or a point, or the edges are
+// parallel or points), the test is whether points lie on segments. These two cases cover all features, and
+// nothing is rounded.
 #include "core/elementary/exact/touch.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace cscd::exact {
 namespace {
 
-// A double as mantissa * 2^exponent with an odd mantissa, or zero.
+// The double mantissa * 2^exponent. The mantissa is odd, or zero.
 struct Scaled {
   long mantissa = 0;
   int exponent = 0;
@@ -30,6 +31,7 @@ Scaled scaled(double x) {
   return result;
 }
 
+// Multiplies all values by one power of two that makes them integers.
 template <std::size_t count>
 std::array<mpz_class, count> to_integers(const std::array<double, count>& values) {
   std::array<Scaled, count> parts;
@@ -131,7 +133,7 @@ bool vertex_touches_triangle(const FourPoints& points, AlgebraicNumber& time) {
            normal * time.sign_of(orientation(b, c, v, k)) >= 0 &&
            normal * time.sign_of(orientation(c, a, v, k)) >= 0;
   }
-  // A triangle without area is covered by any two of its edges.
+  // Any two edges of a triangle without area cover it.
   return point_on_segment(v, a, b, time) || point_on_segment(v, b, c, time);
 }
 
@@ -143,7 +145,8 @@ bool edges_touch(const FourPoints& points, AlgebraicNumber& time) {
     return time.sign_of(orientation(a, b, c, k)) * time.sign_of(orientation(a, b, d, k)) <= 0 &&
            time.sign_of(orientation(c, d, a, k)) * time.sign_of(orientation(c, d, b, k)) <= 0;
   }
-  // Parallel segments meet in an end of the first, or the second lies inside the first with both ends.
+  // Parallel segments that touch either meet in an end of the first segment, or the second segment lies
+  // inside the first with both ends.
   return point_on_segment(a, c, d, time) || point_on_segment(b, c, d, time) ||
          point_on_segment(c, a, b, time);
 }

@@ -12,22 +12,24 @@ namespace cscd::exact {
 
 // A point whose coordinates are polynomials in t with integer coefficients.
 using Point = std::array<Polynomial, 3>;
-// Vertex and the triangle's three corners, or the first edge's two ends and the second edge's two.
+// The vertex and the three corners of the triangle, or the two ends of the first edge and the two ends of the
+// second edge.
 using FourPoints = std::array<Point, 4>;
 
-// The points' coordinates times one common power of two.
+// The coordinates of the points times one common power of two that makes all of them integers.
 FourPoints linear_points(const std::array<MovingPoint, 4>& points);
 FourPoints constant_points(const std::array<Vec3, 4>& points);
 
-// Zero exactly when the four points lie in one plane. Of degree 3 for moving points.
+// The coplanarity polynomial, which is zero exactly when the four points lie in one plane. Its degree is at
+// most 3 for moving points and at most 0 for points at rest.
 Polynomial coplanarity(const FourPoints& points);
 
-// Do the closed features touch at `time`, at which their points are coplanar?
+// True if the closed features touch at `time`. Their points must be coplanar at that time.
 bool vertex_touches_triangle(const FourPoints& points, AlgebraicNumber& time);
 bool edges_touch(const FourPoints& points, AlgebraicNumber& time);
 
-// All the polynomials whose signs the functions above may look at: between two neighbouring roots of these
-// the answer does not change as long as the points stay coplanar.
+// All polynomials whose signs the two functions above may ask for. Between two neighbouring roots of these
+// polynomials the answer does not change, as long as the points stay coplanar.
 std::vector<Polynomial> vertex_triangle_events(const FourPoints& points);
 std::vector<Polynomial> edge_edge_events(const FourPoints& points);
 

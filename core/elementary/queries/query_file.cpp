@@ -15,11 +15,13 @@ namespace {
 
 constexpr std::size_t kRowsPerQuery = 8;
 
+// A line of a file, for error messages.
 struct Place {
   const std::filesystem::path& file;
   std::size_t line;
 };
 
+// Throws an InputError about the place.
 [[noreturn]] void fail(const Place& place, const std::string& what) {
   throw InputError(place.file.string() + ", line " + std::to_string(place.line) + ": " + what);
 }

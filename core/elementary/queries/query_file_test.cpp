@@ -13,7 +13,7 @@
 namespace cscd {
 namespace {
 
-// A file that lives as long as the test looks at it.
+// A file that exists as long as this object.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::string& text)
@@ -92,7 +92,7 @@ TEST(QueryFile, TruthIsOptional) {
 TEST(QueryFile, KeepsEveryDoubleExactly) {
   const std::string least = "1," + mpz_class(mpz_class(1) << 1074).get_str();
   const std::string largest = mpz_class(((mpz_class(1) << 53) - 1) << 971).get_str() + ",1";
-  // Not reduced: numerator and denominator share a large factor, which need not be a power of two.
+  // The numerator and the denominator share a large factor that is not a power of two.
   const std::string unreduced =
       mpz_class(-3 * (mpz_class(7) << 2000)).get_str() + "," + mpz_class(mpz_class(7) << 2001).get_str();
   const ScratchFile file(repeated(least + "," + largest + "," + unreduced, 8));

@@ -4,21 +4,25 @@
 #include "core/geometry/feature_motion.h"
 #include "core/geometry/sideways.h"
 
-// The deforming non-penetration filter (Tang, Manocha and Tong, I3D 2010; section 7.1 of the paper).
+// The deforming non-penetration filter (Tang, Manocha and Tong, I3D 2010; section 7.1 of the paper). Its
+// "apart" is a proof (rule certain-sign, core/soundness.md); otherwise it says nothing.
 //
-// First, features can only touch while their four points are coplanar. If the four Bernstein coefficients of
-// the coplanarity cubic share a sign, they never are. Difference to the published filter: the sign has to
-// exceed a forward error bound, so "apart" is a proof. About 120 floating-point operations.
+// The first part uses that features can touch only while their four points are coplanar. If the four
+// Bernstein coefficients of the coplanarity cubic share a sign, the points are never coplanar. This
+// implementation differs from the published filter in one respect: each coefficient has to exceed a forward
+// error bound. It takes about 120 floating-point operations.
 //
-// Then, what comes into one plane may stay apart in it (sideways.h). The published filter has no such part;
-// ours is for features that lie on one another in numbers, as where a rope rests on itself.
+// The second part finds features that come into one plane but stay apart in it (sideways.h). The published
+// filter has no such part. It is made for surfaces that lie on one another, as where a rope rests on itself:
+// there many pairs of features come into one plane.
 namespace cscd {
 
+// The vector from one moving point to another.
 inline MovingVector difference(const MovingPoint& from, const MovingPoint& to) {
   return {to.start - from.start, to.end - from.end};
 }
 
-// Six times the signed volume of the tetrahedron.
+// Six times the signed volume of the tetrahedron of the four points, as a cubic in t.
 inline BernsteinCubic coplanarity(const MovingVertexFace& q) {
   return triple_product(difference(q.corner[0], q.corner[1]), difference(q.corner[0], q.corner[2]),
                         difference(q.corner[0], q.vertex));
@@ -28,19 +32,20 @@ inline BernsteinCubic coplanarity(const MovingEdgeEdge& q) {
                         difference(q.first[0], q.second[0]));
 }
 
-// True proves that the features never touch.
+// The first part of the filter. True proves that the features never touch.
 template <class Query>
 bool never_coplanar(const Query& query) {
   return certain_sign(coplanarity(query)) != 0;
 }
 
+// Calls apart_sideways (sideways.h) for one query, given as three points seen from the fourth.
 inline bool stay_apart_sideways(const MovingVector (&seen)[3], bool vertex_face) {
   SeenFromFirst<double> p;
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < 3; ++i) p[k][0][i] = seen[k].start[i], p[k][1][i] = seen[k].end[i];
   return apart_sideways(p, vertex_face);
 }
-// True proves that the features never touch.
+// The second part of the filter. True proves that the features never touch.
 inline bool never_meet_in_plane(const MovingVertexFace& q) {
   const MovingPoint& from = q.corner[0];
   return stay_apart_sideways(

@@ -12,10 +12,11 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 
-// True of either part of the filter is a proof: the referee is asked about every query that it drops.
+// The queries that each part of the filter drops.
 struct Dropped {
   int by_coplanarity = 0, sideways = 0;
 };
+// Asks the referee about every query that the filter drops: both parts of the filter have to be proofs.
 template <class Query, class Make>
 Dropped expect_proofs(int queries, const Make& make_points) {
   Dropped dropped;
@@ -30,7 +31,8 @@ Dropped expect_proofs(int queries, const Make& make_points) {
   return dropped;
 }
 
-// Mutations: one end alone; all of the features' extent left out; second edge taken for the first.
+// Mutation: test one end of the interval alone; leave out the extent of the features; take the second edge
+// for the first.
 TEST(Filter, DropsOnlyWhatTheRefereeCallsApart) {
   QueryMaker make(1);
   const auto expect_many = [](const Dropped& dropped) {
@@ -43,8 +45,9 @@ TEST(Filter, DropsOnlyWhatTheRefereeCallsApart) {
   expect_many(expect_proofs<MovingEdgeEdge>(10'000, [&](int) { return make.lattice(3); }));
 }
 
-// Rule certain-sign: touching in rounded coordinates, in the interior and at borders, at the ends of the interval, far
-// from the origin, tiny and huge. The cubic at the time of contact is rounding noise.
+// Rule certain-sign. Features touch up to the rounding of their coordinates: in the interior and at
+// borders, at the ends of the interval, far from the origin, tiny and huge. At the time of contact the
+// cubic is rounding noise.
 TEST(Filter, KeepsWhatTouchesWithinRounding) {
   QueryMaker make(2);
   for (const double scale : {1.0, 1e-90, 1e-140, 1e95, 1e140}) {
@@ -77,7 +80,8 @@ MovingPoint still(double x, double y, double z) {
   return {{x, y, z}, {x, y, z}};
 }
 
-// Rule certain-sign: zero throughout excludes nothing; a volume that stays away from zero does.
+// Rule certain-sign. A volume that is zero throughout excludes nothing; a volume that stays away from zero
+// excludes contact.
 TEST(Filter, KnowsZeroFromApart) {
   const MovingPoint a = still(0, 0, 0), b = still(4, 0, 0), c = still(0, 4, 0);
   EXPECT_FALSE(never_coplanar(MovingVertexFace{still(1, 1, 0), {a, b, c}}));
@@ -93,9 +97,10 @@ TEST(Filter, KnowsZeroFromApart) {
   EXPECT_TRUE(never_coplanar(MovingEdgeEdge{{a, b}, {still(1, -1, 1), still(1, 1, 1)}}));
 }
 
-// Rule certain-sign: exactly on an edge, or crossing at an end of one, at an end of the interval; coordinates of few
-// bits, so that this is exact and the directions are not. Tiny enough for products to underflow, too.
-// Mutations: no bound on rounding; the bound at any size.
+// Rule certain-sign. A vertex comes to lie exactly on an edge at an end of the interval, or an edge starts
+// exactly on another edge. The coordinates have few bits, so the touch is exact while the directions are
+// rounded. Some scales are tiny enough for products to underflow. Mutation: leave out the bound on
+// rounding; use the bound at any size.
 TEST(Filter, KeepsWhatTouchesABorderExactly) {
   QueryMaker make(4);
   const auto few_bits = [&] { return std::ldexp(std::round(make.uniform(-1, 1) * 0x1p16), -14); };
@@ -107,7 +112,8 @@ TEST(Filter, KeepsWhatTouchesABorderExactly) {
     for (int i = 0; i < 20'000; ++i) {
       const Vec3 a = point(), b = point(), c = point(), d = point(), on = a + (1 + i % 3) / 4.0 * (b - a);
       const auto at = [&](const Vec3& p) { return MovingPoint{scale * p, scale * p}; };
-      const auto comes = [&](const Vec3& p) {  // to the edge, or leaves it, in the plane that it has with c
+      // A point that comes to the edge or leaves the edge, in the plane of the edge and c.
+      const auto comes = [&](const Vec3& p) {
         const MovingPoint x{scale * p, scale * (p + p - c)};
         return i % 2 ? x : MovingPoint{x.end, x.start};
       };
@@ -117,7 +123,7 @@ TEST(Filter, KeepsWhatTouchesABorderExactly) {
     }
 }
 
-// In one plane throughout: beside each other, and just touching.
+// The features are in one plane throughout, beside each other or just touching.
 TEST(Filter, KnowsWhatStaysApartInOnePlane) {
   const MovingPoint a = still(0, 0, 0), b = still(4, 0, 0), c = still(0, 4, 0);
   for (const MovingPoint& beside : {still(3, 3, 0), still(-1, 1, 0), still(1, -1, 0)})

@@ -6,14 +6,17 @@
 
 #include "core/geometry/feature_motion.h"
 
-// Relative axis-aligned bounding boxes (section 6 of the paper): with the mean velocity of all points taken
-// off both sets, their swept boxes shrink to the relative motion.
+// Relative axis-aligned bounding boxes (section 6 of the paper). Subtracting the mean velocity of all points
+// from both sets of points shrinks their swept boxes to the relative motion.
 //
-// Why a strict comparison of rounded numbers proves the sets apart: the common translation may be any vector,
-// so the rounding of the mean itself does not matter; each translated coordinate is one correctly rounded
-// subtraction, and rounding is monotone, so fl(x) < fl(y) implies x < y.
+// A strict comparison of the rounded numbers proves the sets apart (rule relative-motion, core/soundness.md),
+// for two reasons. The common translation may be any vector, so the rounding of the mean does not matter. And
+// each translated coordinate is one correctly rounded subtraction, and rounding is monotone, so fl(x) < fl(y)
+// implies x < y.
 namespace cscd {
 
+// True proves that the hulls of the moving points `a` and of the moving points `b` are apart at every t in
+// [0, 1].
 template <std::size_t N, std::size_t M>
 bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -21,7 +24,7 @@ bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) 
     for (const MovingPoint& p : a) mean += p.end[axis] - p.start[axis];
     for (const MovingPoint& p : b) mean += p.end[axis] - p.start[axis];
     mean /= static_cast<double>(N + M);
-    if (!std::isfinite(mean)) continue;  // overflow: this axis says nothing
+    if (!std::isfinite(mean)) continue;  // after an overflow this axis proves nothing
 
     double low_a = a[0].start[axis], high_a = low_a, low_b = b[0].start[axis], high_b = low_b;
     for (const MovingPoint& p : a) {
@@ -39,6 +42,7 @@ bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) 
   return false;
 }
 
+// True proves that the two features never touch.
 inline bool relative_boxes_apart(const MovingVertexFace& query) {
   const MovingPoint vertex[1] = {query.vertex};
   return relative_boxes_apart(vertex, query.corner);

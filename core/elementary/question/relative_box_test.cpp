@@ -13,8 +13,9 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 
-// Rule relative-motion: two triangles, a corner of one on the other at t = 1/2, exactly: all coordinates are small
-// multiples of a power of two, the common motion and offset too.
+// Rule relative-motion. A corner of one triangle lies exactly on the other triangle at t = 1/2. The touch
+// is exact, because all coordinates, the common motion and the offset are small multiples of a power of
+// two.
 TEST(RelativeBox, NeverSeparatesTrianglesThatTouch) {
   QueryMaker make(1);
   const auto integer = [&](int n) { return static_cast<double>(make.below(2 * n + 1) - n); };
@@ -32,7 +33,7 @@ TEST(RelativeBox, NeverSeparatesTrianglesThatTouch) {
     for (int k = 0; k < 3; ++k) a[k] = 4 * point(3), b[k] = 4 * point(3);
     const int u = make.below(5), v = make.below(5 - u);
     b[0] = a[0] + u * (a[1] - a[0]) / 4 + v * (a[2] - a[0]) / 4;
-    // The triangles move as wholes, so that they touch at t = 1/2 whatever else they do.
+    // Each triangle moves as a whole, so the two touch at t = 1/2 for any two speeds.
     const Vec3 speed_a = point(2), speed_b = point(2);
     const MovingPoint first[3] = {path(a[0], speed_a), path(a[1], speed_a), path(a[2], speed_a)};
     MovingPoint second[3] = {path(b[0], speed_b), path(b[1], speed_b), path(b[2], speed_b)};
@@ -45,7 +46,7 @@ TEST(RelativeBox, NeverSeparatesTrianglesThatTouch) {
   EXPECT_GT(separated_without_touch, 30'000);
 }
 
-// Boxes that touch in one number on one axis; a hair further they are apart.
+// Boxes that share one number on one axis touch. A hair further they are apart.
 TEST(RelativeBox, IsTightAtRest) {
   const auto still = [](double x) { return MovingPoint{{x, 0, 0}, {x, 0, 0}}; };
   const MovingPoint a[2] = {still(0), still(1)}, touching[2] = {still(1), still(2)},
@@ -69,7 +70,7 @@ TEST(RelativeBox, SeparatesNeighboursThatMoveTogether) {
   }
 }
 
-// Judged by the referee: what the boxes separate does not touch.
+// The referee confirms that features whose boxes are apart do not touch.
 template <class Query>
 void expect_sound(double scale, double common_scale, unsigned seed) {
   QueryMaker make(seed);
@@ -100,7 +101,7 @@ TEST(RelativeBox, SeparatesOnlyWhatTheRefereeCallsApart) {
   }
 }
 
-// Velocities that overflow, of opposite sign: their mean is not a number.
+// Velocities of opposite sign overflow, so their mean is not a number.
 TEST(RelativeBox, KeepsWhatOverflows) {
   const MovingPoint right{{-DBL_MAX, 0, 0}, {DBL_MAX, 0, 0}}, left{{DBL_MAX, 0, 0}, {-DBL_MAX, 0, 0}};
   const MovingPoint a[2] = {right, right}, b[2] = {left, left};

@@ -1,6 +1,7 @@
 #pragma once
 
-// For tests only: random moving features, from well placed to degenerate in every way.
+// For tests only: random moving features, from features in general position to features that are degenerate
+// in every way.
 
 #include <array>
 #include <cstdint>
@@ -12,6 +13,8 @@ namespace cscd::test {
 
 using FourMovingPoints = std::array<MovingPoint, 4>;
 
+// The query of four points: a vertex and the three corners of a face, or the ends of the first edge and then
+// the ends of the second edge.
 template <class Query>
 Query query_of(const FourMovingPoints& p);
 template <>
@@ -33,15 +36,15 @@ class QueryMaker {
   int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
   Vec3 vector() { return {uniform(), uniform(), uniform()}; }
 
-  // Nothing in particular.
+  // Points in general position, with coordinates in [-1, 1].
   FourMovingPoints any() {
     FourMovingPoints p;
     for (MovingPoint& x : p) x = {vector(), vector()};
     return p;
   }
 
-  // Integer coordinates in [-n, n]: coplanar, parallel, collapsed and touching at corners more often than
-  // not.
+  // Integer coordinates in [-n, n]. Most of these queries are degenerate: coplanar, parallel, collapsed, or
+  // touching at corners.
   FourMovingPoints lattice(int n) {
     FourMovingPoints p;
     for (MovingPoint& x : p) x = {lattice_point(n), lattice_point(n)};
@@ -77,8 +80,9 @@ class QueryMaker {
   std::mt19937_64 random_;
 };
 
-// Features that touch at time t, at a point of both that is given by its parameters; `approach` is the
-// velocity of the second feature relative to the first.
+// Features that touch at time t, up to rounding. `u` and `v` are the parameters of the touching point: its
+// barycentric coordinates in the face, or its positions along the two edges. `speed` is the length of the
+// relative velocity along the normal of the features; smaller random velocities are added.
 inline FourMovingPoints vertex_meets_face(QueryMaker& make, double t, double u, double v, double speed = 1) {
   const Vec3 a = make.vector(), b = make.vector(), c = make.vector();
   const Vec3 x = a + u * (b - a) + v * (c - a);
