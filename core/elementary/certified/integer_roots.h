@@ -63,7 +63,7 @@ class RootSolver {
   int sign_at(const Polynomial& q, const Root& root);
 
  private:
-  // Each of these checks that its numbers fit, and gives up if they do not.
+  // The solver gives up in any of these if numbers are too long.
   int sign_at_double(const Polynomial& p, double t);
   int sign_at_fraction(const Polynomial& p, const Wide& numerator, const Wide& denominator);
   Polynomial stretched(const Polynomial& p, double low, double high);
