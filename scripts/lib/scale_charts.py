@@ -47,69 +47,66 @@ def draw_scenes(scenes, folder, name, draw, x_label, y_label, title=""):
     return True
 
 
-def draw_size(record, folder, everything):
-    names, missing = shown(record.names("size"), everything)
-
+def draw_over_triangles(record, folder, name, curves, y_label, title="", from_zero=False):
+    """One panel a scene, against its triangles. `curves(scene)` yields points, label, fitted law or None, and look."""
     def draw(axes, scene):
-        ends = [end for name in names for end in draw_curve(
-            axes, series(record.of("size", scene), name, stage("total")), name, record.fit("size", scene, name, "total"),
-            **style(name))]
+        ends = [end for points, label, law, look in curves(scene) for end in draw_curve(axes, points, label, law, **look)]
         axes.set_xscale("log")
-        log_axis(axes.yaxis)
+        if from_zero:
+            axes.set_ylim(bottom=0)
+        else:
+            log_axis(axes.yaxis)
         triangle_ticks(axes, record, scene)
         return ends
 
-    return draw_scenes(record.scenes("size"), folder, "size", draw, "triangles", "ms a query, refit included",
-                       "dotted: fitted power laws, their exponents beside the names" + left_out(missing))
+    return draw_scenes(record.scenes("size"), folder, name, draw, "triangles", y_label, title)
+
+
+def draw_size(record, folder, everything):
+    names, missing = shown(record.names("size"), everything)
+
+    def curves(scene):
+        for name in names:
+            yield (series(record.of("size", scene), name, stage("total")), name, record.fit("size", scene, name, "total"),
+                   style(name))
+
+    return draw_over_triangles(record, folder, "size", curves, "ms a query, refit included",
+                               "dotted: fitted power laws, their exponents beside the names" + left_out(missing))
 
 
 def draw_stages(record, folder, everything):
     names = record.names("size")
 
-    def draw(axes, scene):
-        ends = [end for key, colour in STAGES.items() for end in draw_curve(
-            axes, series(record.of("size", scene), names[0], stage(key)), key, record.fit("size", scene, names[0], key),
-            color=colour, marker="o")]
-        axes.set_xscale("log")
-        log_axis(axes.yaxis)
-        triangle_ticks(axes, record, scene)
-        return ends
+    def curves(scene):
+        for key, colour in STAGES.items():
+            yield (series(record.of("size", scene), names[0], stage(key)), key, record.fit("size", scene, names[0], key),
+                   {"color": colour, "marker": "o"})
 
-    return draw_scenes(record.scenes("size"), folder, "stages", draw, "triangles", f"{names[0]}, ms" if names else "",
-                       "dotted: fitted power laws, their exponents beside the names")
+    return draw_over_triangles(record, folder, "stages", curves, f"{names[0]}, ms" if names else "",
+                               "dotted: fitted power laws, their exponents beside the names")
 
 
 def draw_pairs(record, folder, everything):
     names, missing = shown(record.names("size"), everything, FEW_ROWS)
 
-    def draw(axes, scene):
-        ends = []
+    def curves(scene):
         for name in names:
             for key, look in (("bvot", {"ls": "-"}), ("pctp", {"ls": "--", "mfc": "white"})):
-                ends += draw_curve(axes, series(record.of("size", scene), name, count(key)), f"{name} {key.upper()}",
-                                   record.fit("size", scene, name, key), **{**style(name), **look})
-        axes.set_xscale("log")
-        log_axis(axes.yaxis)
-        triangle_ticks(axes, record, scene)
-        return ends
+                yield (series(record.of("size", scene), name, count(key)), f"{name} {key.upper()}",
+                       record.fit("size", scene, name, key), {**style(name), **look})
 
-    return draw_scenes(record.scenes("size"), folder, "pairs", draw, "triangles", "a query",
-                       "filled: overlap tests (BVOT); hollow: triangle pairs (PCTP), zero left out" + left_out(missing))
+    return draw_over_triangles(record, folder, "pairs", curves, "a query",
+                               "filled: overlap tests (BVOT); hollow: triangle pairs (PCTP), zero left out" + left_out(missing))
 
 
 def draw_memory(record, folder, everything):
     names, missing = shown(record.names("size"), everything)
 
-    def draw(axes, scene):
-        ends = [end for name in names
-                for end in draw_curve(axes, series(record.of("size", scene), name, per_triangle), name, **style(name))]
-        axes.set_xscale("log")
-        axes.set_ylim(bottom=0)
-        triangle_ticks(axes, record, scene)
-        return ends
+    def curves(scene):
+        for name in names:
+            yield series(record.of("size", scene), name, per_triangle), name, None, style(name)
 
-    return draw_scenes(record.scenes("size"), folder, "memory", draw, "triangles", "bytes a triangle",
-                       left_out(missing).strip())
+    return draw_over_triangles(record, folder, "memory", curves, "bytes a triangle", left_out(missing).strip(), from_zero=True)
 
 
 def draw_step(record, folder, everything):
