@@ -10,7 +10,7 @@
 namespace cscd::bench {
 namespace {
 
-// Of one pose so many crossing pairs are kept (eight bytes each): more is a surface that has collapsed.
+// The most crossing pairs that are kept of one pose, eight bytes each. A surface with more has collapsed.
 constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 // Each pair that crosses at rest explains its neighbourhood, which takes a few hundred bytes.
 constexpr std::size_t kMostLeftOut = 500'000;
@@ -88,8 +88,9 @@ bool Answerer::finds_all(const Row& row) const {
          elementary_.apart_is_proof && !first_only;
 }
 
-// Which triangles cross at the start: known from the interval before, or from the straight way from the last
-// pose that is known, if little touches on it, or found from nothing.
+// Finds which triangles cross at the start. The interval before may have left that known. Otherwise it
+// follows from the straight way that leads here from the last known pose, if little touches on that way, or
+// it is found from nothing.
 void Answerer::know_start(const scenes::ClipInterval& interval) {
   const std::span<const Vec3> start = interval.motion.start();
   const auto keep_bones = [&] {
@@ -121,7 +122,7 @@ void Answerer::know_start(const scenes::ClipInterval& interval) {
   keep_bones();
 }
 
-// What an interval proves of its end. `found` holds everything that the row found.
+// Keeps what an interval proves about its end. `found` holds everything that the row found.
 void Answerer::know_end(const scenes::ClipInterval& interval, const Row& row, const ContactSet& found) {
   const std::span<const Vec3> end = interval.motion.end();
   const bool embedded = poses_.crossings().total == 0;
@@ -168,7 +169,8 @@ IntervalAnswer Answerer::answer(std::size_t index) {
     return row;
   };
   const Row* row = &ask(needs_start && !answer.starts_embedded ? stand_in() : main_);
-  // What comes later than a contact that is left out may be missing from the answer.
+  // A row that promises the first contact may miss those after it. If that first one is left out as a
+  // crossing at rest, the answer has to come from a complete row.
   if (needs_start && answer.rest_contacts > 0 && row == &main_) row = &ask(stand_in());
 
   answer.found.sort();

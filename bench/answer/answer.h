@@ -13,7 +13,6 @@
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
 
-// What a query says of one interval.
 namespace cscd::bench {
 
 enum class IntervalVerdict {
@@ -24,8 +23,8 @@ enum class IntervalVerdict {
 };
 std::string_view to_string(IntervalVerdict verdict);
 
-// What crossings at rest explain (see RestCrossings) is left out of everything but the two counts that say
-// so.
+// The answer to one interval. Contacts and crossings that crossings at rest explain (see RestCrossings) are
+// left out of everything but the two counts that say so.
 struct IntervalAnswer {
   std::size_t index = 0;
   IntervalVerdict verdict = IntervalVerdict::clear;
@@ -59,7 +58,7 @@ class Answerer {
 
   IntervalAnswer answer(std::size_t interval);
 
-  // What crosses at rest, and is left out unless the options keep it.
+  // The triangles that cross at rest. They are left out of answers unless the options keep them.
   const Crossings& rest_crossings() const { return rest_; }
   int threads() const { return main_.threads; }
 

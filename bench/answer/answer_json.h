@@ -25,7 +25,7 @@ nlohmann::json moment_json(const Input& input, const ClipMoment& moment);
 nlohmann::json interval_json(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
                              const Motion& motion, std::size_t most_start_pairs);
 
-// What crosses at rest, by the parts it belongs to.
+// Lists the triangles that cross at rest by the parts of the surface that they belong to.
 nlohmann::json rest_json(const Input& input, const SurfaceNames& names, const Crossings& rest, bool left_out);
 
 }  // namespace cscd::bench

@@ -11,7 +11,7 @@
 #include "bench/answer/answer_json.h"
 #include "bench/answer/surface_names.h"
 
-// What all answers of a clip come to: for people, and in JSON.
+// Sums up all answers of a clip, for people and in JSON.
 namespace cscd::bench {
 
 struct AnswerSummary {

@@ -29,7 +29,7 @@ std::vector<std::int32_t> nearest_bones(const Rig& rig, std::span<const Vec3> po
   return nearest;
 }
 
-// What a part is called: by its node, which is what modelling programs call the object.
+// Returns the name of a part: that of its node, under which modelling programs show the object.
 std::string name_of(const scenes::ImportReport::Part& part, std::size_t number) {
   if (!part.node.empty()) return part.node;
   return part.name.empty() ? "mesh " + std::to_string(number) : part.name;

@@ -6,8 +6,8 @@
 
 namespace cscd::bench {
 
-// What the command line takes, as its own description has it. Help pages, the manual page and the completion
-// are made of this, so that none of them is written twice.
+// The description of one option. Help pages, the manual page and the completion are all made from these
+// descriptions, so that none of them is written twice.
 struct OptionRow {
   std::vector<std::string> names;  // "--scene", "--input"; of a positional argument its one name
   bool positional = false, required = false, takes_value = false, takes_several = false;

@@ -36,7 +36,7 @@ struct AccuracyOptions {
   bool smoke = false, force = false;
 };
 
-// What both sizes leave open is chosen here; whatever was given stands.
+// Fills in every option that the user left open, for the small or the full size. Given options stay.
 void choose_size(AccuracyOptions& options) {
   const bool smoke = options.smoke;
   const auto number = [&](std::size_t& value, std::size_t small, std::size_t large) {
@@ -217,7 +217,8 @@ class Study {
  private:
   static const char* kind_name(Kind kind) { return kind == Kind::vertex_face ? "vf" : "ee"; }
 
-  // What `filtered_exact` and `newton` took for the same blocks, by group and by name in it; "" is the group.
+  // Keeps the times that `filtered_exact` and `newton` took for the same blocks, by group and by name in the
+  // group; the name "" stands for the whole group.
   void keep_pairs(const Workload& workload, const std::vector<Tally>& tallies) {
     const Tally *exact = nullptr, *newton = nullptr;
     for (std::size_t i = 0; i < whole_; ++i) {

@@ -2,13 +2,13 @@
 
 #include "bench/testing/test_shell.h"
 
-// What the program says of itself, and to whoever mistypes.
+// These tests read what the program says about itself, and what it answers to mistyped words.
 namespace cscd::bench {
 namespace {
 
 class CommandLine : public Program {
  protected:
-  // What bash offers for the words of a line, the last of which is being written.
+  // Returns what bash offers to complete the last of these words.
   std::string completed(const std::string& words) const {
     Ran ran = run("source <(cscd completion bash)\nCOMP_WORDS=(" + words +
                   ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_cscd\necho \"${COMPREPLY[*]}\"");

@@ -76,7 +76,8 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
   EXPECT_EQ(std::any_of(base.begin(), base.end(),
                         [](const nlohmann::json& interval) { return interval["collides"].get<bool>(); }),
             known.collides);
-  // What is open is refused by strategies that need a closed surface; what they answer, they answer alike.
+  // A strategy that needs a closed surface refuses an open one; where it answers, it answers as the others
+  // do.
   const std::string fast =
       refusal({"query", file, "--strategy", "drvbc_fast", "--json", scratch / "fast.json"});
   if (!known.closed) {

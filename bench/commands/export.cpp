@@ -22,7 +22,7 @@ struct ExportOptions {
 };
 
 void export_frames(const ExportOptions& options) {
-  // What cannot be written is refused before the work, not after it.
+  // An output that cannot be written is refused before the work, not after it.
   const std::string format = require_format(options.output, kFormats);
   const OutputTarget target = find_output_target(options.output, options.force);
   if (target.is_stream)

@@ -4,7 +4,7 @@
 
 #include "bench/testing/test_generated.h"
 
-// What the tests of model_test.cpp ask of shared models, asked of characters that are there in every clone.
+// These tests ask of generated characters, which every clone has, what model_test.cpp asks of shared models.
 namespace cscd::bench {
 namespace {
 

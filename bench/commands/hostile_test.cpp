@@ -12,7 +12,7 @@
 namespace cscd::bench {
 namespace {
 
-// What a reader of untrusted files may do: answer, or refuse in one line, within its limits.
+// A reader of untrusted files may answer, or refuse in one line, within its limits, and nothing else.
 class Hostile : public testing::Test {
  protected:
   static constexpr double kImportSeconds = 5;

@@ -14,8 +14,8 @@
 #include "core/detect/start/embedding.h"
 #include "scenes/character/pieces.h"
 
-// What an input is made of, and what each strategy can do with it: component by component, and for all of
-// them together.
+// `cscd inspect` says what an input is made of and what each strategy can do with it, for every component and
+// for all of them together.
 namespace cscd::bench {
 namespace {
 

@@ -127,7 +127,7 @@ TEST_P(Characters, AreInspectedAndQueried) {
   EXPECT_GT(embedded, 0u);
 }
 
-// Of the processor, which other work on the machine does not lengthen much; all of it runs on one thread.
+// Returns processor time, which other work on the machine does not lengthen much. Imports run on one thread.
 double seconds_of_children() {
   rusage used{};
   getrusage(RUSAGE_CHILDREN, &used);
@@ -306,7 +306,7 @@ TEST(Models, QueryAndInspectAnswerInJson) {
   EXPECT_EQ(facts["components"][0]["closed"], true);
   EXPECT_EQ(facts["components"][0]["embedding"].size(), 4u);
   EXPECT_EQ(facts["components"][0]["strategies"].size(), strategies().size());
-  // What is asked of a model file makes no sense for a point cache.
+  // A point cache refuses the options that only model files have.
   const Outcome exported = cscd({"export", model("fox_khronos.glb"), scratch / "fox.h5"});
   ASSERT_EQ(exported.code, 0) << exported.errors;
   EXPECT_EQ(cscd({"inspect", scratch / "fox.h5"}).code, 0);
@@ -340,7 +340,7 @@ TEST(Models, LeaveNothingBehind) {
     EXPECT_EQ(left(), 0u) << words.front();
   }
 
-  // Those of processes that were killed go with the next import; those of living ones stay.
+  // The next import removes the folders of processes that were killed, and leaves those of living ones.
   const pid_t child = fork();
   if (child == 0) _exit(0);
   ASSERT_EQ(waitpid(child, nullptr, 0), child);

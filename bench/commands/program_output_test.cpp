@@ -4,7 +4,7 @@
 
 #include "bench/testing/test_shell.h"
 
-// What becomes of the outputs of the program, wherever they go and however it ends.
+// These tests follow the program's outputs to files, pipes and devices, through errors and signals.
 namespace cscd::bench {
 namespace {
 

@@ -35,8 +35,8 @@ struct QueryOptions {
   ModelOptions model;
 };
 
-// Of one interval, where nothing else was asked for: a model file is not trusted to end, what was made for
-// this program is.
+// The seconds that one interval of a model file may take, unless the user sets a limit. Scenes and point
+// caches were made for this program and have no limit.
 constexpr double kModelIntervalSeconds = 60;
 
 // The time up to which pairs are looked at has to be right.

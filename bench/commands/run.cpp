@@ -42,7 +42,7 @@ struct RunOptions {
 // Enough to see that everything works, in seconds; too little to conclude anything from its times.
 constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 4;
 
-// What was asked for, with every default spelt out; where the result goes is left out.
+// Returns the command line with every default spelt out, and without the place of the result.
 std::vector<std::string> command_line(const RunOptions& options, std::span<const Contestant> contestants,
                                       const IntervalRange& range, bool is_model) {
   std::string names;

@@ -37,8 +37,8 @@ struct ScaleOptions {
   std::string output;
 };
 
-// Those of the named rows that this build has: packages may be missing. Throws InputError where the user
-// named one that is not known.
+// Returns the named rows that this build has, as packages may be missing. Throws InputError where the user
+// named a row that no build knows.
 std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_json& names) {
   std::vector<StrategyRow> rows = rows_called(options.strategies);
   if (!rows.empty()) return rows;
@@ -67,7 +67,7 @@ class Plan {
 
   std::vector<std::string> scenes() const { return or_planned(options_.scenes, "scenes"); }
 
-  // What a study leaves as it is where it has no other wish.
+  // Returns the settings that all studies begin from.
   ScaleSubject common(const std::string& scene) const {
     ScaleSubject subject;
     subject.scene = scene;
@@ -156,7 +156,7 @@ std::string study_names() {
   return names;
 }
 
-// What a full, or small, run consists of.
+// Returns the subjects of a full run, or of a small one.
 std::vector<ScaleSubject> planned(const ScaleOptions& options) {
   for (const std::string& study : options.studies)
     if (std::ranges::find(kStudies, study, [](const auto& s) { return std::string(s.name); }) ==

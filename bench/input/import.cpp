@@ -54,7 +54,7 @@ class TemporaryFolder {
  private:
   static constexpr char kPrefix[] = "import-";
 
-  // What processes left here that were killed: a folder carries the id of its own.
+  // Removes the folders of processes that were killed. A folder's name holds the id of its process.
   static void remove_forsaken(const fs::path& place) {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(place, ignored)) {

@@ -40,7 +40,7 @@ ImportedModel import_model(const std::filesystem::path& path, const ModelOptions
 // `frames` is the number of all frames.
 double second_of_frame(const scenes::ImportReport& report, std::size_t frame, std::size_t frames);
 
-// What was chosen and what was done to it, in a few lines.
+// Tells in a few lines what was read from the file and what was done to it.
 std::string import_text(const scenes::ImportReport& report);
 nlohmann::json import_json(const scenes::ImportReport& report);
 

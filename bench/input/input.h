@@ -16,7 +16,7 @@
 
 namespace cscd::bench {
 
-// What a command works on: a scene by its name, a point cache or a model file by its path.
+// The input of a command: a scene, given by its name, or a point cache or model file, given by its path.
 struct Input {
   std::string name;
   std::unique_ptr<scenes::ClipSource> clip;

@@ -76,7 +76,7 @@ std::string kernel() {
   return std::string(name.sysname) + " " + name.release + " " + name.machine;
 }
 
-// What the kernels were compiled for: all of the program is compiled with the same flags.
+// The instruction set that the kernels were compiled for. The whole program is compiled with the same flags.
 constexpr const char* kInstructionSet =
 #if defined(__AVX512F__)
     "AVX-512";

@@ -67,14 +67,15 @@ struct VerificationRecord {
   std::vector<std::size_t> intervals;   // those verified
   std::vector<std::size_t> unembedded;  // those of them whose start is not embedded
   std::vector<std::size_t> colliding;   // those of them on which the reference found a contact
-  // Those of them that were verified because the answers of two rows differed, when all counted intervals
-  // were answered with the timed elementary test.
+  // Verified intervals on which the answers of two rows had differed when all counted intervals were answered
+  // with the timed elementary test.
   std::vector<std::size_t> disagreeing;
   std::vector<VerifiedStrategy> strategies;
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;
-  // Of each strategy that brings its own elementary test: how its contacts differ from the referee's, and the
-  // first differences with the pair, what it said and what is true. Empty where there is none.
+  // One entry for each strategy that brings its own elementary test: how its contacts differ from the
+  // referee's, and the first differences with the pair, the strategy's answer and the true one. Empty without
+  // such a strategy.
   nlohmann::ordered_json own_tests = nlohmann::ordered_json::array();
   double seconds = 0;
 

@@ -31,7 +31,7 @@ constexpr std::string_view kAblation = "ablation";
 constexpr Needs kAnySurface = {}, kClosedMesh = {.closed_mesh = true},
                 kBones = {.bones = true, .closed_mesh = true};
 
-// What a row does not name is as strategy.h says.
+// Members that a row leaves out have the defaults of strategy.h.
 constexpr std::array kStrategies = {
     Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base,
              "", false, Role::reference},
@@ -156,7 +156,7 @@ template <class Rows>
                    did_you_mean(name.substr(0, name.find('@')), names) + "; choose one of " + joined(names));
 }
 
-// Of NAME@TOLERANCE[:STEPS].
+// Reads the parameters from NAME@TOLERANCE[:STEPS].
 TestParameters parsed_parameters(std::string_view name, TestParameters parameters) {
   const auto fail = [&](const std::string& what) {
     throw InputError("elementary test '" + std::string(name) + "': " + what);

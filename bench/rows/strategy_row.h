@@ -24,9 +24,9 @@ struct StrategyRow {
 // Each asked for all contacts. They point into `strategies`.
 std::vector<StrategyRow> rows_of(std::span<const Strategy> strategies);
 
-// What texts such as NAME or "NAME --first" mean, NAME a strategy or a group of them. Throws InputError where
-// it is not known, or where a strategy that brings its own elementary test is asked for the earliest contact
-// alone.
+// Returns the rows that texts such as NAME or "NAME --first" mean, where NAME is a strategy or a group of
+// strategies. Throws InputError where NAME is not known, or where a strategy that brings its own elementary
+// test is asked for the earliest contact alone.
 std::vector<StrategyRow> rows_called(std::span<const std::string> texts);
 
 // Holds an answer to the row's guarantee, as verify does for all contacts. What was asked for `first`, and

@@ -7,9 +7,9 @@
 
 namespace cscd::bench {
 
-// What every choice beyond the elementary test buys and costs on a scene, one at a time around the default:
-// contacts found, first contacts lost, time of whole intervals. Behind every setting stands the test
-// `filtered_exact`, whose answers are the referee's.
+// Measures what every choice beyond the elementary test buys and costs on a scene, one choice at a time
+// around the default: contacts found, first contacts lost, time of whole intervals. Every setting uses the
+// test `filtered_exact`, whose answers are the referee's.
 struct KnobStudy {
   std::size_t every = 1;       // of the scene's intervals, each K-th,
   std::size_t colliding = 12;  // and so many of those with contacts, at even distances

@@ -6,7 +6,7 @@
 #include "bench/input/input.h"
 #include "bench/rows/strategy_row.h"
 
-// What the study of growing work measures: one surface, prepared once, in intervals of its own or of other
+// The input of the study of growing work: one surface, prepared once, in intervals of its own or of other
 // motions.
 namespace cscd::bench {
 

@@ -24,8 +24,8 @@ using Clock = std::chrono::steady_clock;
 
 // Right in every case, so that what is judged is what is timed.
 constexpr char kElementary[] = "filtered_exact";
-// What takes longer, in milliseconds, is not repeated; what takes much longer is not asked for a longer step,
-// and the reference is asked one interval of it alone.
+// Milliseconds. Queries that take more than kOnce are not repeated. A strategy whose queries take more than
+// kTooLong is not asked for longer steps, of which the reference then answers one interval alone.
 constexpr double kOnce = 300, kTooLong = 2000;
 constexpr const char* kStages[] = {"refit", "rv_update", "traversal", "elementary"};
 
@@ -40,7 +40,7 @@ struct Entrant {
   // By step: one interval's counters a place, and [repetition][interval] of every stage.
   std::vector<CountColumns> counts;
   std::vector<TimeColumns> ms, once;  // repeated; while it was verified
-  // Of each interval; empty where it did not answer it.
+  // One digest an interval, empty where the strategy did not answer the interval.
   std::vector<std::string> digests;
 };
 
@@ -52,7 +52,7 @@ Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet
   return report;
 }
 
-// What became of the intervals of one step.
+// The outcome of the verification of one step's intervals.
 struct Verified {
   std::size_t embedded = 0, colliding = 0, by_reference = 0;
   std::vector<ordered_json> first;  // time of the first contact of each interval, null without one

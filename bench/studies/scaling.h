@@ -8,8 +8,8 @@
 #include "core/mesh/rig.h"
 #include "scenes/clip/clip.h"
 
-// What the study of growing work needs beside the harness: longer and shorter steps, chains of other numbers
-// of bones, and exponents.
+// The parts that only the study of growing work needs: longer and shorter steps, chains with other numbers of
+// bones, and exponents.
 namespace cscd::bench {
 
 // y = factor x^exponent.

@@ -11,8 +11,7 @@
 #include "core/elementary/queries/query_file.h"
 #include "scenes/hard/family.h"
 
-// What the accuracy study asks elementary tests: streams of queries, block by block, as there may be
-// millions.
+// The queries of the accuracy study. They come block by block, as there may be millions of them.
 namespace cscd::bench {
 
 using Kind = scenes::hard::Kind;

@@ -23,7 +23,7 @@ inline const ElementaryTest& exact() {
   return elementary_test_named("exact");
 }
 
-// Those that promise something.
+// Returns the strategies that promise something.
 inline std::vector<const Strategy*> with_guarantee() {
   std::vector<const Strategy*> rows;
   for (const Strategy& strategy : strategies())

@@ -15,7 +15,7 @@ Answer filtered_exact_edge_edge(const MovingEdgeEdge& query);
 void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer> answers);
 void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers);
 
-// Which stage the answer, with its time, needed.
+// The last stage that was needed for the answer and its time.
 enum class ExactStage { filter, doubles, integers, referee };
 ExactStage filtered_exact_stage(const MovingVertexFace& query);
 ExactStage filtered_exact_stage(const MovingEdgeEdge& query);

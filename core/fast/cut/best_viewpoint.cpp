@@ -41,7 +41,8 @@ Face face_of(const TriangleMesh& mesh, std::span<const Vec3> positions, Triangle
           length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero())};
 }
 
-// What the faces lack, summed, is convex in the point. Subgradient descent minimises it, from a point inside.
+// The sum of what the faces lack is convex in the point. Subgradient descent minimises that sum, and begins
+// at a point inside.
 Vec3 best_viewpoint(std::span<const Face> faces) {
   Vec3 middle = Vec3::Zero();
   for (const Face& f : faces) middle += f.centre / static_cast<double>(faces.size());
