@@ -31,24 +31,35 @@ constexpr std::string_view kAblation = "ablation";
 constexpr Needs kAnySurface = {}, kClosedMesh = {.closed_mesh = true},
                 kBones = {.bones = true, .closed_mesh = true};
 
+// These return a row with one member changed, so that no row has to spell out the members before that one.
+constexpr Strategy with_role(Strategy row, Role role) {
+  row.role = role;
+  return row;
+}
+// The library allocates memory as it pleases. A build without any library has no such row.
+[[maybe_unused]] constexpr Strategy in_library(Strategy row) {
+  row.settles = false;
+  return row;
+}
+
 // Members that a row leaves out have the defaults of strategy.h.
 constexpr std::array kStrategies = {
-    Strategy{"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base,
-             "", false, Role::reference},
-    Strategy{"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle", false,
-             Role::oracle},
+    with_role(
+        {"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base},
+        Role::reference),
+    with_role({"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle"},
+              Role::oracle),
     Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb},
     Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
              kAnySurface, make_mcd},
     Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
              Guarantee::complete, kAnySurface, make_selfccd},
 #ifdef CSCD_BASELINES_EMBREE
-    Strategy{"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, kAnySurface, make_embree, "",
-             false, Role::none, false},
+    in_library({"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, kAnySurface, make_embree}),
 #endif
 #ifdef CSCD_BASELINES_CGAL_BOXES
-    Strategy{"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, kAnySurface, make_cgal_boxes,
-             "", false, Role::none, false},
+    in_library(
+        {"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, kAnySurface, make_cgal_boxes}),
 #endif
     Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, kBones,
              [](const Setup& setup) { return make_rvbc(setup); }},
@@ -56,15 +67,15 @@ constexpr std::array kStrategies = {
              kBones, [](const Setup& setup) { return make_drvbc(setup); }},
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
              kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }},
-    Strategy{"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters", Guarantee::complete,
-             kAnySurface,
-             [](const Setup& setup) {
-               return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-             },
-             "", false, Role::stand_in},
+    with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
+               Guarantee::complete, kAnySurface,
+               [](const Setup& setup) {
+                 return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+               }},
+              Role::stand_in),
 #ifdef CSCD_BASELINES_FCL
-    Strategy{"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
-             Guarantee::heuristic, kAnySurface, make_fcl, "checker", true, Role::none, false},
+    in_library({"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
+                Guarantee::heuristic, kAnySurface, make_fcl, "checker", true}),
 #endif
     // One thing at a time left out, or added.
     Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, kBones,
