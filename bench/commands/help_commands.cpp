@@ -43,12 +43,14 @@ void add_help(CLI::App& app) {
     print(command->get_formatter()->make_help(command, called, CLI::AppFormatMode::Normal));
   });
 
-  auto shell = std::make_shared<std::string>();
   CLI::App* completion =
       app.add_subcommand("completion",
                          "Print a script that lets the shell complete commands, options and names.\n\n"
                          "  source <(cscd completion bash)");
-  completion->add_option("shell", *shell, "bash")->required()->check(CLI::IsMember({"bash"}));
+  const auto forget = [](const std::string&) {};  // there is one shell, and the check has seen its name
+  completion->add_option_function<std::string>("shell", forget, "bash")
+      ->required()
+      ->check(CLI::IsMember({"bash"}));
   completion->callback([&app] { print(bash_completion(command_tree(app))); });
 
   CLI::App* man = app.add_subcommand("man",
