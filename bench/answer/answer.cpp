@@ -6,6 +6,7 @@
 
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
+#include "core/fast/embedding.h"
 
 namespace cscd::bench {
 namespace {
@@ -20,6 +21,16 @@ constexpr std::size_t kMostFollowed = 20'000;
 bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
+
+class Stopwatch {
+ public:
+  double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - from_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point from_ = std::chrono::steady_clock::now();
+};
 
 bool decided(const Contact& contact) {
   return contact.verdict == Verdict::contact;
@@ -58,8 +69,10 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
     : input_(input),
       elementary_(elementary),
       options_(options),
-      poses_(input.mesh, input.reference, kMostCrossings) {
-  rest_ = poses_.find(input.rest());
+      poses_({input.mesh, input.reference}, kMostCrossings) {
+  find_crossings(input.rest());
+  rest_ = poses_.crossings();
+  rest_ms_ = searched_ms_;
   if (!options.keep_rest_crossings) {
     if (rest_.total > kMostLeftOut)
       throw InputError(
@@ -68,7 +81,9 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
           "--keep-rest-crossings");
     left_out_ = RestCrossings(input.mesh, rest_);
   }
+  const Stopwatch preparing;
   main_ = make(strategy);
+  preparation_ms_ = preparing.milliseconds();
 }
 
 Answerer::Row Answerer::make(const Strategy& strategy) const {
@@ -88,6 +103,19 @@ bool Answerer::finds_all(const Row& row) const {
          elementary_.apart_is_proof && !first_only;
 }
 
+// The fast test is prepared once the plain one has taken as long as that preparation may take, which is about
+// as long as the strategy's. So a clip whose starts are nearly all known from the intervals before them is
+// spared the preparation, and no clip takes more than twice the time that the better choice would take.
+void Answerer::find_crossings(std::span<const Vec3> pose) {
+  if (!searches_fast_ && main_.detector && searched_ms_ > preparation_ms_) {
+    poses_.use(make_embedding_test(input_.setup(elementary_)));
+    searches_fast_ = true;
+  }
+  const Stopwatch searching;
+  poses_.find(pose);
+  searched_ms_ += searching.milliseconds();
+}
+
 // Finds which triangles cross at the start. The interval before may have left that known. Otherwise it
 // follows from the straight way that leads here from the last known pose, if little touches on that way, or
 // it is found from nothing.
@@ -105,7 +133,7 @@ void Answerer::know_start(const scenes::ClipInterval& interval) {
                         (finds_all(main_) || (embedded && main_.strategy->guarantee != Guarantee::heuristic));
   const bool has_bones = !interval.bones || pose_bones_.size() == interval.bones->start.size();
   if (!provable || !has_bones || same_bits(touched_end_, start)) {
-    poses_.find(start);
+    find_crossings(start);
     keep_bones();
     return;
   }
@@ -118,7 +146,7 @@ void Answerer::know_start(const scenes::ClipInterval& interval) {
   if (all_known && touched.contacts.size() <= kMostFollowed)
     poses_.follow(start, touched);
   else
-    poses_.find(start);
+    find_crossings(start);
   keep_bones();
 }
 
@@ -144,15 +172,17 @@ std::size_t Answerer::leave_out(ContactSet& found) const {
 }
 
 IntervalAnswer Answerer::answer(std::size_t index) {
+  const Stopwatch loading;
   const scenes::ClipInterval interval = input_.clip->load(index);
+  const Stopwatch whole;
   const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
   IntervalAnswer answer;
   answer.index = index;
+  answer.load_ms = loading.milliseconds();
 
-  const auto before = std::chrono::steady_clock::now();
+  const Stopwatch deciding;
   know_start(interval);
-  answer.embedding_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - before).count();
+  answer.embedding_ms = deciding.milliseconds();
   const Crossings& crossing = poses_.crossings();
   answer.starts_embedded = crossing.total == 0;
   answer.start = crossing;
@@ -180,6 +210,7 @@ IntervalAnswer Answerer::answer(std::size_t index) {
   answer.proven = elementary_.apart_is_proof &&
                   (guarantee == Guarantee::complete || (guarantee == Guarantee::first_contact &&
                                                         answer.starts_embedded && answer.rest_contacts == 0));
+  answer.wall_ms = whole.milliseconds();
   return answer;
 }
 

@@ -37,6 +37,8 @@ struct IntervalAnswer {
   bool proven = false;  // contacts and time are right by the strategy's guarantee and the elementary test
   Report report;
   double embedding_ms = 0;  // what it took to know which triangles cross at the start
+  double load_ms = 0;       // what it took to read both frames
+  double wall_ms = 0;       // from the call to the answer, without the reading of frames
 
   std::optional<double> time() const;  // of the earliest decided contact
 };
@@ -58,6 +60,8 @@ class Answerer {
 
   IntervalAnswer answer(std::size_t interval);
 
+  // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
+  double preparation_ms() const { return preparation_ms_ + rest_ms_; }
   // The triangles that cross at rest. They are left out of answers unless the options keep them.
   const Crossings& rest_crossings() const { return rest_; }
   int threads() const { return main_.threads; }
@@ -72,6 +76,8 @@ class Answerer {
   Row& stand_in();
   // Whether the answers of a row hold all contacts of a motion whose start is embedded or not.
   bool finds_all(const Row& row) const;
+  // Finds from nothing which triangles cross in a pose.
+  void find_crossings(std::span<const Vec3> pose);
   void know_start(const scenes::ClipInterval& interval);
   void know_end(const scenes::ClipInterval& interval, const Row& row, const ContactSet& found);
   std::size_t leave_out(ContactSet& found) const;
@@ -81,7 +87,11 @@ class Answerer {
   AnswerOptions options_;
   Row main_;
   std::optional<Row> stand_in_;
+  double preparation_ms_ = 0;  // of the strategy
   PoseCrossings poses_;
+  double searched_ms_ = 0;  // that find_crossings() took so far
+  double rest_ms_ = 0;      // that it took for the pose at rest
+  bool searches_fast_ = false;
   Crossings rest_;
   RestCrossings left_out_;
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows

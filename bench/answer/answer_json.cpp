@@ -142,6 +142,8 @@ json interval_json(const Input& input, const SurfaceNames& names, const Interval
               {"counts", counts_json(answer.report)},
               {"ms", milliseconds_json(answer.report.ms)}};
   out["ms"]["embedding"] = answer.embedding_ms;
+  out["ms"]["load"] = answer.load_ms;
+  out["ms"]["wall"] = answer.wall_ms;
   const json start = moment_json(input, {answer.index, 0});
   out["frame"] = start["frame"];
   out["seconds"] = start["seconds"];

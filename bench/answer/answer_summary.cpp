@@ -72,6 +72,8 @@ void AnswerSummary::add(const IntervalAnswer& answer, const SurfaceNames& names)
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
   embedding_ms += answer.embedding_ms;
   query_ms += answer.report.ms.total();
+  load_ms += answer.load_ms;
+  wall_ms += answer.wall_ms;
   if (answer.verdict == IntervalVerdict::clear || answer.verdict == IntervalVerdict::undecided) return;
 
   const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
@@ -113,6 +115,12 @@ json summary_json(const Input& input, const AnswerSummary& s) {
           {"intersects_at_start", s.count(IntervalVerdict::intersects_at_start)},
           {"undecided", s.count(IntervalVerdict::undecided)},
           {"proven", s.proven},
+          {"ms",
+           {{"query", s.query_ms},
+            {"embedding", s.embedding_ms},
+            {"wall", s.wall_ms},
+            {"load", s.load_ms},
+            {"preparation", s.preparation_ms}}},
           {"with_left_out", s.with_left_out},
           {"strategies", std::move(strategies)},
           {"first", std::move(first)},
@@ -164,8 +172,9 @@ std::string summary_text(const Input& input, const SurfaceNames& names, const An
          (s.proven == s.intervals()
               ? "every answer proven"
               : std::to_string(s.proven) + " of " + std::to_string(s.intervals()) + " proven") +
-         "; " + number(s.query_ms) + " ms to find contacts, " + number(s.embedding_ms) +
-         " ms to know what crosses at the starts\n";
+         "\n  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
+         number(s.embedding_ms) + " to know what crosses at the starts; " + number(s.preparation_ms) +
+         " ms to prepare and " + number(s.load_ms) + " ms to read frames came on top\n";
   return out;
 }
 

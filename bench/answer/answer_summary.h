@@ -29,7 +29,8 @@ struct AnswerSummary {
   std::optional<Worst> worst;
   // Bones, or else parts, that met: in how many intervals.
   std::map<std::pair<std::string, std::string>, std::size_t> met;
-  double embedding_ms = 0, query_ms = 0;
+  double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0;
+  double preparation_ms = 0;  // set by the caller
 
   std::size_t intervals() const;
   std::size_t count(IntervalVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }

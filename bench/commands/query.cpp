@@ -84,6 +84,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   Answerer answerer(input, strategy, elementary, options.answers);
   const SurfaceNames names(input);
   AnswerSummary summary;
+  summary.preparation_ms = answerer.preparation_ms();
   json intervals = json::array();
   {
     Progress progress("query " + options.input, range.last - range.first);

@@ -1,11 +1,13 @@
 #include "bench/measure/random_verification.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "bench/rows/catalogue.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
+#include "core/fast/embedding.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
@@ -51,6 +53,9 @@ struct Subject {
         mesh(random.clip.header().triangles, random.clip.header().vertex_count, "random interval"),
         rig(scenes::rig_of(random.clip)) {}
 
+  Setup setup(const ElementaryTest& test, bool first_only = false) const {
+    return {mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test, 1, first_only};
+  }
   struct Result {
     ContactSet passed_on, found;
     Report report;
@@ -60,9 +65,7 @@ struct Subject {
     // The earliest contact is known by its time, which cannot be put off.
     const ElementaryTest& test = row.first ? elementary_test_named(even ? "exact" : "filtered_exact")
                                            : (even ? kPutOff<false> : kPutOff<true>);
-    const std::unique_ptr<Detector> detector =
-        row.strategy->make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test, 1, row.first})
-            .detector;
+    const std::unique_ptr<Detector> detector = row.strategy->make(setup(test, row.first)).detector;
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     result.report =
@@ -99,6 +102,25 @@ std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& a
   return static_cast<std::size_t>(attaining_first(reference) - attaining_first(answer));
 }
 
+// Holds the test that decides starts to the plain one, on both poses of the interval.
+void judge_start_test(const Subject& subject, RandomSummary& summary) {
+  EmbeddingTest plain(subject.mesh, subject.random.clip.frame(0).positions);
+  EmbeddingTest fast = make_embedding_test(subject.setup(elementary_test_named("exact")));
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  for (std::size_t frame = 0; frame < 2; ++frame) {
+    const std::span<const Vec3> pose = subject.random.clip.frame(frame).positions;
+    const Crossings expected = plain.find_all(pose, kAll), found = fast.find_all(pose, kAll);
+    ++summary.poses;
+    summary.poses_crossing += expected.total > 0;
+    summary.crossings += expected.total;
+    if (found.pairs != expected.pairs)
+      summary.failures.push_back(
+          {subject.seed, subject.torn, std::string(subject.random.family), "start test",
+           "frame " + std::to_string(frame) + ": finds " + std::to_string(found.total) + " of " +
+               std::to_string(expected.total) + " pairs of triangles that cross"});
+  }
+}
+
 void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows, RandomSummary& summary) {
   const ElementaryTest &exact = elementary_test_named("exact"), &inexact = elementary_tests().front();
   const Strategy& oracle = all_pairs();
@@ -118,6 +140,7 @@ void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows
   if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
   summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
 
+  judge_start_test(subject, summary);
   for (const StrategyRow& asked : rows) {
     const Strategy& strategy = *asked.strategy;
     if (strategy.name == oracle.name && !by_all_pairs) continue;
@@ -170,7 +193,9 @@ std::string describe(const RandomSummary& summary) {
     text += (first ? "" : ", ") + family + " " + count(hits);
     first = false;
   }
-  text += "); " + count(summary.contacts) + " contacts in all\n";
+  text += "); " + count(summary.contacts) + " contacts in all\n  start test, " + count(summary.poses) +
+          " poses: " + count(summary.poses_crossing) + " with crossings, " + count(summary.crossings) +
+          " pairs of triangles that cross\n";
   for (const auto& [strategy, row] : summary.rows)
     text += "  " + strategy + ", " + count(row.intervals) + " intervals: passes on " +
             count(row.triangle_pairs) + " triangle pairs, " + count(row.feature_pairs) +

@@ -42,6 +42,8 @@ struct RandomRow {
 struct RandomSummary {
   std::size_t intervals = 0, torn = 0, embedded = 0, with_contacts = 0, embedded_with_contacts = 0,
               contacts = 0;
+  // The poses on which the test that decides starts was held to the plain one.
+  std::size_t poses = 0, poses_crossing = 0, crossings = 0;
   std::map<std::string, RandomRow> rows;                // by the row's name
   std::map<std::string, std::size_t> embedded_hits_of;  // embedded starts with contacts, by family
   Accuracy newton;                                      // of the first elementary test, on the same pairs

@@ -5,14 +5,17 @@
 #include <cstring>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
 
 #include "bench/output/progress.h"
+#include "bench/rows/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
+#include "core/fast/embedding.h"
 #include "core/geometry/lanes.h"
 
 namespace cscd::bench {
@@ -65,15 +68,21 @@ bool agree(std::span<const Contestant> contestants, std::span<const Answer> answ
 }
 
 // Times the test of the start on all timed intervals, for the rows that rely on it. It has a pass of its own,
-// as it would otherwise drive from the caches what a strategy keeps.
+// as it would otherwise drive from the caches what a strategy keeps. Throws std::logic_error where the test
+// differs from the verifier's.
 void time_starts(Input& input, std::span<const Contestant> contestants, std::span<const std::size_t> timed,
-                 EmbeddingTest& test, std::size_t repetition, std::vector<StrategyRecord>& records) {
+                 const Verifier& verifier, EmbeddingTest& test, std::size_t repetition,
+                 std::vector<StrategyRecord>& records) {
   for (const std::size_t i : timed) {
     const scenes::ClipInterval interval = input.clip->load(i);
     stream_positions(interval.motion);
     const auto begin = std::chrono::steady_clock::now();
-    test.embedded(interval.motion.start());
+    const bool embedded = test.embedded(interval.motion.start());
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+    if (embedded != verifier.starts_embedded(i))
+      throw std::logic_error("the timed test of the start of interval " + std::to_string(i) + " of " +
+                             input.name + " says " + (embedded ? "embedded" : "not embedded") +
+                             ", and the verifier's says the opposite");
     for (std::size_t c = 0; c < contestants.size(); ++c)
       if (contestants[c].strategy->guarantee == Guarantee::first_contact)
         append_time("embedding", taken.count(), records[c].ms, repetition);
@@ -138,7 +147,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
       throw InputError("interval " + std::to_string(i) + " of " + input.name +
                        " is to be timed but was not verified; verify every timed interval");
   Progress progress("timing " + input.name, plan.repetitions * plan.timed.size());
-  EmbeddingTest embedding(input.mesh, input.reference);
+  EmbeddingTest start_test = make_embedding_test(input.setup(elementary_test_named("exact")));
   ContactSet found;
   std::mt19937_64 random(plan.seed);
   std::vector<std::size_t> order(contestants.size());
@@ -160,7 +169,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
       }
       progress.advance();
     }
-    time_starts(input, contestants, plan.timed, embedding, repetition, records);
+    time_starts(input, contestants, plan.timed, verifier, start_test, repetition, records);
   }
   return std::nullopt;
 }

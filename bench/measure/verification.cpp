@@ -130,6 +130,10 @@ bool Verifier::has_judged(std::size_t interval) const {
   return reports_.contains(interval);
 }
 
+bool Verifier::starts_embedded(std::size_t interval) const {
+  return std::ranges::find(record_.unembedded, interval) == record_.unembedded.end();
+}
+
 const Report& Verifier::report(std::size_t contestant, std::size_t interval) const {
   return reports_.at(interval)[contestant];
 }

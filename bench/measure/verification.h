@@ -26,6 +26,8 @@ class Verifier {
   void judge(std::span<const std::size_t> intervals);
 
   bool has_judged(std::size_t interval) const;
+  // Whether an interval that was judged starts embedded, by a test that shares no culling with the timed one.
+  bool starts_embedded(std::size_t interval) const;
   // A contestant's counters on an interval that was judged: whatever is timed has to repeat them.
   const Report& report(std::size_t contestant, std::size_t interval) const;
   // What was judged so far. Intervals are ascending.

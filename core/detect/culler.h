@@ -16,13 +16,15 @@ struct TrianglePair {
   TriangleId a, b;
 };
 
-// Takes potentially colliding triangle pairs one by one and hands them on in blocks of a fixed size.
+// Takes potentially colliding triangle pairs one by one and hands them on in blocks of a fixed size. A sink
+// that is closed takes no more pairs, and a culler may stop looking for them.
 class TrianglePairSink {
  public:
   explicit TrianglePairSink(std::size_t block = 1 << 15) { block_.reserve(block); }
   virtual ~TrianglePairSink() = default;
 
   void add(TriangleId a, TriangleId b) {
+    if (closed_) return;
     block_.push_back({a, b});
     ++count_;
     if (block_.size() == block_.capacity()) flush();
@@ -32,15 +34,21 @@ class TrianglePairSink {
     block_.clear();
   }
   std::uint64_t count() const { return count_; }
+  bool closed() const { return closed_; }
   void restart() {
     block_.clear();
     count_ = 0;
+    closed_ = false;
   }
+
+ protected:
+  void close() { closed_ = true; }
 
  private:
   virtual void take(const std::vector<TrianglePair>& block) = 0;
   std::vector<TrianglePair> block_;
   std::uint64_t count_ = 0;
+  bool closed_ = false;
 };
 
 // A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions

@@ -13,20 +13,22 @@ namespace cscd {
 template <class Volume, bool kAdjacent = true>
 class PlainCuller : public Culler {
  public:
-  explicit PlainCuller(const Setup& setup)
-      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+  explicit PlainCuller(const Setup& setup) : PlainCuller(setup.mesh, setup.reference) {}
+  // `mesh` must outlive the culler. `reference`, [vertices], shapes the tree.
+  PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference)
+      : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
 
   CullCounts cull(TrianglePairSink& sink) override {
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-    const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
+    const auto skip_once_closed = [&](NodeIndex, NodeIndex) { return sink.closed(); };
     const auto emit = [&](NodeIndex a, NodeIndex b) {
       const TriangleId t = tree_.triangle(a), u = tree_.triangle(b);
       if (kAdjacent || !share_vertex(mesh_.corners(t), mesh_.corners(u))) sink.add(t, u);
     };
     CullCounts counts;
-    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_none, emit);
+    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip_once_closed, emit);
     return counts;
   }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/detect/plain_culler.h"
 #include "core/elementary/exact/static_contact.h"
-#include "core/hierarchy/descent.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd {
@@ -46,6 +46,28 @@ struct Frame {
   }
 };
 
+// Tests every pair of triangles that a culler passes on, until found() returns false.
+class ExactTester : public TrianglePairSink {
+ public:
+  ExactTester(const TriangleMesh& mesh, std::span<const Vec3> positions,
+              const std::function<bool(const CrossingPair&)>& found)
+      : TrianglePairSink(kBlock), mesh_(mesh), positions_(positions), found_(found) {}
+
+ private:
+  static constexpr std::size_t kBlock = 64;  // a closed sink is noticed after so many pairs
+
+  void take(const std::vector<TrianglePair>& block) override {
+    for (const TrianglePair& pair : block) {
+      const CrossingPair crossing(std::min(pair.a, pair.b), std::max(pair.a, pair.b));
+      if (!closed() && triangles_meet(mesh_, positions_, crossing) && !found_(crossing)) close();
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  std::span<const Vec3> positions_;
+  const std::function<bool(const CrossingPair&)>& found_;
+};
+
 }  // namespace
 
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair) {
@@ -54,20 +76,20 @@ bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, c
 }
 
 EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference)
-    : mesh_(mesh), tree_(build_tree(mesh, reference)), bounds_(mesh, tree_) {}
+    : EmbeddingTest(mesh, std::make_unique<PlainCuller<Kdop16>>(mesh, reference)) {}
 
-template <class Found>
-void EmbeddingTest::search(std::span<const Vec3> positions, const Found& found) {
-  bounds_.refit(Motion(positions, positions));
-  bool done = false;
-  const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
-  const auto skip_once_done = [&](NodeIndex, NodeIndex) { return done; };
-  const auto check = [&](NodeIndex a, NodeIndex b) {
-    const TriangleId s = tree_.triangle(a), t = tree_.triangle(b);
-    const CrossingPair pair(std::min(s, t), std::max(s, t));
-    if (triangles_meet(mesh_, positions, pair)) done = !found(pair);
-  };
-  self_descent(tree_, bounds_, 0, is_leaf, skip_once_done, check);
+EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::unique_ptr<Culler> culler)
+    : mesh_(&mesh), culler_(std::move(culler)) {}
+
+void EmbeddingTest::search(std::span<const Vec3> positions,
+                           const std::function<bool(const CrossingPair&)>& found) {
+  const Motion at_rest(positions, positions);
+  ExactTester tester(*mesh_, positions, found);
+  culler_->refit(at_rest);
+  culler_->classify(at_rest, nullptr);
+  culler_->cull(tester);
+  tester.flush();
+  pairs_tested_ = tester.count();
 }
 
 std::optional<CrossingPair> EmbeddingTest::find_intersection(std::span<const Vec3> positions) {

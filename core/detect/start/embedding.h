@@ -1,11 +1,12 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
+#include "core/detect/culler.h"
 #include "core/detect/start/crossings.h"
-#include "core/hierarchy/bounds.h"
-#include "core/hierarchy/tree.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd {
@@ -14,30 +15,41 @@ namespace cscd {
 // Exact.
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
 
-// Decides exactly whether a frame is *embedded*: no two triangles meet outside the vertices and edges that
-// they share. In an embedded frame no feature pair touches and no edge pierces a face. The theorem behind the
+// Decides exactly whether a pose is *embedded*: no two triangles meet outside the vertices and edges that
+// they share. In an embedded pose no feature pair touches and no edge pierces a face. The theorem behind the
 // guarantee `first_contact` needs an embedded start (rule embedded-start, core/soundness.md).
+//
+// A culler is asked about the interval in which the surface rests in the pose, and every pair of triangles
+// that it passes on is tested exactly.
 class EmbeddingTest {
  public:
-  // Builds a tree from the positions `reference` ([vertices]); any frame will do.
+  // Culls by one hierarchy of bounds, built from the positions `reference` ([vertices]); any pose will do.
   // `mesh` must outlive the object.
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
+  // Culls by `culler`, which must be made for this mesh. It may drop a pair of triangles only by a proof that
+  // the two *meet* nowhere but in what they share. A proof that no feature pair of theirs touches is not
+  // enough, because an edge can pierce a face (theorem "a pose is an interval at rest", core/soundness.md).
+  EmbeddingTest(const TriangleMesh& mesh, std::unique_ptr<Culler> culler);
 
-  // Returns two triangles that meet, or nothing if the frame is embedded.
+  const TriangleMesh& mesh() const { return *mesh_; }
+
+  // Returns two triangles that meet, or nothing if the pose is embedded.
   std::optional<CrossingPair> find_intersection(std::span<const Vec3> positions);
   bool embedded(std::span<const Vec3> positions) { return !find_intersection(positions); }
 
   // Counts all pairs that meet, and keeps up to `most` of them.
   Crossings find_all(std::span<const Vec3> positions, std::size_t most);
 
+  // Returns the number of pairs of triangles that the culler left for the exact test in the last pose.
+  std::uint64_t pairs_tested() const { return pairs_tested_; }
+
  private:
   // Calls found(pair) for every triangle pair that meets, until found() returns false.
-  template <class Found>
-  void search(std::span<const Vec3> positions, const Found& found);
+  void search(std::span<const Vec3> positions, const std::function<bool(const CrossingPair&)>& found);
 
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
+  const TriangleMesh* mesh_;
+  std::unique_ptr<Culler> culler_;
+  std::uint64_t pairs_tested_ = 0;
 };
 
 }  // namespace cscd

@@ -5,9 +5,6 @@
 
 namespace cscd {
 
-PoseCrossings::PoseCrossings(const TriangleMesh& mesh, std::span<const Vec3> reference, std::size_t most)
-    : mesh_(mesh), test_(mesh, reference), most_(most) {}
-
 bool PoseCrossings::knows(std::span<const Vec3> positions) const {
   return positions.size() == positions_.size() && !positions.empty() &&
          std::memcmp(positions.data(), positions_.data(), positions.size_bytes()) == 0;
@@ -24,16 +21,17 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
   positions_.assign(positions.begin(), positions.end());
   if (touched.contacts.empty()) return crossings_;
 
+  const TriangleMesh& mesh = test_.mesh();
   std::vector<CrossingPair> changed;
   for (const Contact& contact : touched.contacts)
-    for (const CrossingPair& pair : carriers(mesh_, contact.pair)) changed.push_back(pair);
+    for (const CrossingPair& pair : carriers(mesh, contact.pair)) changed.push_back(pair);
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
   std::erase_if(crossings_.pairs, [&](const CrossingPair& pair) {
     return std::binary_search(changed.begin(), changed.end(), pair);
   });
   for (const CrossingPair& pair : changed)
-    if (triangles_meet(mesh_, positions, pair)) crossings_.pairs.push_back(pair);
+    if (triangles_meet(mesh, positions, pair)) crossings_.pairs.push_back(pair);
   std::sort(crossings_.pairs.begin(), crossings_.pairs.end());
   crossings_.total = crossings_.pairs.size();
   return crossings_;

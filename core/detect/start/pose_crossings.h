@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/detect/contact.h"
@@ -18,8 +19,11 @@ namespace cscd {
 // Where nothing touched, the same pairs cross as before: in particular, an embedded pose stays embedded.
 class PoseCrossings {
  public:
-  // `reference` shapes the tree; any frame will do. At most `most` pairs are kept for a pose.
-  PoseCrossings(const TriangleMesh& mesh, std::span<const Vec3> reference, std::size_t most);
+  // `test` finds crossings from nothing. At most `most` pairs are kept for a pose.
+  PoseCrossings(EmbeddingTest test, std::size_t most) : test_(std::move(test)), most_(most) {}
+
+  // Finds crossings by another test from then on.
+  void use(EmbeddingTest test) { test_ = std::move(test); }
 
   // Returns whether `positions` are those last asked for, bit for bit, so that
   // their crossings are known already.
@@ -39,7 +43,6 @@ class PoseCrossings {
   const Crossings& follow(std::span<const Vec3> positions, const ContactSet& touched);
 
  private:
-  const TriangleMesh& mesh_;
   EmbeddingTest test_;
   std::size_t most_;
   std::vector<Vec3> positions_;

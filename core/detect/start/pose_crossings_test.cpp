@@ -59,7 +59,7 @@ struct Tumbling {
 
 TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
   Tumbling two;
-  PoseCrossings followed(two.mesh, two.shape.positions, kAll);
+  PoseCrossings followed({two.mesh, two.shape.positions}, kAll);
   EmbeddingTest from_nothing(two.mesh, two.shape.positions);
   std::vector<Vec3> from = two.pose();
   followed.find(from);
@@ -85,7 +85,7 @@ TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
 // The premise: if contacts are withheld, the crossings that follow from the rest are wrong.
 TEST(PoseCrossings, NeedEverythingThatTouched) {
   Tumbling two;
-  PoseCrossings followed(two.mesh, two.shape.positions, kAll);
+  PoseCrossings followed({two.mesh, two.shape.positions}, kAll);
   EmbeddingTest from_nothing(two.mesh, two.shape.positions);
   std::size_t wrong = 0;
   for (int step = 0; step < 20; ++step) {
@@ -99,7 +99,7 @@ TEST(PoseCrossings, NeedEverythingThatTouched) {
 TEST(PoseCrossings, KnowThePoseBitForBit) {
   const test::Shape shape = test::octahedron();
   const TriangleMesh mesh = shape.mesh();
-  PoseCrossings crossings(mesh, shape.positions, kAll);
+  PoseCrossings crossings({mesh, shape.positions}, kAll);
   EXPECT_FALSE(crossings.knows(shape.positions));
   crossings.find(shape.positions);
   EXPECT_TRUE(crossings.knows(shape.positions));
@@ -112,7 +112,7 @@ TEST(PoseCrossings, KnowThePoseBitForBit) {
 TEST(PoseCrossings, FindFromNothingWhatTheyCannotDerive) {
   const test::Shape shape = test::together(test::octahedron(), test::octahedron());
   const TriangleMesh mesh = shape.mesh();
-  PoseCrossings crossings(mesh, shape.positions, 3);
+  PoseCrossings crossings({mesh, shape.positions}, 3);
   const std::size_t total = crossings.find(shape.positions).total;
   EXPECT_GT(total, 3u);
   EXPECT_EQ(crossings.crossings().pairs.size(), 3u);

@@ -32,35 +32,57 @@ class CappedClusters {
   CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover,
                  std::size_t number);
 
-  // An interval is one call of `start`, then one call of `take` for each patch that may matter, in any order,
-  // then any number of questions.
+  // An interval is one call of `start`, then one call of `take` for each patch that may matter, in any order.
+  // Then, while choose_other_rays() returns true, one call of `count` for each patch of the clusters that
+  // have another ray. Then follows any number of questions.
   void start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints);
   // A patch whose triangles are all positive need not be taken if this is false.
   bool may_cross_ray(std::size_t cluster, const PatchLanes& lanes) const {
     return state_[cluster].ray->may_cross(lanes);
   }
   void take(const Patch& patch, Mask16 positive);
+  // A ray decides nothing if a triangle of U may be seen in its direction, or if it passes too near to an
+  // edge to be counted. Another ray through the same cluster often does better.
+  bool choose_other_rays();
+  bool has_other_ray(std::size_t cluster) const { return state_[cluster].has_other_ray; }
+  void count(const Patch& patch, Mask16 positive);
+
+  // Whether all triangles of the cluster are positive and clear.
+  bool all_clear(std::size_t cluster) const {
+    return state_[cluster].known() && state_[cluster].uncertain.size() == 0;
+  }
   // Returns the clear ones among the positive triangles of a patch.
   Mask16 clear(const Patch& patch, Mask16 positive) const;
 
  private:
+  static constexpr std::size_t kRays = 8;  // the largest number of rays that an interval tries for a cluster
+
   struct State {  // what is known of a cluster in this interval
     std::optional<Ray> ray;
-    int crossings;
-    bool known;  // if false, nothing is certain of the cluster
-    std::vector<Cone> uncertain;
+    std::size_t rays = 1;  // that were tried
+    int crossings = 0;
+    bool ray_decides = true;  // whether `crossings` is certain and no triangle of U is seen along the ray
+    bool has_other_ray = false;
+    bool cones_known = true;  // whether `uncertain` holds all of U
+    ConeSet uncertain;        // the cones of U
 
+    bool known() const { return cones_known && ray_decides && crossings == 1; }
     void add(const Cone& cone) {
-      uncertain.push_back(cone);
-      known &= ray->outside(cone);
+      uncertain.add(cone);
+      ray_decides &= ray->outside(cone);
     }
+    void count(const Patch& triangles, const PatchLanes& lanes, Mask16 positive);
   };
+  Ray ray_through(std::size_t cluster, const Triangle& target) const;
+  // Fills `loop_` and `positive_`, and returns the number of triangles of the cap that are not positive.
+  int look(const Cap& cap);
   void take(const Cap& cap);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);
 
   std::size_t number_;
   std::vector<Cap> caps_;
-  std::vector<Triangle> target_;  // [clusters]: the triangle that the cluster's ray goes through
+  // [clusters]: the triangles that a ray of the cluster may go through, the best one first
+  std::vector<std::vector<Triangle>> targets_;
   std::vector<State> state_;
   std::vector<PatchLanes> loop_;  // the loop of a cap, in registers
   std::vector<Mask16> positive_;  // the positive triangles of that cap

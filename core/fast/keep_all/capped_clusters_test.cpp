@@ -41,6 +41,14 @@ class Seen {
           capped.may_cross_ray(static_cast<std::size_t>(patch.cluster[number]), lanes))
         capped.take(patch, positive);
     });
+    while (capped.choose_other_rays()) {
+      ++other_rays_;
+      for_each([&](std::size_t p, const PatchLanes&, Mask16 positive) {
+        const Patch& patch = tree.patches[p];
+        if (capped.has_other_ray(static_cast<std::size_t>(patch.cluster[number])))
+          capped.count(patch, positive);
+      });
+    }
     for_each([&](std::size_t p, const PatchLanes&, Mask16 positive) {
       const Mask16 clear = capped.clear(tree.patches[p], positive);
       EXPECT_EQ(clear & ~positive, 0);
@@ -52,6 +60,7 @@ class Seen {
     return cover_.cluster_of[+a] == cover_.cluster_of[+b] && cover_.cluster_of[+a] != kNone &&
            (clear_[+a] || clear_[+b]);
   }
+  std::size_t other_rays() const { return other_rays_; }
   std::size_t clear() const {
     return static_cast<std::size_t>(std::count(clear_.begin(), clear_.end(), true));
   }
@@ -60,6 +69,7 @@ class Seen {
   const Cover& cover_;
   LocalPositions local_;
   std::vector<bool> clear_;
+  std::size_t other_rays_ = 0;
 };
 
 // An open surface that is one cluster. Its observer follows a vertex that no triangle uses.
@@ -128,6 +138,24 @@ TEST(CappedClusters, ATubeThatGoesRoundTwiceIsNotClear) {
     EXPECT_EQ(touching(twice.mesh, still).empty(), turns == 1);
     EXPECT_EQ(seen.clear(), turns == 1 ? twice.mesh.triangle_count() : 0);
   }
+}
+
+// A fold where the first ray goes: some triangles are not positive there. Another ray counts how often the
+// sphere goes round the observer. Mutation: another ray is believed without a count.
+TEST(CappedClusters, AnotherRayDecidesWhereTheFirstMeetsAFold) {
+  const OneCluster sphere(test::icosphere(3), {0.01, 0.02, 0.03});
+  const std::vector<Vec3>& round = sphere.shape.positions;
+  std::size_t decided = 0;
+  for (std::size_t v = 0; v + 1 < round.size(); ++v) {
+    const Triangle& some =
+        sphere.mesh.corners(sphere.mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)})[0]);
+    const Vec3& beside = round[+(+some[0] == v ? some[1] : some[0])];
+    std::vector<Vec3> folded = round;
+    folded[v] = 1.2 * (round[v] + 2.5 * (beside - round[v]));
+    const Seen seen = sphere.seen(Motion(folded, folded));
+    if (seen.other_rays() > 0) decided += seen.clear() > sphere.mesh.triangle_count() / 2;
+  }
+  EXPECT_GT(decided, 0u);
 }
 
 // A bent tube whose vertices move at random until the tube touches itself, also from starts that touch

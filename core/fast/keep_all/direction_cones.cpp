@@ -103,4 +103,14 @@ Mask16 apart(const Cones& cones, const Cone& other) {
   return above(together - kRounding, between) & cones.known;
 }
 
+void ConeSet::add(const Cone& cone) {
+  if (size_ == blocks_.size() * kLanes16) blocks_.push_back(Cones{});
+  Cones& block = blocks_[size_ / kLanes16];
+  const std::size_t lane = size_++ % kLanes16;
+  for (int i = 0; i < 3; ++i) block.axis[i][lane] = cone.axis[i];
+  block.cosine[lane] = cone.cosine;
+  block.sine[lane] = cone.sine;
+  block.known = 0xffff;
+}
+
 }  // namespace cscd::fast

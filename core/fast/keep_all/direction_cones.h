@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/fast/look/patch_lanes.h"
 
@@ -33,5 +35,29 @@ std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& 
 
 // Returns the lanes whose cone certainly has no direction in common with the other cone.
 Mask16 apart(const Cones& cones, const Cone& other);
+
+// A set of cones, sixteen of them side by side, so that one cone is held against sixteen at a time.
+class ConeSet {
+ public:
+  void clear() { size_ = 0; }
+  void add(const Cone& cone);
+  std::size_t size() const { return size_; }
+
+  // Calls take(cone) for every cone of the set that may have a direction in common with `other`. If `other`
+  // is missing, these are all cones.
+  template <class Take>
+  void for_each_near(const std::optional<Cone>& other, const Take& take) const {
+    for (std::size_t first = 0; first < size_; first += kLanes16) {
+      const Cones& block = blocks_[first / kLanes16];
+      const unsigned all = (1U << std::min(kLanes16, size_ - first)) - 1;
+      for_each_lane(other ? all & ~static_cast<unsigned>(apart(block, *other)) : all,
+                    [&](std::size_t lane) { take(block[lane]); });
+    }
+  }
+
+ private:
+  std::vector<Cones> blocks_;
+  std::size_t size_ = 0;
+};
 
 }  // namespace cscd::fast

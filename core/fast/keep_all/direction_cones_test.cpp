@@ -138,5 +138,41 @@ TEST(DirectionCones, ThereIsNoneOfDirectionsThatSumToNothing) {
   EXPECT_FALSE(cone_of({&lanes, 1}, {}, kError));
 }
 
+// Mutations: the last block is cut short; lanes that are apart are taken.
+TEST(ConeSet, GivesEveryConeThatIsNotApart) {
+  std::mt19937 random(3);
+  std::vector<Cone> cones;
+  ConeSet set;
+  while (cones.size() < 100) {
+    const Thrown thrown(random, 0.2F);
+    const Cones some = cones_of(thrown.lanes, thrown.patch, thrown.from, kError);
+    const std::size_t lane = random() % kLanes16;
+    if ((some.known >> lane & 1) == 0) continue;
+    cones.push_back(some[lane]);
+    set.add(cones.back());
+  }
+  std::size_t near = 0;
+  for (const Cone& other : cones) {
+    std::vector<const Cone*> expected;
+    for (const Cone& cone : cones) {
+      ConeSet alone;
+      alone.add(cone);
+      alone.for_each_near(other, [&](const Cone&) { expected.push_back(&cone); });
+    }
+    std::size_t i = 0;
+    set.for_each_near(other, [&](const Cone& cone) {
+      ASSERT_LT(i, expected.size());
+      EXPECT_EQ(cone.axis[0], expected[i++]->axis[0]);
+    });
+    EXPECT_EQ(i, expected.size());
+    near += i;
+  }
+  EXPECT_GT(near, 200u);
+  EXPECT_LT(near, 9000u);
+  std::size_t all = 0;
+  set.for_each_near(std::nullopt, [&](const Cone&) { ++all; });
+  EXPECT_EQ(all, cones.size());
+}
+
 }  // namespace
 }  // namespace cscd::fast

@@ -28,7 +28,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
       capped_(std::move(capped)),
-      crosses_ray_(capped_.empty() ? 0 : tree.patches.size()) {
+      may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle; `look` relies on that.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
@@ -92,10 +92,13 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   orientations(lanes, patch, from, positions_->error(), seen);
-  for (std::size_t c = 0; c < capped_.size(); ++c)
-    if (from[c] != nullptr)
-      crosses_ray_[p][c] = capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes);
-  bool usual = capped_.empty();
+  if (!capped_.empty()) {
+    may_cross_ray_[p] = 0;
+    for (std::size_t c = 0; c < covers_used_; ++c)
+      if (from[c] != nullptr && capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes))
+        may_cross_ray_[p] |= static_cast<std::uint8_t>(1U << c);
+  }
+  bool usual = true;
   for (std::size_t c = 0; c < covers_used_; ++c)
     usual &= from[c] == nullptr || (patch.lanes & ~static_cast<unsigned>(seen[c].positive)) == 0;
   if (usual) return make_usual(p);
@@ -118,7 +121,10 @@ void Certificates::make_usual(std::size_t p) {
   single_triangle_signs_[p] = {};
   certified_[p] = {};
   certified_[p][0].positive = cell_[p].lanes;
-  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c].positive = cell_[p].inside[c];
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    certified_[p][c].positive = capped_.empty()                ? cell_[p].inside[c]
+                                : cell_[p].cluster[c] != kNone ? cell_[p].lanes
+                                                               : Mask16{0};
 }
 
 template <class Take>
@@ -161,21 +167,41 @@ void Certificates::look_round(std::size_t p) {
     });
 }
 
+// Returns the triangles of a patch that are positive by themselves in one cover.
+Mask16 Certificates::positive(std::size_t p, std::size_t c) const {
+  return state_[p] == State::seen
+             ? static_cast<Mask16>(cell_[p].lanes &
+                                   ~static_cast<unsigned>(single_triangle_signs_[p][c].not_positive))
+             : cell_[p].lanes;
+}
+
 void Certificates::certify_clear() {
-  const auto for_each_seen = [&](const auto& take) {
-    for (std::size_t p = 0; p < certified_.size(); ++p)
-      for (std::size_t c = 0; c < covers_used_; ++c)
-        if (cell_[p].cluster[c] != kNone)
-          take(p, c,
-               static_cast<Mask16>(cell_[p].lanes &
-                                   ~static_cast<unsigned>(single_triangle_signs_[p][c].not_positive)));
+  const auto for_each_cover = [&](std::size_t p, const auto& take) {
+    for (std::size_t c = 0; c < covers_used_; ++c)
+      if (cell_[p].cluster[c] != kNone) take(c, static_cast<std::size_t>(cell_[p].cluster[c]));
   };
-  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
-    if (positive != cell_[p].lanes || crosses_ray_[p][c]) capped_[c].take(tree_.patches[p], positive);
-  });
-  for_each_seen([&](std::size_t p, std::size_t c, Mask16 positive) {
-    certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive), 0};
-  });
+  for (std::size_t p = 0; p < cell_.size(); ++p)
+    if (state_[p] == State::seen || may_cross_ray_[p] != 0)
+      for_each_cover(p, [&](std::size_t c, std::size_t) {
+        if (positive(p, c) != cell_[p].lanes || (may_cross_ray_[p] >> c & 1) != 0)
+          capped_[c].take(tree_.patches[p], positive(p, c));
+      });
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    while (capped_[c].choose_other_rays())
+      for (std::size_t p = 0; p < cell_.size(); ++p)
+        if (cell_[p].cluster[c] != kNone &&
+            capped_[c].has_other_ray(static_cast<std::size_t>(cell_[p].cluster[c])))
+          capped_[c].count(tree_.patches[p], positive(p, c));
+  for (std::size_t p = 0; p < cell_.size(); ++p) {
+    bool all_clear = state_[p] != State::seen;
+    for_each_cover(p,
+                   [&](std::size_t c, std::size_t cluster) { all_clear &= capped_[c].all_clear(cluster); });
+    if (all_clear) continue;
+    for_each_cover(p, [&](std::size_t c, std::size_t) {
+      certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive(p, c)), 0};
+    });
+    if (state_[p] != State::seen) state_[p] = State::spoiled;
+  }
 }
 
 void Certificates::label_nodes() {

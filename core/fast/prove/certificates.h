@@ -90,6 +90,7 @@ class Certificates {
   void make_usual(std::size_t patch);
   void certify_all_round();
   void look_round(std::size_t patch);
+  Mask16 positive(std::size_t patch, std::size_t cover) const;
   void certify_clear();
   void label_nodes();
 
@@ -125,8 +126,8 @@ class Certificates {
   std::vector<State> state_;  // [patches], padded with usual ones to a whole word
   std::vector<Label> label_;  // of each node
   std::vector<CappedClusters> capped_;
-  std::vector<std::array<bool, kCovers>>
-      crosses_ray_;  // [patches][covers]: whether a triangle of the patch may cross the ray
+  std::vector<std::uint8_t>
+      may_cross_ray_;  // [patches]: the covers whose ray the patch may cross, a bit each
   RadialCounts counts_;
 };
 
