@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "bench/answer/answer.h"
+#include "bench/rows/catalogue.h"
+#include "core/detect/start/embedding.h"
+#include "core/elementary/catalogue.h"
+#include "core/mesh/test_shapes.h"
+
+// A query follows the motion instead of searching a start from nothing. That needs premises about the row
+// that answered, and each test here breaks one of them: the row or its elementary test misses contacts that
+// it does not promise. Whatever is missed, the crossings at every start have to be right.
+namespace cscd::bench {
+namespace {
+
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+enum class Reports { nothing, nothing_from_a_start_that_crosses, one_contact };
+
+// Finds what the reference finds, and reports less.
+template <Reports kReports>
+class Silent : public Detector {
+ public:
+  explicit Silent(const Setup& setup)
+      : detector_(complete_reference().make(setup).detector), start_test_(setup.mesh, setup.reference) {}
+
+  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    const Report report = detector_->detect(motion, bones, out);
+    const bool silent =
+        kReports == Reports::nothing ||
+        (kReports == Reports::nothing_from_a_start_that_crosses && !start_test_.embedded(motion.start()));
+    const std::size_t most = silent ? 0 : kReports == Reports::one_contact ? 1 : out.contacts.size();
+    out.contacts.resize(std::min(most, out.contacts.size()));
+    return report;
+  }
+
+ private:
+  std::unique_ptr<Detector> detector_;
+  EmbeddingTest start_test_;
+};
+
+template <Reports kReports>
+Prepared make_silent(const Setup& setup) {
+  return {std::make_unique<Silent<kReports>>(setup), {}};
+}
+
+template <class Query>
+Answer says_apart(const Query&) {
+  return {Verdict::apart, 0};
+}
+template <class Query>
+Answer says_undecided(const Query&) {
+  return {Verdict::undecided, 0};
+}
+constexpr ElementaryTest kBlind{"blind",
+                                "",
+                                false,
+                                true,
+                                one_by_one<says_apart<MovingVertexFace>>,
+                                one_by_one<says_apart<MovingEdgeEdge>>};
+constexpr ElementaryTest kUndecided{"undecided",
+                                    "",
+                                    true,
+                                    true,
+                                    one_by_one<says_undecided<MovingVertexFace>>,
+                                    one_by_one<says_undecided<MovingEdgeEdge>>};
+
+// Two balls, one of which flies into the other, rests there, and comes out again. Asks for all intervals in
+// order, and then for intervals here and there.
+void expect_starts_right(const Strategy& strategy, const ElementaryTest& elementary, bool unproven = false) {
+  const test::Shape balls =
+      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
+  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
+  for (const double x : {0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1}) {
+    std::vector<Vec3> frame = balls.positions;
+    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
+    clip->append({frame, {}});
+  }
+  Input input{"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+  Answerer answerer(input, strategy, elementary, {.unproven = unproven, .keep_rest_crossings = true});
+  EmbeddingTest from_nothing(input.mesh, input.reference);
+  for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 0, 3, 1, 6, 2, 5, 4, 0}) {
+    const Crossings expected = from_nothing.find_all(input.clip->load(i).motion.start(), kAll);
+    const IntervalAnswer answer = answerer.answer(i);
+    ASSERT_EQ(answer.start.pairs, expected.pairs) << i;
+    EXPECT_EQ(answer.starts_embedded, expected.total == 0) << i;
+  }
+}
+
+TEST(KnownStarts, NeedARowThatPromisesSomething) {
+  expect_starts_right({"silent", "", Guarantee::heuristic, {}, make_silent<Reports::nothing>},
+                      elementary_test_named("exact"));
+}
+
+TEST(KnownStarts, NeedAnElementaryTestOfTheCallers) {
+  for (const Guarantee guarantee : {Guarantee::first_contact, Guarantee::complete})
+    expect_starts_right({"own", "", guarantee, {}, make_silent<Reports::nothing>, "", true},
+                        elementary_test_named("exact"));
+}
+
+TEST(KnownStarts, NeedAnElementaryTestWhoseApartIsAProof) {
+  expect_starts_right(complete_reference(), kBlind);
+  expect_starts_right(strategy_named("drvbc_fast"), kBlind);
+}
+
+TEST(KnownStarts, NeedAnEmbeddedStartWhereTheFirstContactIsPromised) {
+  expect_starts_right(
+      {"first", "", Guarantee::first_contact, {}, make_silent<Reports::nothing_from_a_start_that_crosses>},
+      elementary_test_named("exact"), true);
+}
+
+// A row that promises the first contact reports one that nobody could decide, and not those after it.
+TEST(KnownStarts, NeedAnswersWithoutAnythingUndecided) {
+  expect_starts_right({"one", "", Guarantee::first_contact, {}, make_silent<Reports::one_contact>},
+                      kUndecided);
+}
+
+}  // namespace
+}  // namespace cscd::bench
