@@ -143,6 +143,9 @@ class FclDetector : public Detector {
 }  // namespace
 
 Prepared make_fcl(const Setup& setup) {
+  if (setup.exclusions != nullptr)
+    throw InputError(
+        "strategy fcl: brings its own elementary test and cannot leave pairs out; choose another strategy");
   if (setup.first_only)
     throw InputError(
         "strategy fcl: tests pairs by itself and finds all contacts; do not ask it for the first alone");

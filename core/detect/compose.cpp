@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "core/base/stage_clock.h"
+#include "core/detect/exclusions.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
 #include "core/detect/no_contact_before.h"
@@ -37,6 +39,7 @@ class PairTester : public TrianglePairSink {
       : mesh_(setup.mesh),
         test_(setup.elementary),
         first_only_(setup.first_only),
+        exclusions_(setup.exclusions),
         options_(std::move(options)),
         clock_(clock) {}
 
@@ -58,8 +61,9 @@ class PairTester : public TrianglePairSink {
   const PairCounts& counts() const { return counts_; }
 
  private:
-  void take(const std::vector<TrianglePair>& block) override {
+  void take(const std::vector<TrianglePair>& whole) override {
     clock_.enter(Stage::elementary);
+    const std::vector<TrianglePair>& block = exclusions_ != nullptr ? without_excluded(whole) : whole;
     if (options_.assignment) {
       assigned_.clear();
       options_.assignment->append(block, assigned_);
@@ -72,6 +76,13 @@ class PairTester : public TrianglePairSink {
       test_carried();
     }
     clock_.enter(Stage::traversal);
+  }
+
+  const std::vector<TrianglePair>& without_excluded(const std::vector<TrianglePair>& block) {
+    kept_.clear();
+    std::ranges::copy_if(block, std::back_inserter(kept_),
+                         [&](const TrianglePair& pair) { return !exclusions_->excludes(mesh_, pair); });
+    return kept_;
   }
 
   // Tests triangle pairs in the order of the times before which they certainly do not touch, a few at a time,
@@ -141,7 +152,7 @@ class PairTester : public TrianglePairSink {
   void test_left() {
     vertex_faces_.clear(), edge_edges_.clear();
     for (const FeaturePair& pair : left_) {
-      if (!met_.insert(pair)) continue;
+      if (!met_.insert(pair) || (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair))) continue;
       if (pair.kind == FeaturePair::Kind::vertex_face)
         vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
       else
@@ -164,11 +175,13 @@ class PairTester : public TrianglePairSink {
   const TriangleMesh& mesh_;
   const ElementaryTest& test_;
   const bool first_only_;
+  const Exclusions* const exclusions_;
   PairOptions options_;
   StageClock& clock_;
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   PairCounts counts_;
+  std::vector<TrianglePair> kept_;        // the block without what is excluded
   std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one pair may be carried repeatedly
   std::vector<FeaturePair> assigned_;     // to the block's triangle pairs
   std::vector<FeaturePair> left_;         // feature pairs that the filter could not prove apart

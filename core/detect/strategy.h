@@ -12,6 +12,8 @@
 
 namespace cscd {
 
+class Exclusions;
+
 // What a strategy promises (core/soundness.md). `complete`: on every input, every feature pair in contact is
 // passed on to the elementary test. `first_contact`: on a closed, consistently oriented mesh with an embedded
 // start, at least one feature pair that attains the earliest contact time is passed on; later contacts may be
@@ -35,6 +37,10 @@ struct Setup {
   // elementary test is right in both its answers. Later contacts are reported by chance; keep_first()
   // (contact.h) drops them. A strategy that brings its own elementary test throws InputError.
   bool first_only = false;
+  // Feature pairs that do not count as contacts; null for none. They are dropped before they are tested. The
+  // guarantee `first_contact` is void with exclusions, because the surface may then pass through itself. A
+  // strategy that brings its own elementary test throws InputError.
+  const Exclusions* exclusions = nullptr;
 };
 
 // Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).

@@ -1,11 +1,21 @@
 #include "core/hierarchy/bounds.h"
 
+#include "core/base/rounding.h"
+
 namespace cscd {
 
 namespace {
 // Number of nodes whose bounds are computed in one pass: few enough to be still in the
 // cache when their parents need them.
 constexpr NodeIndex kNodesAtOnce = 1024;
+// Directions are at most sqrt(2) long. The sums are rounded outward, as the bounds are.
+template <class Volume>
+Volume thickened(Volume volume, double margin) {
+  for (float& bound : volume.at_least)
+    bound = float_below_sum(static_cast<double>(bound), -1.4142135623731 * margin);
+  return volume;
+}
+
 }  // namespace
 
 template <class Volume>
@@ -19,8 +29,10 @@ SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree)
 }
 
 template <class Volume>
-void SweptVolumes<Volume>::refit(const Motion& motion) {
+void SweptVolumes<Volume>::refit(const Motion& motion, double margin) {
   swept_vertex_bounds(motion, std::span(vertex_));
+  if (margin > 0)
+    for (Volume& volume : vertex_) volume = thickened(volume, margin);
   Volume* const node = node_.data();
   auto leaf = leaves_.begin();
   auto inner = inner_.begin();

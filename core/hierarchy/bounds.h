@@ -18,8 +18,9 @@ class SweptVolumes {
   SweptVolumes(const TriangleMesh& mesh, const Tree& tree);
 
   // Computes the bounds of all vertices' paths, then of the nodes from the leaves upwards. O(vertices +
-  // triangles); allocates nothing.
-  void refit(const Motion& motion);
+  // triangles); allocates nothing. With a margin, every path is as thick as a ball of that radius; the margin
+  // is at least 0 and finite.
+  void refit(const Motion& motion, double margin = 0);
 
   const Volume& operator[](NodeIndex node) const { return node_[static_cast<std::size_t>(node)]; }
 

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/detect/contact.h"
+#include "core/detect/culler.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd {
+
+// Which vertices may collide with which: what a simulator leaves out of its collisions.
+//
+// Two features may collide if *some* vertex of one may collide with *some* vertex of the other. So a feature
+// pair is excluded only if all its pairs of vertices are, and so is a pair of triangles. A pair of triangles
+// can also be excluded by itself; its feature pairs are then excluded unless other triangles carry them too.
+class Exclusions {
+ public:
+  // Whether nothing is excluded.
+  bool empty() const;
+
+  // Vertices of obstacles, [vertices], do not collide with each other. Throws InputError for a wrong size.
+  void set_obstacles(const TriangleMesh& mesh, std::vector<bool> obstacle);
+  // Vertices whose groups ignore each other do not collide; a group may ignore itself. `group`, [vertices],
+  // holds numbers from 0. Throws InputError for a wrong size, and for a pair with a group that no vertex has.
+  void set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
+                  std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
+  // Excludes pairs of vertices, and pairs of triangles. Throws InputError for an index out of range.
+  void exclude(const TriangleMesh& mesh, std::span<const std::pair<VertexId, VertexId>> pairs);
+  void exclude(const TriangleMesh& mesh, std::span<const std::pair<TriangleId, TriangleId>> pairs);
+  // Excludes pairs of vertices that a path of at most `rings` edges joins.
+  void exclude_rings(const TriangleMesh& mesh, int rings);
+  // Excludes pairs of vertices that are nearer to each other than `distance` in the pose `reference`.
+  void exclude_near(std::span<const Vec3> reference, double distance);
+
+  bool excludes(VertexId u, VertexId v) const;
+  bool excludes(const TriangleMesh& mesh, const TrianglePair& pair) const;
+  // Looks at pairs of vertices alone.
+  bool excludes(const TriangleMesh& mesh, const FeaturePair& pair) const;
+
+ private:
+  std::vector<bool> obstacle_;
+  std::vector<std::int32_t> group_;
+  std::int32_t groups_ = 0;
+  std::vector<bool> ignores_;                  // [groups][groups]
+  std::vector<std::uint64_t> vertex_pairs_;    // sorted; the smaller index in the upper half
+  std::vector<std::uint64_t> triangle_pairs_;  // sorted; the smaller index in the upper half
+  std::vector<Vec3> reference_;
+  double near_ = 0;
+};
+
+}  // namespace cscd

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/stopwatch.h"
+#include "core/detect/contact.h"
+#include "core/detect/detector.h"
+#include "core/detect/start/crossings.h"
+#include "core/detect/start/pose_crossings.h"
+#include "core/detect/start/rest_crossings.h"
+#include "core/detect/strategy.h"
+
+namespace cscd {
+
+// The answer to one step. Contacts and crossings that crossings at rest explain (see RestCrossings) are left
+// out of everything but the two counts that say so.
+struct StepAnswer {
+  ContactSet found;                    // sorted
+  Crossings start;                     // pairs of triangles that cross at the start
+  std::size_t rest_pairs = 0;          // of the pairs that cross at rest, how many cross at this start
+  std::size_t rest_contacts = 0;       // contacts left out, as a pair that crosses at rest carries them
+  bool starts_embedded = true;         // nothing crosses at the start, pairs that cross at rest included
+  const Strategy* strategy = nullptr;  // that answered
+  bool proven = false;  // contacts and time are right by the strategy's guarantee and the elementary test
+  Report report;
+  double embedding_ms = 0;  // what it took to know which triangles cross at the start
+  double wall_ms = 0;       // from the question to the answer
+
+  std::optional<double> time() const;  // of the earliest decided contact
+};
+
+struct SessionOptions {
+  bool first = false;                // only the contacts of the earliest time
+  bool unproven = false;             // no stand-in where the strategy's guarantee is void
+  bool keep_rest_crossings = false;  // nothing is left out
+  // Says nothing of crossings at starts: `start` stays empty and `starts_embedded` true. For complete
+  // strategies, whose contacts are right from any start.
+  bool ignore_starts = false;
+};
+
+// Answers one step after another of one surface, from any start. A strategy that promises the first contact
+// of an embedded start answers where the start is embedded, and a complete strategy stands in for it where it
+// is not. What one step proves says which triangles cross at the start of the next (see PoseCrossings), so
+// steps are best asked for in the order of the motion.
+class Session {
+ public:
+  // Prepares the strategy. `setup.first_only` is not looked at. With exclusions, give a complete strategy.
+  // `rest`, [vertices], is the pose whose crossings are left out. Throws InputError, with `name` before the
+  // text, where the set-up lacks what the strategy needs and where too many triangles cross at rest. The
+  // strategies, and what `setup` refers to, must outlive the session.
+  Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& stand_in,
+          std::span<const Vec3> rest, const SessionOptions& options);
+
+  // Answers one step. Positions have to be finite. `bones` holds the skeleton at both ends; null for a mesh
+  // without a rig. The answer is written into `out`, whose memory is used again.
+  void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+
+  // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
+  double preparation_ms() const { return preparation_ms_ + rest_ms_; }
+  // The triangles that cross at rest. They are left out of answers unless the options keep them.
+  const Crossings& rest_crossings() const { return rest_; }
+  int threads() const { return main_.threads; }
+
+ private:
+  struct Row {
+    const Strategy* strategy = nullptr;
+    std::unique_ptr<Detector> detector;
+    int threads = 1;
+  };
+  Row make(const Strategy& strategy) const;
+  Row& stand_in();
+  // Whether only the contacts of the earliest time are asked of strategies.
+  bool first_only() const { return options_.first && left_out_.empty(); }
+  // Whether the contacts of a step say what crosses at its end.
+  bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
+  // Whether the answers of a row hold all contacts of a motion whose start is embedded or not.
+  bool finds_all(const Row& row) const;
+  // Finds from nothing which triangles cross in a pose.
+  void find_crossings(std::span<const Vec3> pose);
+  void look_at_start(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  void know_start(std::span<const Vec3> start, const Rig::Interval* bones);
+  void follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
+  void know_end(const Motion& motion, const Rig::Interval* bones, const Row& row, const ContactSet& found);
+  const Row& ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  std::size_t leave_out(ContactSet& found) const;
+
+  Setup setup_;
+  const Strategy& stand_in_strategy_;
+  SessionOptions options_;
+  Row main_;
+  std::optional<Row> stand_in_;
+  double preparation_ms_ = 0;  // of the strategy
+  PoseCrossings poses_;
+  double searched_ms_ = 0;  // that find_crossings() took so far
+  double rest_ms_ = 0;      // that it took for the pose at rest
+  bool searches_fast_ = false;
+  Crossings rest_;
+  RestCrossings left_out_;
+  std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
+  std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
+  ContactSet touched_;             // on the way to a start
+};
+
+}  // namespace cscd
