@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/detect/candidates.h"
+#include "core/session/candidates.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"
 #include "core/elementary/catalogue.h"

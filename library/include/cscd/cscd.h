@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#if defined(CSCD_SHARED) && defined(__GNUC__)
+#if defined(__GNUC__)
 #define CSCD_EXPORT __attribute__((visibility("default")))
 #else
 #define CSCD_EXPORT

@@ -1,4 +1,4 @@
-#include "core/detect/candidates.h"
+#include "core/session/candidates.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,0 +1,119 @@
+"""Tests of the Python module; run by ctest as python_module."""
+import os
+import threading
+import time
+import unittest
+
+import cscd
+import numpy as np
+
+
+def tetrahedra():
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], dtype=np.int32)
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.3, 0.3, 1]])
+    return np.vstack([faces, faces + 4]), np.vstack([corners, corners + [0, 0, 2]])
+
+
+def fallen(before, by):
+    after = before.copy()
+    after[4:, 2] -= by
+    return after
+
+
+class SelfCollision(unittest.TestCase):
+    def setUp(self):
+        self.faces, self.before = tetrahedra()
+        self.body = cscd.SelfCollision(self.faces, self.before)
+
+    def test_a_free_step(self):
+        after = fallen(self.before, 0.5)
+        self.assertTrue(self.body.is_free(self.before, after))
+        answer = self.body.first_contact(self.before, after)
+        self.assertTrue(answer.free)
+        self.assertIsNone(answer.time)
+        self.assertEqual(answer.points.shape, (0, 3))
+        self.assertEqual(answer.start_crossings.shape, (0, 2))
+        self.assertEqual(self.body.largest_step(self.before, after), 1)
+
+    def test_a_contact(self):
+        answer = self.body.all_contacts(self.before, fallen(self.before, 2))
+        self.assertEqual(answer.time, 0.5)
+        self.assertTrue(np.all(np.diff(answer.times) >= 0))
+        contact = answer.contacts[0]
+        self.assertEqual(list(contact.vertices), list(answer.vertices[0]))
+        np.testing.assert_allclose(contact.point, [0.3, 0.3, 1])
+        np.testing.assert_allclose(np.linalg.norm(answer.normals[0]), 1)
+        self.assertLess(contact.normal_velocity, 0)
+        step = self.body.largest_step(self.before, fallen(self.before, 2), safety=1)
+        self.assertTrue(0.4999 < step < 0.5)
+
+    def test_a_start_that_crosses(self):
+        inside = fallen(self.before, 1.5)
+        answer = self.body.first_contact(inside, inside)
+        self.assertTrue(answer.intersects_at_start)
+        self.assertFalse(answer.free)
+        self.assertGreater(len(answer.start_crossings), 0)
+        self.assertEqual(self.body.largest_step(inside, inside), 0)
+
+    def test_other_layouts_and_types_are_converted(self):
+        after = fallen(self.before, 2)
+        for start, end in [(np.asfortranarray(self.before), after), (self.before.astype(np.float32), after),
+                           (self.before.tolist(), after.tolist())]:
+            self.assertEqual(self.body.first_contact(start, end).time, 0.5)
+
+    def test_exclusions(self):
+        group = [0] * 4 + [1] * 4
+        apart = cscd.Exclusions(group=group, groups_that_ignore_each_other=[(0, 1)])
+        body = cscd.SelfCollision(self.faces, self.before, exclude=apart)
+        self.assertTrue(body.is_free(self.before, fallen(self.before, 2)))
+
+    def test_candidates(self):
+        vertex_face, edge_edge = self.body.candidates(self.before, self.before, 1.1)
+        self.assertIn([3, 4], vertex_face.tolist())
+        self.assertEqual(edge_edge.shape[1], 4)
+        self.assertNotIn([3, 4], self.body.candidates(self.before, self.before, 0.5)[0].tolist())
+
+    def test_wrong_input_is_a_value_error(self):
+        nan = self.before.copy()
+        nan[2, 1] = np.nan
+        for call, text in [(lambda: self.body.is_free(nan, self.before), "start positions"),
+                           (lambda: self.body.is_free(self.before[:3], self.before), "3 rows for 8 vertices"),
+                           (lambda: cscd.SelfCollision(self.faces + 5, self.before), "faces"),
+                           (lambda: self.body.largest_step(self.before, self.before, safety=2), "safety")]:
+            with self.assertRaisesRegex(ValueError, text):
+                call()
+
+    def test_objects_work_in_several_threads_at_once(self):
+        after, times = fallen(self.before, 2), []
+
+        def work():
+            body = cscd.SelfCollision(self.faces, self.before)
+            for _ in range(200):
+                times.append(body.first_contact(self.before, after).time)
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(times, [0.5] * 800)
+
+
+@unittest.skipUnless(os.environ.get("CSCD_PROGRAM"), "CSCD_PROGRAM does not name the program")
+class Read(unittest.TestCase):
+    def test_frames_of_a_scene(self):
+        faces, frames = cscd.read("urchin_contact", program=os.environ["CSCD_PROGRAM"])
+        self.assertEqual(frames.shape[2], 3)
+        body = cscd.SelfCollision(faces, frames[0])
+        begin = time.perf_counter()
+        answers = [body.first_contact(a, b) for a, b in zip(frames[:-1], frames[1:])]
+        self.assertLess((time.perf_counter() - begin) / len(answers), 0.5)
+        self.assertFalse(any(answer.intersects_at_start for answer in answers))
+
+    def test_what_cannot_be_read(self):
+        with self.assertRaisesRegex(ValueError, "nothing.glb"):
+            cscd.read("nothing.glb", program=os.environ["CSCD_PROGRAM"])
+
+
+if __name__ == "__main__":
+    unittest.main()
