@@ -27,6 +27,7 @@ int run(int argc, char** argv) {
       "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
       "  cscd list                            what there is\n"
       "  cscd query rope                      where and when does it touch itself?\n"
+      "  cscd view rope                       a page that shows it\n"
       "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
       "  cscd tables r.json --out tables      the paper's tables, published beside measured\n"
       "  cscd help query                      what a command does and takes\n\n"
@@ -39,6 +40,7 @@ int run(int argc, char** argv) {
                        "show the version, the build and the libraries");
   cscd::bench::add_list(app);
   cscd::bench::add_query(app);
+  cscd::bench::add_view(app);
   cscd::bench::add_inspect(app);
   cscd::bench::add_elementary(app);
   cscd::bench::add_export(app);

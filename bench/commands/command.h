@@ -16,6 +16,7 @@ inline constexpr ExitStatus kVerificationFailed{1};
 inline constexpr ExitStatus kContactFound{3};  // query --fail-on-contact
 
 void add_query(CLI::App& app);
+void add_view(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_elementary(CLI::App& app);
 void add_run(CLI::App& app);

@@ -10,10 +10,9 @@
 #include "bench/answer/answer.h"
 #include "bench/answer/answer_json.h"
 #include "bench/answer/answer_summary.h"
+#include "bench/commands/answer_options.h"
 #include "bench/commands/command.h"
-#include "bench/commands/model_options.h"
 #include "bench/input/input.h"
-#include "bench/input/watchdog.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
 #include "bench/rows/catalogue.h"
@@ -26,25 +25,10 @@ using nlohmann::json;
 
 constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all are asked for
 
-struct QueryOptions {
-  std::string input, strategy, elementary = "filtered_exact", frames, output, start_pairs;
+struct QueryOptions : AnswerRequest {
+  std::string strategy, output, start_pairs;
   bool force = false, fail_on_contact = false;
-  AnswerOptions answers;
-  std::optional<double> interval_seconds;
-  int threads = 1;
-  ModelOptions model;
 };
-
-// The seconds that one interval of a model file may take, unless the user sets a limit. Scenes and point
-// caches were made for this program and have no limit.
-constexpr double kModelIntervalSeconds = 60;
-
-// The time up to which pairs are looked at has to be right.
-void require_right_times(const ElementaryTest& elementary) {
-  if (!elementary.apart_is_proof || !elementary.contact_is_proof)
-    throw InputError("--first: elementary test '" + std::string(elementary.name) +
-                     "' may be wrong about what touches; choose filtered_exact or exact");
-}
 
 std::size_t most_start_pairs(const std::string& text) {
   if (text.empty()) return kStartPairs;
@@ -77,10 +61,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   input.use_bones = !options.strategy.empty() || strategy.needs.bones;
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
-  const double patience = options.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
-  Watchdog watchdog(patience, "cscd: " + options.input +
-                                  ": an interval, or the preparation, took more than " +
-                                  json(patience).dump() + " s; raise --interval-seconds to wait longer");
+  Watchdog watchdog = watchdog_of(options, input);
   Answerer answerer(input, strategy, elementary, options.answers);
   const SurfaceNames names(input);
   AnswerSummary summary;
@@ -148,8 +129,7 @@ ClipAnswer answer_all_clips(QueryOptions options, bool with_json) {
 }
 
 void query(QueryOptions options) {
-  const ElementaryTest& elementary = elementary_test_named(options.elementary);
-  if (options.answers.first) require_right_times(elementary);
+  require_sound(options);
   if (!options.strategy.empty()) strategy_named(options.strategy);
   most_start_pairs(options.start_pairs);
   if (options.output.empty() && standard_output_is_read_by_a_program()) options.output = "-";
@@ -191,31 +171,16 @@ void add_query(CLI::App& app) {
       "answers that interval instead (--unproven: do not). Whoever wants the earliest contact and no later "
       "ones\n"
       "has it sooner with --first.");
-  command->add_option("input", options->input, kInputHelp)->required();
+  add_answer_options(*command, *options);
   command->add_option("--strategy", options->strategy,
                       "culling strategy (cscd list); without it, the best that the input allows");
-  command->add_option("--elementary", options->elementary, "elementary test (cscd list)")
-      ->capture_default_str();
-  command->add_option("--frames", options->frames, "A:B, the intervals between frames A and B; default all");
   command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
-  command->add_flag("--first", options->answers.first,
-                    "only the contacts of the earliest time of each interval");
-  command->add_flag("--unproven", options->answers.unproven,
-                    "run the strategy even where its guarantee is void");
-  command->add_flag("--keep-rest-crossings", options->answers.keep_rest_crossings,
-                    "count pairs of triangles that cross at rest like all others");
   command->add_option(
       "--start-pairs", options->start_pairs,
       "how many of the pairs of triangles that cross at a start are listed, or all; default 1000");
   command->add_flag("--fail-on-contact", options->fail_on_contact,
                     "exit with status 3 when anything touches or crosses");
-  command
-      ->add_option("--interval-seconds", options->interval_seconds,
-                   "seconds after which an interval is given up; default 60 for model files, else none")
-      ->check(CLI::Range(0.01, 1e6));
-  add_threads_option(*command, options->threads);
-  add_model_options(*command, options->model);
   command->callback([options] { query(*options); });
 }
 

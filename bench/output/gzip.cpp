@@ -8,7 +8,8 @@
 namespace cscd::bench {
 namespace {
 
-constexpr int kGzipWindow = 15 + 16;  // zlib's way to ask for a gzip header round the largest window
+constexpr int kLargestWindow = 15;
+constexpr int kGzipWindow = kLargestWindow + 16;  // zlib's way to ask for a gzip header
 constexpr std::size_t kBlock = std::size_t{1} << 16;
 
 bool is_gzip(std::string_view bytes) {
@@ -22,13 +23,11 @@ z_stream stream_over(std::string_view bytes) {
   return stream;
 }
 
-}  // namespace
-
-std::string gzipped(std::string_view text) {
-  z_stream stream = stream_over(text);
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindow, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+std::string compressed(std::string_view bytes, int level, int window) {
+  z_stream stream = stream_over(bytes);
+  if (deflateInit2(&stream, level, Z_DEFLATED, window, 9, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::runtime_error("zlib cannot begin to compress");
-  std::string out(deflateBound(&stream, static_cast<uLong>(text.size())), '\0');
+  std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
   stream.next_out = reinterpret_cast<Bytef*>(out.data());
   stream.avail_out = static_cast<uInt>(out.size());
   const int state = deflate(&stream, Z_FINISH);
@@ -36,6 +35,16 @@ std::string gzipped(std::string_view text) {
   deflateEnd(&stream);
   if (state != Z_STREAM_END) throw std::runtime_error("zlib cannot compress");
   return out;
+}
+
+}  // namespace
+
+std::string gzipped(std::string_view text) {
+  return compressed(text, Z_BEST_COMPRESSION, kGzipWindow);
+}
+
+std::string deflated(std::string_view bytes) {
+  return compressed(bytes, Z_DEFAULT_COMPRESSION, kLargestWindow);
 }
 
 std::string without_gzip(std::string bytes, const std::string& where, std::size_t most_bytes) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "bench/input/input.h"
+#include "bench/view/position_coder.h"
+#include "bench/view/sections.h"
+
+namespace cscd::bench {
+
+// Collects the moving surface for a page: positions on a grid, bones, and the ends of intervals that lead to
+// a prediction instead of the next frame.
+class ClipRecording {
+ public:
+  // Reads all frames of the range once, for the size of the grid. Throws InputError if a page of so many
+  // frames would be too large for a browser.
+  ClipRecording(Input& input, const IntervalRange& range);
+
+  // Adds frames, in order: range.first to range.last.
+  void add_frame(const scenes::FrameView& frame);
+  // Adds the predicted end of the interval that begins at the frame added last.
+  void add_predicted_end(std::span<const Vec3> end);
+
+  // Adds the arrays and returns what else the page has to know: counts, grid, and the time of every frame.
+  nlohmann::json write(Sections& sections) const;
+
+ private:
+  const Input& input_;
+  IntervalRange range_;
+  ViewGrid grid_;
+  PositionCoder frames_{grid_}, ends_{grid_};
+  std::vector<float> bones_;  // [frames, bones, head and tail, 3]
+  std::size_t added_ = 0;
+  std::vector<std::uint32_t> interval_of_end_;  // counted from the range's first
+};
+
+}  // namespace cscd::bench

@@ -1,0 +1,173 @@
+#include "bench/view/recording.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+void append(const Vec3& v, std::vector<float>& out) {
+  for (int axis = 0; axis < 3; ++axis) out.push_back(static_cast<float>(v[axis]));
+}
+
+template <class T>
+void add(Sections& sections, const std::string& name, const std::vector<T>& values) {
+  sections.add(name, std::span<const T>(values));
+}
+
+std::uint32_t count(std::uint64_t number) {
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(number, std::numeric_limits<std::uint32_t>::max()));
+}
+
+}  // namespace
+
+std::uint16_t TextTable::number_of(const std::string& text) {
+  if (texts_.size() > std::numeric_limits<std::uint16_t>::max())
+    throw InputError("the surface has more than 65536 names of bones and parts; choose a --component");
+  const auto [known, added] = known_.try_emplace(text, static_cast<std::uint16_t>(texts_.size()));
+  if (added) texts_.push_back(text);
+  return known->second;
+}
+
+StrategyRecording::StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
+                                     const ElementaryTest& elementary)
+    : input_(input), names_(names), strategy_(strategy), prepared_(strategy.make(input.setup(elementary))) {
+  if (prepared_.preparation.atomic_clusters > std::numeric_limits<std::uint16_t>::max())
+    throw InputError("strategy " + std::string(strategy.name) +
+                     ": made more than 65535 clusters, more than a page shows; choose a --component");
+}
+
+void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInterval& interval,
+                            TextTable& places) {
+  summary_.add(answer, names_);
+  const std::string by(answer.strategy->name);
+  auto known = std::find(answered_by_.begin(), answered_by_.end(), by);
+  if (known == answered_by_.end()) known = answered_by_.insert(known, by);
+  answerer_.push_back(static_cast<std::uint8_t>(known - answered_by_.begin()));
+  verdict_.push_back(static_cast<std::uint8_t>(answer.verdict));
+  proven_.push_back(answer.proven);
+  time_.push_back(answer.time() ? static_cast<float>(*answer.time()) : kNone);
+  milliseconds_.push_back(static_cast<float>(answer.report.ms.total()));
+  start_pairs_.push_back(count(answer.start.total));
+  pairs_.push_back(count(answer.report.cull.pctp));
+  tests_.push_back(count(answer.report.pairs.elementary_tests));
+
+  std::uint32_t contacts = 0, kept = 0;
+  for (const Contact& contact : answer.found.contacts) {
+    if (contact.verdict != Verdict::contact) continue;
+    ++contacts;
+    if (kept == kMostContacts) continue;
+    ++kept;
+    add_contact(contact, interval.motion, places);
+  }
+  contacts_.push_back(contacts);
+  kept_contacts_.push_back(kept);
+  undecided_.push_back(count(answer.found.contacts.size()) - contacts);
+  const std::size_t pairs = std::min(kMostStartPairs, answer.start.pairs.size());
+  for (std::size_t i = 0; i < pairs; ++i)
+    for (const TriangleId t : {answer.start.pairs[i].first, answer.start.pairs[i].second})
+      crossing_.push_back(static_cast<std::int32_t>(t));
+  kept_pairs_.push_back(count(pairs));
+  if (has_clusters()) add_view(interval);
+}
+
+void StrategyRecording::add_contact(const Contact& contact, const Motion& motion, TextTable& places) {
+  const bool face = contact.pair.kind == FeaturePair::Kind::vertex_face;
+  kind_.push_back(face ? 0 : 1);
+  contact_time_.push_back(static_cast<float>(contact.time));
+  const auto vertex = [&](VertexId v) { vertex_.push_back(static_cast<std::int32_t>(v)); };
+  if (face) {
+    vertex(VertexId{contact.pair.a});
+    for (const VertexId v : input_.mesh.corners(TriangleId{contact.pair.b})) vertex(v);
+  } else {
+    for (const std::int32_t edge : {contact.pair.a, contact.pair.b})
+      for (const VertexId v : input_.mesh.ends(EdgeId{edge})) vertex(v);
+  }
+  const ContactGeometry geometry = contact_geometry(input_.mesh, motion, contact.pair, contact.time);
+  append(geometry.point, point_);
+  append(geometry.normal.value_or(Vec3::Constant(kNone)), normal_);
+  speed_.push_back(geometry.relative_speed ? static_cast<float>(*geometry.relative_speed) : kNone);
+  for (const bool second : {false, true})
+    place_.push_back(places.number_of(names_.place_of(names_.triangle_of(contact.pair, second))));
+}
+
+// Asks the observers. A cluster goes by the first of its atomic clusters, so that it keeps its number from
+// one interval to the next.
+void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
+  ContactSet ignored;
+  const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
+  const Report report = prepared_.detector->detect(interval.motion, bones, ignored);
+  const RadialView view = prepared_.detector->radial_view();
+  clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
+
+  std::vector<std::uint8_t> positive((view.positive.size() + 7) / 8);
+  for (std::size_t t = 0; t < view.positive.size(); ++t)
+    if (view.positive[t]) positive[t / 8] = static_cast<std::uint8_t>(positive[t / 8] | 1U << t % 8);
+  last_positive_.resize(positive.size());
+  for (std::size_t i = 0; i < positive.size(); ++i)
+    positive_.push_back(static_cast<std::uint8_t>(positive[i] ^ last_positive_[i]));
+  last_positive_ = std::move(positive);
+
+  const std::vector<std::int32_t>& atomic = prepared_.preparation.atomic_cluster;
+  std::map<std::int32_t, std::uint16_t> first;  // of the atomic clusters that have a label
+  std::vector<std::int32_t> label(static_cast<std::size_t>(prepared_.preparation.atomic_clusters), -1);
+  for (std::size_t t = 0; t < atomic.size(); ++t) {
+    std::int32_t& known = label[static_cast<std::size_t>(atomic[t])];
+    if (known < 0) known = view.cluster[t];
+    if (known != view.cluster[t])
+      throw std::logic_error("an atomic cluster of " + std::string(strategy_.name) + " has two observers");
+  }
+  for (std::size_t a = 0; a < label.size(); ++a)
+    cluster_of_atomic_.push_back(first.try_emplace(label[a], static_cast<std::uint16_t>(a)).first->second);
+}
+
+json StrategyRecording::write(Sections& sections, const std::string& prefix, const Crossings& rest,
+                              bool left_out) const {
+  const auto put = [&](const char* name, const auto& values) { bench::add(sections, prefix + name, values); };
+  put("verdict", verdict_);
+  put("proven", proven_);
+  put("answerer", answerer_);
+  put("time", time_);
+  put("milliseconds", milliseconds_);
+  put("contacts", contacts_);
+  put("undecided", undecided_);
+  put("start_pairs", start_pairs_);
+  put("pairs", pairs_);
+  put("tests", tests_);
+  put("kept_contacts", kept_contacts_);
+  put("kept_pairs", kept_pairs_);
+  put("contact_kind", kind_);
+  put("contact_time", contact_time_);
+  put("contact_point", point_);
+  put("contact_normal", normal_);
+  put("contact_speed", speed_);
+  put("contact_vertex", vertex_);
+  put("contact_place", place_);
+  put("crossing", crossing_);
+  if (has_clusters()) {
+    std::vector<std::uint16_t> atomic(prepared_.preparation.atomic_cluster.begin(),
+                                      prepared_.preparation.atomic_cluster.end());
+    put("atomic", atomic);
+    put("cluster_of_atomic", cluster_of_atomic_);
+    put("positive", positive_);
+    put("clusters", clusters_);
+  }
+  return {{"name", strategy_.name},
+          {"guarantee", to_string(strategy_.guarantee)},
+          {"source", strategy_.source},
+          {"answered_by", answered_by_},
+          {"atomic_clusters", prepared_.preparation.atomic_clusters},
+          {"has_clusters", has_clusters()},
+          {"summary", summary_json(input_, summary_)},
+          {"text", summary_text(input_, names_, summary_, rest, left_out)}};
+}
+
+}  // namespace cscd::bench

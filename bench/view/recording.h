@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/answer/answer.h"
+#include "bench/answer/answer_summary.h"
+#include "bench/answer/surface_names.h"
+#include "bench/input/input.h"
+#include "bench/view/sections.h"
+#include "core/detect/contact_geometry.h"
+
+namespace cscd::bench {
+
+// Texts with numbers: equal texts have one number.
+class TextTable {
+ public:
+  std::uint16_t number_of(const std::string& text);  // throws InputError for more than 2^16 texts
+  const std::vector<std::string>& texts() const { return texts_; }
+
+ private:
+  std::map<std::string, std::uint16_t> known_;
+  std::vector<std::string> texts_;
+};
+
+// Collects what a page shows of one strategy: its answer to each interval, and how its observers saw the
+// surface. All arrays are in the order of the intervals that were added.
+class StrategyRecording {
+ public:
+  // Contacts and crossing pairs of triangles that are kept of one interval, the earliest first. The page says
+  // how many there are in all.
+  static constexpr std::size_t kMostContacts = 4000, kMostStartPairs = 4000;
+
+  // Prepares the strategy once more, to ask its observers: an Answerer may have another strategy answer.
+  StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
+                    const ElementaryTest& elementary);
+
+  void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
+  const AnswerSummary& summary() const { return summary_; }
+  bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
+
+  // Adds all arrays to `sections`, their names behind `prefix`, and returns what else the page has to know.
+  nlohmann::json write(Sections& sections, const std::string& prefix, const Crossings& rest,
+                       bool left_out) const;
+
+ private:
+  void add_contact(const Contact& contact, const Motion& motion, TextTable& places);
+  void add_view(const scenes::ClipInterval& interval);
+
+  const Input& input_;
+  const SurfaceNames& names_;
+  const Strategy& strategy_;
+  Prepared prepared_;
+  AnswerSummary summary_;
+  std::vector<std::string> answered_by_;
+
+  // [intervals]
+  std::vector<std::uint8_t> verdict_, proven_, answerer_;
+  std::vector<float> time_, milliseconds_;
+  std::vector<std::uint32_t> contacts_, undecided_, start_pairs_, pairs_, tests_, clusters_, kept_contacts_,
+      kept_pairs_;
+  // [contacts], several numbers each
+  std::vector<std::uint8_t> kind_;
+  std::vector<float> contact_time_, point_, normal_, speed_;
+  std::vector<std::int32_t> vertex_, crossing_;
+  std::vector<std::uint16_t> place_;
+  // [intervals][triangles], as differences from the interval before
+  std::vector<std::uint8_t> positive_, last_positive_;
+  std::vector<std::uint16_t> cluster_of_atomic_;  // [intervals][atomic clusters]
+};
+
+}  // namespace cscd::bench

@@ -1,0 +1,104 @@
+// Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one.
+
+const TYPES = {
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i32: Int32Array, f32: Float32Array,
+};
+
+function fromBase64(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}
+
+async function inflate(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
+}
+
+// Undoes PositionCoder (bench/view/position_coder.h). Returns [frames][3][vertices] places on the grid.
+function decodePlaces(bytes, frames, vertices) {
+  const n = 3 * vertices;
+  const places = new Uint16Array(frames * n);
+  for (let f = 0, at = 0; f < frames; ++f) {
+    const predictor = bytes[at++];
+    const low = at, high = at + n, here = f * n, last = here - n, older = last - n;
+    at += 2 * n;
+    let miss = 0;
+    for (let i = 0; i < n; ++i) {
+      const coded = bytes[low + i] | (bytes[high + i] << 8);
+      miss += (coded >>> 1) ^ -(coded & 1);
+      const prediction = predictor === 0 ? 0 : predictor === 1 ? places[last + i] : 2 * places[last + i] - places[older + i];
+      places[here + i] = prediction + miss;  // modulo 2^16
+    }
+  }
+  return places;
+}
+
+// Bits and clusters come as differences from the interval before.
+function undoDifferences(bytes, perInterval) {
+  for (let i = perInterval; i < bytes.length; ++i) bytes[i] ^= bytes[i - perInterval];
+  return bytes;
+}
+
+function offsets(counts) {
+  const out = new Uint32Array(counts.length + 1);
+  for (let i = 0; i < counts.length; ++i) out[i + 1] = out[i] + counts[i];
+  return out;
+}
+
+function strategyOf(row, arrays, prefix, triangles) {
+  const strategy = { ...row };
+  for (const [name, values] of Object.entries(arrays))
+    if (name.startsWith(prefix)) strategy[name.slice(prefix.length)] = values;
+  strategy.contactOffset = offsets(strategy.kept_contacts);
+  strategy.crossingOffset = offsets(strategy.kept_pairs);
+  if (row.has_clusters) undoDifferences(strategy.positive, Math.ceil(triangles / 8));
+  return strategy;
+}
+
+// Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
+// origin: `toView` scales a point of the scene.
+export async function loadRecording() {
+  const text = document.getElementById("header");
+  const packed = document.getElementById("arrays");
+  if (!text || !packed) throw new Error("this page holds no recording; write one with: cscd view INPUT");
+  const header = JSON.parse(text.textContent);
+  if (header.schema !== "cscd.view/1") throw new Error(`this page cannot show a recording of the form ${header.schema}`);
+  const bytes = fromBase64(packed.textContent);
+  packed.remove();
+  const arrays = {};
+  await Promise.all(header.sections.map(async (section) => {
+    const raw = await inflate(bytes.subarray(section.offset, section.offset + section.bytes));
+    if (raw.byteLength !== section.raw) throw new Error(`the array ${section.name} is damaged`);
+    arrays[section.name] = new TYPES[section.type](raw);
+  }));
+
+  const { clip } = header;
+  const intervals = clip.frames - 1;
+  const places = decodePlaces(arrays.positions, clip.frames, clip.vertices);
+  const ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
+  const endOfInterval = new Map(Array.from(arrays.interval_of_end, (interval, i) => [interval, i]));
+  const side = clip.grid.step * 65535;
+  const middle = [0, 0, 0];  // of the first and the last place that occur, on the grid
+  for (let axis = 0; axis < 3; ++axis) {
+    let low = 65535, high = 0;
+    for (let f = 0; f < clip.frames; ++f)
+      for (let v = 0, at = (3 * f + axis) * clip.vertices; v < clip.vertices; ++v, ++at) {
+        if (places[at] < low) low = places[at];
+        if (places[at] > high) high = places[at];
+      }
+    middle[axis] = (low + high) / 2 / 65535;
+  }
+  return {
+    header, clip, intervals, places, ends, endOfInterval, middle,
+    texts: header.texts,
+    corners: arrays.corners,
+    place: arrays.place,
+    part: arrays.part,
+    bones: arrays.bones,
+    strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
+    toView: (x, axis) => (x - clip.grid.origin[axis]) / side - middle[axis],
+  };
+}

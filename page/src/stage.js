@@ -1,0 +1,326 @@
+// The canvas: one surface, seen by one camera, in a pane for each strategy that is shown; marks of contacts; and a small
+// view of the whole surface while the camera is near.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
+import { BLUE, PINK, RED, YELLOW } from "./palette.js";
+import { Surface } from "./surface.js";
+
+THREE.ColorManagement.enabled = false;  // colours are given as the screen shows them
+
+const DOT_VERTEX = /* glsl */ `
+  uniform float size;
+  in float weight;
+  out float vWeight;
+  void main() {
+    vWeight = weight;
+    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+    gl_PointSize = size * (0.6 + 0.4 * weight);
+  }`;
+const DOT_FRAGMENT = /* glsl */ `
+  precision highp float;
+  uniform vec3 colour;
+  in float vWeight;
+  out vec4 outColour;
+  void main() {
+    float r = 2.0 * length(gl_PointCoord - 0.5);
+    float edge = fwidth(r);
+    float alpha = 1.0 - smoothstep(1.0 - edge, 1.0, r);
+    if (alpha <= 0.0) discard;
+    float inside = 1.0 - smoothstep(0.66 - edge, 0.66, r);
+    outColour = vec4(mix(vec3(1.0), colour, inside), alpha * (0.55 + 0.45 * vWeight));
+  }`;
+
+function dots(colour, size) {
+  const material = new THREE.ShaderMaterial({
+    glslVersion: THREE.GLSL3, vertexShader: DOT_VERTEX, fragmentShader: DOT_FRAGMENT, transparent: true, depthTest: false,
+    uniforms: { size: { value: size }, colour: { value: new THREE.Color(colour) } },
+  });
+  const points = new THREE.Points(new THREE.BufferGeometry(), material);
+  points.frustumCulled = false;
+  points.renderOrder = 5;
+  points.visible = false;
+  return points;
+}
+
+function lines(colour, width, { hidden = false, opacity = 1 } = {}) {
+  const material = new LineMaterial({ color: colour, linewidth: width, transparent: true, opacity, depthTest: hidden });
+  if (hidden) {
+    material.polygonOffset = true;
+    material.polygonOffsetFactor = -4;
+  }
+  const made = new LineSegments2(new LineSegmentsGeometry(), material);
+  made.frustumCulled = false;
+  made.renderOrder = 4;
+  made.visible = false;
+  return made;
+}
+
+function setLines(object, numbers) {
+  object.visible = numbers.length > 0;
+  if (!object.visible) return;
+  object.geometry.dispose();
+  object.geometry = new LineSegmentsGeometry();
+  object.geometry.setPositions(numbers);
+}
+
+function setDots(object, numbers, weights) {
+  object.visible = numbers.length > 0;
+  object.geometry.dispose();
+  object.geometry = new THREE.BufferGeometry();
+  object.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(numbers), 3));
+  object.geometry.setAttribute("weight", new THREE.BufferAttribute(Float32Array.from(weights), 1));
+}
+
+// The marks of one strategy in the shown interval.
+export class Marks {
+  constructor() {
+    this.group = new THREE.Group();
+    this.contacts = dots(BLUE, 13);
+    this.chosen = dots(BLUE, 20);
+    this.others = lines("#20303c", 1.2, { opacity: 0.75 });
+    this.normals = lines(BLUE, 2);
+    this.first = lines(BLUE, 4);
+    this.second = lines(PINK, 4);
+    this.crossings = lines(RED, 3);
+    this.crossingGlow = lines("#7a1f00", 5, { opacity: 0.35 });
+    this.group.add(this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
+  }
+  setContacts(numbers, weights) { setDots(this.contacts, numbers, weights); }
+  setChosen(numbers) { setDots(this.chosen, numbers, numbers.length ? [1] : []); }
+  setLines(name, numbers) { setLines(this[name], numbers); }
+}
+
+const easing = (t) => (t < 0.5 ? 4 * t * t * t : 1 - (2 - 2 * t) ** 3 / 2);
+
+export class Stage {
+  constructor(canvas, recording, up, onDraw) {
+    this.canvas = canvas;
+    this.recording = recording;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer.setClearColor(0, 0);
+    this.renderer.autoClear = false;
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this.surface = new Surface(recording);
+    this.scene = new THREE.Scene();
+    this.skeleton = lines("#101820", 2.2, { opacity: 0.85 });
+    this.joints = dots(YELLOW, 8);
+    this.scene.add(this.skeleton, this.joints);
+    this.insetDot = dots(RED, 18);
+    this.scene.add(this.insetDot);
+    this.camera = new THREE.PerspectiveCamera(32, 1, 0.001, 50);
+    this.insetCamera = new THREE.PerspectiveCamera(32, 1, 0.01, 50);
+    this.looks = [];
+    this.panes = [];
+    this.insetShown = false;
+    this.insetPoint = null;
+    this.setUp(up);
+    this.requested = false;
+    this.onDraw = onDraw;
+    this.frameTimes = [];
+    new ResizeObserver(() => this.resize()).observe(canvas);
+  }
+
+  setUp(axis) {
+    this.up = new THREE.Vector3(axis === "x" ? 1 : 0, axis === "y" ? 1 : 0, axis === "z" ? 1 : 0);
+    this.camera.up.copy(this.up);
+    this.insetCamera.up.copy(this.up);
+    // OrbitControls reads the camera's up direction when it is made.
+    const target = this.controls ? this.controls.target : new THREE.Vector3();
+    if (this.controls) this.controls.dispose();
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.zoomToCursor = true;
+    this.controls.target.copy(target);
+    this.controls.addEventListener("change", () => this.requestDraw());
+    this.controls.addEventListener("start", () => { this.flight = null; });
+  }
+
+  // One look for each strategy that is shown, with the marks of that strategy.
+  setLooks(count) {
+    while (this.looks.length < count) {
+      const look = this.surface.makeLook();
+      look.marks = new Marks();
+      this.scene.add(look.mesh, look.marks.group);
+      this.looks.push(look);
+    }
+    this.shown = count;
+    this.layOut();
+    this.requestDraw();
+  }
+
+  layOut() {
+    const { clientWidth: w, clientHeight: h } = this.canvas, n = this.shown || 1;
+    let columns = 1;
+    for (let c = 1, best = 0; c <= n; ++c) {  // the panes in which a square fits largest
+      const side = Math.min(w / c, h / Math.ceil(n / c));
+      if (side > best * 1.001) {
+        best = side;
+        columns = c;
+      }
+    }
+    const rows = Math.ceil(n / columns);
+    this.panes = Array.from({ length: n }, (_, i) => ({
+      x: (i % columns) * w / columns, y: Math.floor(i / columns) * h / rows, w: w / columns, h: h / rows,
+    }));
+  }
+
+  resize() {
+    const { clientWidth: w, clientHeight: h } = this.canvas;
+    if (!w || !h) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.renderer.setSize(w, h, false);
+    this.layOut();
+    this.requestDraw();
+    if (this.onResize) this.onResize();
+  }
+
+  requestDraw() {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame((now) => {
+      this.requested = false;
+      this.step(now);
+    });
+  }
+
+  step(now) {
+    if (this.flight) this.fly(now);
+    if (this.beforeDraw) this.beforeDraw(now);
+    const begin = performance.now();
+    this.draw();
+    this.frameTimes.push({ at: now, cpu: performance.now() - begin });
+    if (this.frameTimes.length > 600) this.frameTimes.shift();
+    if (this.flight) this.requestDraw();
+  }
+
+  draw() {
+    const { renderer, camera, scene } = this;
+    const { clientHeight: height } = this.canvas;
+    renderer.setScissorTest(true);
+    const distance = camera.position.distanceTo(this.controls.target);
+    camera.near = distance / 300;
+    camera.far = distance + 6;
+    const draw = (index, pane, view, inset) => {
+      this.looks.forEach((look, i) => {
+        look.mesh.visible = i === index;
+        look.marks.group.visible = i === index && !inset;
+        look.material.uniforms.edges.value = inset ? 0 : 1;
+      });
+      this.skeleton.visible = this.bonesShown && !inset;
+      this.joints.visible = this.bonesShown && !inset;
+      this.insetDot.visible = inset && this.insetPoint !== null;
+      view.aspect = pane.w / pane.h;
+      view.updateProjectionMatrix();
+      const y = height - pane.y - pane.h;
+      renderer.setViewport(pane.x, y, pane.w, pane.h);
+      renderer.setScissor(pane.x, y, pane.w, pane.h);
+      if (inset) renderer.clearDepth();
+      else renderer.clear();
+      renderer.render(scene, view);
+    };
+    this.panes.forEach((pane, i) => draw(i, pane, camera, false));
+    this.insetShown = this.whole && this.insetPoint !== null && distance < 0.55 * this.distanceFor(this.whole.radius);
+    const box = this.insetBox && this.insetShown ? this.insetBox() : null;
+    if (box) {
+      const away = new THREE.Vector3().subVectors(camera.position, this.controls.target).normalize();
+      this.insetCamera.position.copy(this.whole.center).addScaledVector(away, this.distanceFor(this.whole.radius) * 1.02);
+      this.insetCamera.lookAt(this.whole.center);
+      this.insetCamera.near = 0.01;
+      draw(0, box, this.insetCamera, true);
+    }
+    if (this.onDraw) this.onDraw();
+  }
+
+  // How far the camera has to be for a sphere to fit.
+  distanceFor(radius) {
+    const pane = this.panes[0] || { w: 1, h: 1 };
+    const half = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2)) * Math.min(1, pane.w / pane.h);
+    return radius / Math.sin(Math.atan(half));
+  }
+
+  setInsetPoint(point) {
+    this.insetPoint = point;
+    if (point) setDots(this.insetDot, [point.x, point.y, point.z], [1]);
+  }
+
+  // Moves the camera so that a sphere is seen from a direction.
+  look(center, radius, direction, smooth) {
+    const position = new THREE.Vector3().copy(direction).multiplyScalar(this.distanceFor(radius)).add(center);
+    if (!smooth || window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      this.flight = null;
+      this.controls.target.copy(center);
+      this.camera.position.copy(position);
+      this.controls.update();
+    } else {
+      this.flight = {
+        from: this.camera.position.clone(), to: position, fromTarget: this.controls.target.clone(), toTarget: center.clone(),
+        begin: performance.now(), length: 550,
+      };
+    }
+    this.requestDraw();
+  }
+
+  fly(now) {
+    const { from, to, fromTarget, toTarget, begin, length } = this.flight;
+    const t = Math.min(1, Math.max(0, (now - begin) / length)), s = easing(t);
+    this.controls.target.lerpVectors(fromTarget, toTarget, s);
+    // The direction turns and the distance changes, so that the camera does not pass through the surface.
+    const a = new THREE.Vector3().subVectors(from, fromTarget), b = new THREE.Vector3().subVectors(to, toTarget);
+    const turn = new THREE.Quaternion().setFromUnitVectors(a.clone().normalize(), b.clone().normalize());
+    const part = new THREE.Quaternion().slerp(turn, s);
+    const distance = Math.exp((1 - s) * Math.log(a.length()) + s * Math.log(b.length()));
+    this.camera.position.copy(a.normalize().applyQuaternion(part).multiplyScalar(distance)).add(this.controls.target);
+    if (t === 1) {
+      this.flight = null;
+      this.camera.position.copy(to);
+    }
+    this.controls.update();
+  }
+
+  // The direction, of some all round a point, from which the fewest triangles of the shown pose hide it. Directions near the
+  // one in use, and level ones, come first where several are as good.
+  clearestDirection(points, reach) {
+    const { corners, clip } = this.recording, p = this.surface.positions;
+    const up = this.up, side = new THREE.Vector3(up.y, up.z, up.x), front = new THREE.Vector3().crossVectors(side, up);
+    const current = new THREE.Vector3().subVectors(this.camera.position, this.controls.target).normalize();
+    const stride = Math.max(1, Math.floor(clip.triangles / 20000));
+    let best = null;
+    for (let a = 0; a < 24; ++a)
+      for (const elevation of [-0.5, -0.15, 0.25, 0.65, 1.1]) {
+        const azimuth = (a * Math.PI) / 12, level = Math.cos(elevation);
+        const d = new THREE.Vector3()
+          .addScaledVector(side, level * Math.cos(azimuth)).addScaledVector(front, level * Math.sin(azimuth))
+          .addScaledVector(up, Math.sin(elevation));
+        let hidden = 0;
+        for (const point of points) {
+          for (let t = 0; t < clip.triangles; t += stride) {
+            const i = 4 * corners[3 * t], j = 4 * corners[3 * t + 1], k = 4 * corners[3 * t + 2];
+            const x = (p[i] + p[j] + p[k]) / 3 - point.x, y = (p[i + 1] + p[j + 1] + p[k + 1]) / 3 - point.y;
+            const z = (p[i + 2] + p[j + 2] + p[k + 2]) / 3 - point.z;
+            const along = x * d.x + y * d.y + z * d.z;
+            if (along < reach) continue;
+            if (x * x + y * y + z * z - along * along < reach * reach) ++hidden;
+          }
+        }
+        const cost = hidden * stride / points.length + 1.2 * Math.abs(elevation - 0.25) + 0.8 * (1 - d.dot(current));
+        if (!best || cost < best.cost) best = { cost, d };
+      }
+    return best.d;
+  }
+
+  setBones(shown, frame, t) {
+    this.bonesShown = shown && this.recording.clip.bones > 0;
+    if (!this.bonesShown) return;
+    const { bones, clip, toView } = this.recording, n = 6 * clip.bones;
+    const segments = [], joints = [];
+    for (let i = 0; i < n; ++i) {
+      const a = bones[frame * n + i], b = bones[Math.min(frame + 1, clip.frames - 1) * n + i];
+      segments.push(toView((1 - t) * a + t * b, i % 3));
+    }
+    for (let b = 0; b < clip.bones; ++b) joints.push(...segments.slice(6 * b, 6 * b + 3));
+    setLines(this.skeleton, segments);
+    setDots(this.joints, joints, new Array(clip.bones).fill(0.7));
+  }
+}

@@ -1,0 +1,90 @@
+// The bar under the slider: one column for each interval, as high as there are contacts, with the worst moments marked.
+import { ORANGE, RED, YELLOW } from "./palette.js";
+
+export class Timeline {
+  constructor(canvas, recording, seek) {
+    this.canvas = canvas;
+    this.recording = recording;
+    const toFrame = (event) => {
+      const box = canvas.getBoundingClientRect();
+      return Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)) * recording.intervals;
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      seek(toFrame(event));
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons & 1) seek(toFrame(event));
+    });
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  // The intervals in which most goes wrong, as the summary of an answer ranks them.
+  static worst(strategy, most = 3) {
+    const rank = Array.from(strategy.verdict, (_, i) => i).filter((i) => strategy.contacts[i] || strategy.start_pairs[i]);
+    rank.sort((a, b) => strategy.start_pairs[b] - strategy.start_pairs[a] || strategy.contacts[b] - strategy.contacts[a] || a - b);
+    const chosen = [];
+    for (const i of rank)  // neighbours of a moment say the same as the moment
+      if (chosen.length < most && chosen.every((other) => Math.abs(other - i) > Math.max(2, strategy.verdict.length / 25))) chosen.push(i);
+    return chosen;
+  }
+
+  show(strategy, position, label) {
+    this.strategy = strategy;
+    this.position = position;
+    this.label = label;
+    this.draw();
+  }
+
+  draw() {
+    const { canvas, strategy, recording } = this;
+    if (!strategy || !canvas.clientWidth) return;
+    const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    const context = canvas.getContext("2d");
+    context.scale(ratio, ratio);
+    const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
+    const top = 12, bottom = height - 16, n = recording.intervals;
+    const x = (frame) => (frame / n) * width;
+    context.fillStyle = colour("--clear");
+    context.globalAlpha = 0.45;
+    context.fillRect(0, bottom - 3, width, 3);
+    context.globalAlpha = 1;
+    const amount = (i) => Math.log1p(strategy.contacts[i] + strategy.start_pairs[i]);
+    let most = 1;
+    for (let i = 0; i < n; ++i) most = Math.max(most, amount(i));
+    for (let i = 0; i < n; ++i) {
+      const verdict = strategy.verdict[i];
+      if (verdict === 0) continue;
+      context.fillStyle = verdict === 2 ? RED : verdict === 1 ? ORANGE : YELLOW;
+      const h = Math.max(4, (amount(i) / most) * (bottom - top));
+      context.fillRect(x(i), bottom - h, Math.max(1.5, x(i + 1) - x(i) - 0.3), h);
+    }
+    context.font = "11px system-ui, sans-serif";
+    context.fillStyle = colour("--text");
+    for (const i of Timeline.worst(strategy)) {
+      const at = x(i + 0.5);
+      context.beginPath();
+      context.moveTo(at - 5, 1);
+      context.lineTo(at + 5, 1);
+      context.lineTo(at, 9);
+      context.fill();
+    }
+    context.fillStyle = colour("--soft");
+    const step = niceStep(n, width / 85);
+    for (let f = 0; f <= n; f += step) {
+      context.fillRect(x(f), bottom, 1, 4);
+      context.textAlign = f === 0 ? "left" : x(f) > width - 30 ? "right" : "center";
+      context.fillText(this.label(f), Math.min(width, x(f)), height - 2);
+    }
+    context.fillStyle = colour("--text");
+    context.fillRect(x(this.position) - 1, 0, 2, bottom);
+  }
+}
+
+function niceStep(length, most) {
+  const least = length / Math.max(1, most);
+  for (let power = 1; ; power *= 10)
+    for (const m of [1, 2, 5]) if (m * power >= least) return m * power;
+}
