@@ -118,6 +118,7 @@ void view(const ViewOptions& options) {
   std::printf("%s\n%s", options.input.c_str(), rows[0]["text"].get<std::string>().c_str());
   json header = {{"schema", "cscd.view/1"},
                  {"name", std::filesystem::path(options.input).filename().string()},
+                 {"kind", input.import ? "model" : is_point_cache(options.input) ? "cache" : "scene"},
                  {"version", version_number()},
                  {"elementary", elementary.name},
                  {"clip", clip.write(sections)},

@@ -1,20 +1,20 @@
 #include "bench/view/recording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/detect/contact_geometry.h"
 
 namespace cscd::bench {
 namespace {
 
 using nlohmann::json;
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-
-void append(const Vec3& v, std::vector<float>& out) {
-  for (int axis = 0; axis < 3; ++axis) out.push_back(static_cast<float>(v[axis]));
+std::uint16_t share(double of_one) {
+  return static_cast<std::uint16_t>(std::lround(std::clamp(of_one, 0.0, 1.0) * 65535));
 }
 
 template <class T>
@@ -37,6 +37,16 @@ std::uint16_t TextTable::number_of(const std::string& text) {
   return known->second;
 }
 
+void ViewBits::append(const std::vector<bool>& bits) {
+  std::vector<std::uint8_t> packed((bits.size() + 7) / 8);
+  for (std::size_t i = 0; i < bits.size(); ++i)
+    if (bits[i]) packed[i / 8] = static_cast<std::uint8_t>(packed[i / 8] | 1U << i % 8);
+  last_.resize(packed.size());
+  for (std::size_t i = 0; i < packed.size(); ++i)
+    bytes_.push_back(static_cast<std::uint8_t>(packed[i] ^ last_[i]));
+  last_ = std::move(packed);
+}
+
 StrategyRecording::StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
                                      const ElementaryTest& elementary)
     : input_(input), names_(names), strategy_(strategy), prepared_(strategy.make(input.setup(elementary))) {
@@ -54,20 +64,22 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
   answerer_.push_back(static_cast<std::uint8_t>(known - answered_by_.begin()));
   verdict_.push_back(static_cast<std::uint8_t>(answer.verdict));
   proven_.push_back(answer.proven);
-  time_.push_back(answer.time() ? static_cast<float>(*answer.time()) : kNone);
   milliseconds_.push_back(static_cast<float>(answer.report.ms.total()));
   start_pairs_.push_back(count(answer.start.total));
   pairs_.push_back(count(answer.report.cull.pctp));
   tests_.push_back(count(answer.report.pairs.elementary_tests));
 
   std::uint32_t contacts = 0, kept = 0;
+  std::vector<bool> touched(input_.mesh.triangle_count());
   for (const Contact& contact : answer.found.contacts) {
     if (contact.verdict != Verdict::contact) continue;
     ++contacts;
+    mark_touched(contact.pair, touched);
     if (kept == kMostContacts) continue;
     ++kept;
     add_contact(contact, interval.motion, places);
   }
+  touched_.append(touched);
   contacts_.push_back(contacts);
   kept_contacts_.push_back(kept);
   undecided_.push_back(count(answer.found.contacts.size()) - contacts);
@@ -79,10 +91,24 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
   if (has_clusters()) add_view(interval);
 }
 
+// Marks the triangles that have a feature of the pair.
+void StrategyRecording::mark_touched(const FeaturePair& pair, std::vector<bool>& touched) const {
+  const auto mark = [&](std::span<const TriangleId> triangles) {
+    for (const TriangleId t : triangles) touched[+t] = true;
+  };
+  if (pair.kind == FeaturePair::Kind::vertex_face) {
+    mark(input_.mesh.triangles_at(VertexId{pair.a}));
+    touched[+TriangleId{pair.b}] = true;
+  } else {
+    mark(input_.mesh.triangles_at(EdgeId{pair.a}));
+    mark(input_.mesh.triangles_at(EdgeId{pair.b}));
+  }
+}
+
 void StrategyRecording::add_contact(const Contact& contact, const Motion& motion, TextTable& places) {
   const bool face = contact.pair.kind == FeaturePair::Kind::vertex_face;
   kind_.push_back(face ? 0 : 1);
-  contact_time_.push_back(static_cast<float>(contact.time));
+  time_in_.push_back(share(contact.time));
   const auto vertex = [&](VertexId v) { vertex_.push_back(static_cast<std::int32_t>(v)); };
   if (face) {
     vertex(VertexId{contact.pair.a});
@@ -92,9 +118,10 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
       for (const VertexId v : input_.mesh.ends(EdgeId{edge})) vertex(v);
   }
   const ContactGeometry geometry = contact_geometry(input_.mesh, motion, contact.pair, contact.time);
-  append(geometry.point, point_);
-  append(geometry.normal.value_or(Vec3::Constant(kNone)), normal_);
-  speed_.push_back(geometry.relative_speed ? static_cast<float>(*geometry.relative_speed) : kNone);
+  along_first_.push_back(face ? 0 : share(geometry.weights[0]));
+  const Vec3 normal = geometry.normal.value_or(Vec3::Zero());
+  for (int axis = 0; axis < 3; ++axis)
+    normal_.push_back(static_cast<std::int8_t>(std::lround(127 * normal[axis])));
   for (const bool second : {false, true})
     place_.push_back(places.number_of(names_.place_of(names_.triangle_of(contact.pair, second))));
 }
@@ -108,14 +135,7 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   const RadialView view = prepared_.detector->radial_view();
   clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
 
-  std::vector<std::uint8_t> positive((view.positive.size() + 7) / 8);
-  for (std::size_t t = 0; t < view.positive.size(); ++t)
-    if (view.positive[t]) positive[t / 8] = static_cast<std::uint8_t>(positive[t / 8] | 1U << t % 8);
-  last_positive_.resize(positive.size());
-  for (std::size_t i = 0; i < positive.size(); ++i)
-    positive_.push_back(static_cast<std::uint8_t>(positive[i] ^ last_positive_[i]));
-  last_positive_ = std::move(positive);
-
+  positive_.append(view.positive);
   const std::vector<std::int32_t>& atomic = prepared_.preparation.atomic_cluster;
   std::map<std::int32_t, std::uint16_t> first;  // of the atomic clusters that have a label
   std::vector<std::int32_t> label(static_cast<std::size_t>(prepared_.preparation.atomic_clusters), -1);
@@ -135,7 +155,6 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
   put("verdict", verdict_);
   put("proven", proven_);
   put("answerer", answerer_);
-  put("time", time_);
   put("milliseconds", milliseconds_);
   put("contacts", contacts_);
   put("undecided", undecided_);
@@ -145,19 +164,19 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
   put("kept_contacts", kept_contacts_);
   put("kept_pairs", kept_pairs_);
   put("contact_kind", kind_);
-  put("contact_time", contact_time_);
-  put("contact_point", point_);
+  put("contact_time", time_in_);
+  put("contact_along", along_first_);
   put("contact_normal", normal_);
-  put("contact_speed", speed_);
   put("contact_vertex", vertex_);
   put("contact_place", place_);
   put("crossing", crossing_);
+  put("touched", touched_.bytes());
   if (has_clusters()) {
     std::vector<std::uint16_t> atomic(prepared_.preparation.atomic_cluster.begin(),
                                       prepared_.preparation.atomic_cluster.end());
     put("atomic", atomic);
     put("cluster_of_atomic", cluster_of_atomic_);
-    put("positive", positive_);
+    put("positive", positive_.bytes());
     put("clusters", clusters_);
   }
   return {{"name", strategy_.name},

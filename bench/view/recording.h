@@ -11,7 +11,6 @@
 #include "bench/answer/surface_names.h"
 #include "bench/input/input.h"
 #include "bench/view/sections.h"
-#include "core/detect/contact_geometry.h"
 
 namespace cscd::bench {
 
@@ -26,13 +25,23 @@ class TextTable {
   std::vector<std::string> texts_;
 };
 
+// A bit for each triangle in one interval after another, as differences from the interval before.
+class ViewBits {
+ public:
+  void append(const std::vector<bool>& bits);
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_, last_;
+};
+
 // Collects what a page shows of one strategy: its answer to each interval, and how its observers saw the
 // surface. All arrays are in the order of the intervals that were added.
 class StrategyRecording {
  public:
   // Contacts and crossing pairs of triangles that are kept of one interval, the earliest first. The page says
   // how many there are in all.
-  static constexpr std::size_t kMostContacts = 4000, kMostStartPairs = 4000;
+  static constexpr std::size_t kMostContacts = 2000, kMostStartPairs = 4000;
 
   // Prepares the strategy once more, to ask its observers: an Answerer may have another strategy answer.
   StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
@@ -48,6 +57,7 @@ class StrategyRecording {
 
  private:
   void add_contact(const Contact& contact, const Motion& motion, TextTable& places);
+  void mark_touched(const FeaturePair& pair, std::vector<bool>& touched) const;
   void add_view(const scenes::ClipInterval& interval);
 
   const Input& input_;
@@ -59,16 +69,18 @@ class StrategyRecording {
 
   // [intervals]
   std::vector<std::uint8_t> verdict_, proven_, answerer_;
-  std::vector<float> time_, milliseconds_;
+  std::vector<float> milliseconds_;
   std::vector<std::uint32_t> contacts_, undecided_, start_pairs_, pairs_, tests_, clusters_, kept_contacts_,
       kept_pairs_;
   // [contacts], several numbers each
-  std::vector<std::uint8_t> kind_;
-  std::vector<float> contact_time_, point_, normal_, speed_;
-  std::vector<std::int32_t> vertex_, crossing_;
-  std::vector<std::uint16_t> place_;
-  // [intervals][triangles], as differences from the interval before
-  std::vector<std::uint8_t> positive_, last_positive_;
+  std::vector<std::uint8_t> kind_;          // 0 vertex and face, 1 two edges
+  std::vector<std::uint16_t> time_in_;      // in the interval, of 65535
+  std::vector<std::uint16_t> along_first_;  // where the point lies on the first edge, of 65535
+  std::vector<std::int8_t> normal_;         // x, y, z of 127; zeros where there is none
+  std::vector<std::int32_t> vertex_;        // vertex and corners of the face, or the ends of both edges
+  std::vector<std::uint16_t> place_;        // of both sides
+  std::vector<std::int32_t> crossing_;      // [crossing pairs][2]: triangles
+  ViewBits touched_, positive_;             // [intervals][triangles]
   std::vector<std::uint16_t> cluster_of_atomic_;  // [intervals][atomic clusters]
 };
 

@@ -1,7 +1,7 @@
 // Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one.
 
 const TYPES = {
-  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i32: Int32Array, f32: Float32Array,
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i32: Int32Array, f32: Float32Array,
 };
 
 function fromBase64(text) {
@@ -54,9 +54,14 @@ function strategyOf(row, arrays, prefix, triangles) {
     if (name.startsWith(prefix)) strategy[name.slice(prefix.length)] = values;
   strategy.contactOffset = offsets(strategy.kept_contacts);
   strategy.crossingOffset = offsets(strategy.kept_pairs);
-  if (row.has_clusters) undoDifferences(strategy.positive, Math.ceil(triangles / 8));
+  const rowBytes = Math.ceil(triangles / 8);
+  undoDifferences(strategy.touched, rowBytes);
+  if (row.has_clusters) undoDifferences(strategy.positive, rowBytes);
   return strategy;
 }
+
+// Whether a triangle's bit is set in the row of an interval.
+export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.ceil(triangles / 8) + (t >> 3)] >> (t & 7)) & 1;
 
 // Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
 // origin: `toView` scales a point of the scene.
@@ -70,8 +75,9 @@ export async function loadRecording() {
   packed.remove();
   const arrays = {};
   await Promise.all(header.sections.map(async (section) => {
-    const raw = await inflate(bytes.subarray(section.offset, section.offset + section.bytes));
-    if (raw.byteLength !== section.raw) throw new Error(`the array ${section.name} is damaged`);
+    const raw = await inflate(bytes.subarray(section.offset, section.offset + section.bytes))
+      .catch(() => new ArrayBuffer(0));
+    if (raw.byteLength !== section.raw) throw new Error(`The page is damaged: its array ${section.name} is not whole. Write it again with cscd view.`);
     arrays[section.name] = new TYPES[section.type](raw);
   }));
 
@@ -81,7 +87,7 @@ export async function loadRecording() {
   const ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
   const endOfInterval = new Map(Array.from(arrays.interval_of_end, (interval, i) => [interval, i]));
   const side = clip.grid.step * 65535;
-  const middle = [0, 0, 0];  // of the first and the last place that occur, on the grid
+  const middle = [0, 0, 0];  // between the first and the last place that occur, on the grid
   for (let axis = 0; axis < 3; ++axis) {
     let low = 65535, high = 0;
     for (let f = 0; f < clip.frames; ++f)

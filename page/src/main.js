@@ -1,6 +1,6 @@
 import * as THREE from "three";
 import { crossingSegment } from "./crossing.js";
-import { loadRecording } from "./data.js";
+import { bitOf, loadRecording } from "./data.js";
 import { BLUE, CLUSTERS, colourGroups, edgeNeighbours, GREY, groupNeighbours, ORANGE, PINK, RED, rgb, SKIN, YELLOW } from "./palette.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
@@ -8,6 +8,7 @@ import { both, detailSentence, many, momentOf, momentText, VERDICTS, verdictSent
 
 const byId = (id) => document.getElementById(id);
 const MOST_ROWS = 1500;  // of the list: browsers grow slow with more
+const MOST_NORMALS = 40;  // beside that of the chosen contact
 const MOST_LINES = 400;  // contacts whose features are outlined beside the chosen one
 
 function element(tag, text, className) {
@@ -20,7 +21,6 @@ function element(tag, text, className) {
 class Viewer {
   constructor(recording) {
     this.recording = recording;
-    this.trianglesAt = trianglesAtVertices(recording);
     this.neighbours = edgeNeighbours(recording.corners, recording.clip.vertices);
     this.strategy = 0;
     this.mode = "verdict";
@@ -59,7 +59,7 @@ class Viewer {
     const { strategies, clip, place, part } = this.recording;
     const clusters = strategies.some((s) => s.has_clusters);
     const modes = [["verdict", "verdict"]];
-    if (clusters) modes.push(["atomic", "atomic cluster"], ["cluster", "cluster in force"], ["positive", "seen from behind"]);
+    if (clusters) modes.push(["atomic", "atomic cluster"], ["cluster", "cluster in force"], ["positive", "orientation"]);
     if (new Set(place).size > 1) modes.push(["place", clip.bones > 0 ? "bone" : "part"]);
     if (clip.bones > 0 && new Set(part).size > 1) modes.push(["part", "part"]);
     modes.push(["often", "how often"]);
@@ -73,6 +73,7 @@ class Viewer {
     byId("together-label").hidden = strategies.length < 2;
     byId("together").addEventListener("change", (event) => {
       this.together = event.target.checked;
+      byId("stage").classList.toggle("together", this.together);
       this.choose();
     });
     radios(byId("modes"), this.modes, (value) => this.setMode(value));
@@ -95,7 +96,8 @@ class Viewer {
     this.upName = upAxis(this.recording);
     nameUp();
     up.addEventListener("click", () => {
-      this.upName = { x: "y", y: "z", z: "x" }[this.upName];
+      const names = ["x", "y", "z", "-x", "-y", "-z"];
+      this.upName = names[(names.indexOf(this.upName) + 1) % 6];
       nameUp();
       this.stage.setUp(this.upName);
       this.showWhole(false);
@@ -151,6 +153,7 @@ class Viewer {
     document.documentElement.classList.toggle("dark", dark);
     this.dark = dark;
     for (const look of this.stage.looks) look.material.uniforms.dark.value = dark ? 1 : 0;
+    this.stage.insetColour.set(getComputedStyle(document.documentElement).getPropertyValue("--panel").trim());
     this.timeline.draw();
     this.stage.requestDraw();
   }
@@ -184,14 +187,14 @@ class Viewer {
   }
 
   timeOf(strategy, moment) {
-    return moment.contact === undefined ? 0 : strategy.contact_time[moment.contact];
+    return moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535;
   }
 
   open() {
     const moments = this.momentsOf(this.active);
     if (moments.length > 0) this.select(moments[0], false);
     else {
-      this.seek(0);
+      this.seek(Math.round(this.recording.intervals / 3));  // in motion, and not at rest
       this.showWhole(false);
     }
   }
@@ -226,7 +229,7 @@ class Viewer {
   setPlaying(playing) {
     this.playing = playing;
     this.lastTick = null;
-    byId("play").textContent = playing ? "\u23F8" : "\u25B6";
+    byId("play").classList.toggle("playing", playing);
     byId("play").setAttribute("aria-label", playing ? "Pause" : "Play");
     if (playing) {
       if (this.position >= this.recording.intervals) this.position = 0;
@@ -312,6 +315,7 @@ class Viewer {
       this.stage.surface.pose(pose.interval, pose.t, pose.predicted);
       this.poseKey = key;
       this.stage.whole = this.stage.surface.bounds();
+      this.stage.meanEdge = this.stage.surface.meanEdge();
     }
     this.stage.setBones(this.bonesShown, pose.interval, pose.t);
     this.shown.forEach((s, i) => {
@@ -352,9 +356,13 @@ class Viewer {
       if (contacts > 0) rows.push(item(ORANGE, "touches"));
       if (pairs > 0) rows.push(item(RED, "crosses"));
       if (contacts === 0 && pairs === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[active.verdict[interval]]}`));
-    } else if (this.mode === "positive") rows.push(item(SKIN, "seen from behind throughout"), item(RED, "not, so culled otherwise"));
+    } else if (this.mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
     else if (this.mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
-    else rows.push(element("span", { atomic: "one colour for each atomic cluster", cluster: "one colour for each cluster that shares an observer", place: "one colour for each name", part: "one colour for each part" }[this.mode]));
+    else if (this.mode === "atomic" || this.mode === "cluster") {
+      const cluster = `one colour for each cluster${active.name.startsWith("drvbc_fast") ? " of the first cover" : ""}`;
+      rows.push(element("span", !active.has_clusters ? `${active.name} has no clusters`
+        : this.mode === "atomic" ? `${cluster}, as made in advance` : `${cluster} that has one observer in this interval`));
+    } else rows.push(element("span", { place: "one colour for each name", part: "one colour for each part" }[this.mode]));
     if (this.chosen && this.chosen.contact !== undefined && this.chosen.interval === interval)
       rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     legend.replaceChildren(...rows);
@@ -369,7 +377,7 @@ class Viewer {
       ["elementary tests", active.tests[interval].toLocaleString("en")]];
     if (active.has_clusters)
       facts.push(["clusters in force", active.clusters[interval].toLocaleString("en")],
-        ["seen from behind", `${this.positiveShare(active, interval)} % of triangles`]);
+        ["positive", `${this.positiveShare(active, interval)} % of triangles`]);
     facts.push(["time of this answer here", `${Number(active.milliseconds[interval].toPrecision(3))} ms, one try`]);
     byId("facts").replaceChildren(...facts.flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
   }
@@ -378,16 +386,20 @@ class Viewer {
     const parts = [`${many(strategy.pairs[interval], "pair")} left by culling`];
     if (strategy.has_clusters) {
       parts.push(many(strategy.clusters[interval], "cluster"));
-      parts.push(`${this.positiveShare(strategy, interval)} % seen from behind`);
+      parts.push(`${this.positiveShare(strategy, interval)} % positive`);
     }
     return parts.join(" · ");
   }
 
   positiveShare(strategy, interval) {
-    const { triangles } = this.recording.clip, row = Math.ceil(triangles / 8);
-    let count = 0;
-    for (let t = 0; t < triangles; ++t) count += (strategy.positive[interval * row + (t >> 3)] >> (t & 7)) & 1;
-    return ((100 * count) / triangles).toFixed(1);
+    const { triangles } = this.recording.clip;
+    strategy.shares ??= new Map();
+    if (!strategy.shares.has(interval)) {
+      let count = 0;
+      for (let t = 0; t < triangles; ++t) count += bitOf(strategy.positive, triangles, interval, t);
+      strategy.shares.set(interval, ((100 * count) / triangles).toFixed(1));
+    }
+    return strategy.shares.get(interval);
   }
 
   // --- Colours -----------------------------------------------------------------------------------------------------------
@@ -404,11 +416,20 @@ class Viewer {
       out[4 * t + 2] = b;
     };
     const skin = rgb(SKIN), paint = CLUSTERS.map((hex) => rgb(hex));
-    for (let t = 0; t < triangles; ++t) set(t, skin);
+    for (let t = 0; t < triangles; ++t) {
+      set(t, skin);
+      out[4 * t + 3] = 255;
+    }
+    look.glow.visible = this.mode === "verdict";
+    const setGlowing = (t, colour) => {
+      set(t, colour);
+      out[4 * t + 3] = 0;
+    };
     if (this.mode === "verdict") {
       const touched = rgb(ORANGE), crossed = rgb(RED);
-      for (const t of this.touchedTriangles(strategy, interval)) set(t, touched);
-      for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) set(strategy.crossing[i], crossed);
+      if (strategy.contacts[interval] > 0)
+        for (let t = 0; t < triangles; ++t) if (bitOf(strategy.touched, triangles, interval, t)) setGlowing(t, touched);
+      for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) setGlowing(strategy.crossing[i], crossed);
     } else if (this.mode === "often") {
       const often = this.oftenTouched(strategy), most = Math.max(1, ...often), low = rgb(YELLOW), high = rgb(RED);
       for (let t = 0; t < triangles; ++t)
@@ -430,9 +451,8 @@ class Viewer {
       const merged = colourGroups(this.mergedNeighbours(index, strategy, of), (g) => colours[g]);
       for (let t = 0; t < triangles; ++t) set(t, paint[merged[of[strategy.atomic[t]]]]);
     } else if (this.mode === "positive") {
-      const row = Math.ceil(triangles / 8), not = rgb(RED);
-      for (let t = 0; t < triangles; ++t)
-        if (!((strategy.positive[interval * row + (t >> 3)] >> (t & 7)) & 1)) set(t, not);
+      const not = rgb(RED);
+      for (let t = 0; t < triangles; ++t) if (!bitOf(strategy.positive, triangles, interval, t)) set(t, not);
     }
     look.colourTexture.needsUpdate = true;
   }
@@ -458,36 +478,15 @@ class Viewer {
     return merged;
   }
 
-  // The triangles that have a feature of a contact of the interval.
-  touchedTriangles(strategy, interval) {
-    const touched = new Set();
-    const { offset, triangle } = this.trianglesAt;
-    const at = (v) => triangle.subarray(offset[v], offset[v + 1]);
-    for (let c = strategy.contactOffset[interval]; c < strategy.contactOffset[interval + 1]; ++c) {
-      const v = strategy.contact_vertex.subarray(4 * c, 4 * c + 4);
-      if (strategy.contact_kind[c] === 0) {
-        for (const t of at(v[0])) touched.add(t);
-        for (const t of at(v[1])) if (this.hasCorners(t, v[2], v[3])) touched.add(t);
-      } else {
-        for (const t of at(v[0])) if (this.hasCorners(t, v[1], v[1])) touched.add(t);
-        for (const t of at(v[2])) if (this.hasCorners(t, v[3], v[3])) touched.add(t);
-      }
-    }
-    return touched;
-  }
-
-  hasCorners(t, a, b) {
-    const c = this.recording.corners.subarray(3 * t, 3 * t + 3);
-    return c.includes(a) && c.includes(b);
-  }
-
+  // In how many intervals each triangle has a feature of a contact, or crosses another at the start.
   oftenTouched(strategy) {
     if (!strategy.often) {
-      strategy.often = new Uint32Array(this.recording.clip.triangles);
+      const { triangles } = this.recording.clip;
+      strategy.often = new Uint32Array(triangles);
       for (let i = 0; i < strategy.verdict.length; ++i) {
-        const touched = this.touchedTriangles(strategy, i);
-        for (let k = 2 * strategy.crossingOffset[i]; k < 2 * strategy.crossingOffset[i + 1]; ++k) touched.add(strategy.crossing[k]);
-        for (const t of touched) ++strategy.often[t];
+        if (strategy.verdict[i] === 0) continue;
+        const crossing = new Set(strategy.crossing.subarray(2 * strategy.crossingOffset[i], 2 * strategy.crossingOffset[i + 1]));
+        for (let t = 0; t < triangles; ++t) strategy.often[t] += bitOf(strategy.touched, triangles, i, t) || crossing.has(t) ? 1 : 0;
       }
     }
     return strategy.often;
@@ -495,14 +494,17 @@ class Viewer {
 
   // --- Marks of contacts -------------------------------------------------------------------------------------------------
 
-  contactPoint(strategy, c) {
-    const { toView } = this.recording;
-    return new THREE.Vector3(...[0, 1, 2].map((axis) => toView(strategy.contact_point[3 * c + axis], axis)));
+  // The point of a contact, on its first feature at its own time, whatever moment is shown.
+  contactPoint(strategy, interval, c) {
+    const { surface } = this.stage, t = strategy.contact_time[c] / 65535;
+    const at = (v) => surface.pointAt(v, interval, t, true);
+    const v = strategy.contact_vertex.subarray(4 * c, 4 * c + 2);
+    return strategy.contact_kind[c] === 0 ? at(v[0]) : at(v[0]).lerp(at(v[1]), strategy.contact_along[c] / 65535);
   }
 
   pointOf(moment) {
     if (!moment) return null;
-    if (moment.contact !== undefined) return this.contactPoint(this.active, moment.contact);
+    if (moment.contact !== undefined) return this.contactPoint(this.active, moment.interval, moment.contact);
     if (moment.pair === undefined) return null;
     const { corners } = this.recording, sum = new THREE.Vector3(), point = new THREE.Vector3();
     for (let i = 0; i < 2; ++i)
@@ -526,8 +528,8 @@ class Viewer {
     };
     const points = [], weights = [], others = [];
     for (let c = from; c < to; ++c) {
-      this.contactPoint(strategy, c).toArray(points, points.length);
-      weights.push(c === from ? 1 : 0.35);
+      this.contactPoint(strategy, interval, c).toArray(points, points.length);
+      weights.push(c === from ? 0.6 : to - from > 60 ? 0.15 : 0.3);
       if (c - from < MOST_LINES && !(chosen && chosen.contact === c)) {
         feature(others, c, false);
         feature(others, c, true);
@@ -537,21 +539,21 @@ class Viewer {
     marks.setLines("others", others);
     const first = [], second = [], normal = [], at = [];
     if (chosen && chosen.contact !== undefined) {
-      const c = chosen.contact, point = this.contactPoint(strategy, c);
+      const c = chosen.contact, point = this.contactPoint(strategy, interval, c);
       feature(first, c, false);
       feature(second, c, true);
       point.toArray(at, 0);
       const n = strategy.contact_normal.subarray(3 * c, 3 * c + 3);
-      if (this.normalsShown && Number.isFinite(n[0])) {
-        const length = 0.05 * this.stage.whole.radius;
+      if (this.normalsShown) {
+        const length = (0.05 * this.stage.whole.radius) / 127;
         normal.push(point.x, point.y, point.z, point.x + length * n[0], point.y + length * n[1], point.z + length * n[2]);
       }
     }
     if (this.normalsShown)
-      for (let c = from; c < Math.min(to, from + MOST_LINES); ++c) {
-        const p = this.contactPoint(strategy, c), n = strategy.contact_normal.subarray(3 * c, 3 * c + 3);
-        const length = 0.02 * this.stage.whole.radius;
-        if (Number.isFinite(n[0])) normal.push(p.x, p.y, p.z, p.x + length * n[0], p.y + length * n[1], p.z + length * n[2]);
+      for (let c = from; c < to; c += Math.ceil((to - from) / MOST_NORMALS)) {
+        const p = this.contactPoint(strategy, interval, c), n = strategy.contact_normal.subarray(3 * c, 3 * c + 3);
+        const length = (0.02 * this.stage.whole.radius) / 127;
+        normal.push(p.x, p.y, p.z, p.x + length * n[0], p.y + length * n[1], p.z + length * n[2]);
       }
     marks.setLines("first", first);
     marks.setLines("second", second);
@@ -573,9 +575,8 @@ class Viewer {
   // --- Camera ------------------------------------------------------------------------------------------------------------
 
   showWhole(smooth) {
-    const { stage } = this, { center, radius } = stage.surface.bounds();
-    const direction = this.broadSide();
-    stage.look(center, 1.04 * radius, direction, smooth);
+    const direction = this.broadSide(), { center, distance } = this.stage.fit(direction);
+    this.stage.look(center, distance, direction, smooth);
   }
 
   showChosen(smooth) {
@@ -587,20 +588,24 @@ class Viewer {
     const { stage } = this, whole = stage.surface.bounds();
     const { contactOffset } = this.active, { interval } = this.chosen;
     const points = [point];
-    for (let c = contactOffset[interval], n = 0; c < contactOffset[interval + 1] && n < 4; ++c, ++n) {
-      const other = this.contactPoint(this.active, c);
-      if (other.distanceTo(point) < 0.25 * whole.radius && other.distanceTo(point) > 1e-4) points.push(other);
+    let spread = 0;
+    for (let c = contactOffset[interval]; c < contactOffset[interval + 1]; ++c) {
+      const other = this.contactPoint(this.active, interval, c), distance = other.distanceTo(point);
+      if (distance > 0.2 * whole.radius) continue;
+      spread = Math.max(spread, distance);
+      if (points.length < 4 && distance > 0.002 * whole.radius) points.push(other);
     }
+    const radius = Math.min(0.36 * whole.radius, Math.max(0.17 * whole.radius, 1.6 * spread, 8 * stage.meanEdge));
     if (!this.opened) {
       stage.controls.target.copy(whole.center);
       stage.camera.position.copy(this.broadSide()).multiplyScalar(3).add(whole.center);
       this.opened = true;
     }
-    const direction = stage.clearestDirection(points, 0.035 * whole.radius);
-    stage.look(point, 0.26 * whole.radius, direction, smooth);
+    const direction = stage.clearestDirection(points, whole.radius);
+    stage.look(point, stage.distanceFor(radius), direction, smooth);
   }
 
-  // A level direction from which the shown pose looks wide.
+  // A direction from which the shown pose looks wide: a little above and beside the level one across its longest direction.
   broadSide() {
     const { surface, up } = this.stage, side = new THREE.Vector3(up.y, up.z, up.x), front = new THREE.Vector3().crossVectors(side, up);
     let xx = 0, xy = 0, yy = 0;
@@ -615,7 +620,7 @@ class Viewer {
     const angle = 0.5 * Math.atan2(2 * xy, xx - yy) + Math.PI / 2;  // across the longest level direction
     const direction = new THREE.Vector3().addScaledVector(side, Math.cos(angle)).addScaledVector(front, Math.sin(angle));
     if (direction.dot(new THREE.Vector3(0.2, 0.1, 1)) < 0) direction.negate();
-    return direction.addScaledVector(up, 0.28).normalize();
+    return direction.applyAxisAngle(up, 0.4).addScaledVector(up, 0.28).normalize();
   }
 
   insetBox() {
@@ -673,7 +678,7 @@ class Viewer {
           const one = element("button", undefined, "one");
           one.moment = { interval, contact: c };
           one.append(element("span", `${both(...this.namesOf(active, one.moment), "touches")} (${active.contact_kind[c] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
-            element("span", `t = ${active.contact_time[c].toFixed(4)}`, "when"));
+            element("span", `t = ${this.timeOf(active, one.moment).toFixed(4)}`, "when"));
           contacts.push(one);
         }
         if (active.contacts[interval] > contacts.length) {
@@ -708,17 +713,23 @@ function radios(box, choices, choose) {
   };
 }
 
-function trianglesAtVertices({ corners, clip }) {
-  const offset = new Uint32Array(clip.vertices + 2);
-  for (const v of corners) ++offset[v + 2];
-  for (let v = 2; v < offset.length; ++v) offset[v] += offset[v - 1];
-  const triangle = new Uint32Array(corners.length);
-  for (let i = 0; i < corners.length; ++i) triangle[offset[corners[i] + 1]++] = Math.floor(i / 3);
-  return { offset, triangle };
+// Models say y, and so do most caches. A scene stands along the longest side of its box, with the side up that holds more of
+// the surface.
+function upAxis({ header, clip, places }) {
+  if (header.kind !== "scene") return "y";
+  const sides = [0, 1, 2].map((axis) => {
+    let low = 65535, high = 0, sum = 0;
+    for (let v = 0; v < clip.vertices; ++v) {
+      const x = places[axis * clip.vertices + v];
+      low = Math.min(low, x);
+      high = Math.max(high, x);
+      sum += x;
+    }
+    return { length: high - low, heavier: sum / clip.vertices > (low + high) / 2 };
+  });
+  const order = [1, 0, 2].sort((a, b) => sides[b].length - sides[a].length);
+  return (sides[order[0]].heavier ? "" : "-") + "xyz"[order[0]];
 }
-
-// glTF names y; of other inputs y is the commonest.
-function upAxis() { return "y"; }
 
 function fail(error) {
   document.body.classList.add("failed");

@@ -17,7 +17,7 @@ const DOT_VERTEX = /* glsl */ `
   void main() {
     vWeight = weight;
     gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
-    gl_PointSize = size * (0.6 + 0.4 * weight);
+    gl_PointSize = size * (0.35 + 0.65 * weight);
   }`;
 const DOT_FRAGMENT = /* glsl */ `
   precision highp float;
@@ -104,6 +104,8 @@ export class Stage {
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.surface = new Surface(recording);
+    this.meanEdge = 0;
+    this.insetColour = new THREE.Color("#ffffff");
     this.scene = new THREE.Scene();
     this.skeleton = lines("#101820", 2.2, { opacity: 0.85 });
     this.joints = dots(YELLOW, 8);
@@ -124,7 +126,8 @@ export class Stage {
   }
 
   setUp(axis) {
-    this.up = new THREE.Vector3(axis === "x" ? 1 : 0, axis === "y" ? 1 : 0, axis === "z" ? 1 : 0);
+    const sign = axis[0] === "-" ? -1 : 1, of = (name) => (axis.at(-1) === name ? sign : 0);
+    this.up = new THREE.Vector3(of("x"), of("y"), of("z"));
     this.camera.up.copy(this.up);
     this.insetCamera.up.copy(this.up);
     // OrbitControls reads the camera's up direction when it is made.
@@ -142,7 +145,7 @@ export class Stage {
     while (this.looks.length < count) {
       const look = this.surface.makeLook();
       look.marks = new Marks();
-      this.scene.add(look.mesh, look.marks.group);
+      this.scene.add(look.group, look.marks.group);
       this.looks.push(look);
     }
     this.shown = count;
@@ -186,9 +189,9 @@ export class Stage {
   }
 
   step(now) {
+    const begin = performance.now();
     if (this.flight) this.fly(now);
     if (this.beforeDraw) this.beforeDraw(now);
-    const begin = performance.now();
     this.draw();
     this.frameTimes.push({ at: now, cpu: performance.now() - begin });
     if (this.frameTimes.length > 600) this.frameTimes.shift();
@@ -202,11 +205,14 @@ export class Stage {
     const distance = camera.position.distanceTo(this.controls.target);
     camera.near = distance / 300;
     camera.far = distance + 6;
+    // Edges are drawn where the mean edge is long enough on the screen.
+    const pixels = (this.meanEdge * this.panes[0].h) / (2 * distance * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2)));
+    const edges = THREE.MathUtils.smoothstep(pixels, 7, 20);
     const draw = (index, pane, view, inset) => {
       this.looks.forEach((look, i) => {
-        look.mesh.visible = i === index;
+        look.group.visible = i === index;
         look.marks.group.visible = i === index && !inset;
-        look.material.uniforms.edges.value = inset ? 0 : 1;
+        look.material.uniforms.edges.value = inset ? 0 : edges;
       });
       this.skeleton.visible = this.bonesShown && !inset;
       this.joints.visible = this.bonesShown && !inset;
@@ -216,8 +222,8 @@ export class Stage {
       const y = height - pane.y - pane.h;
       renderer.setViewport(pane.x, y, pane.w, pane.h);
       renderer.setScissor(pane.x, y, pane.w, pane.h);
-      if (inset) renderer.clearDepth();
-      else renderer.clear();
+      renderer.setClearColor(this.insetColour, inset ? 0.93 : 0);
+      renderer.clear();
       renderer.render(scene, view);
     };
     this.panes.forEach((pane, i) => draw(i, pane, camera, false));
@@ -245,9 +251,34 @@ export class Stage {
     if (point) setDots(this.insetDot, [point.x, point.y, point.z], [1]);
   }
 
-  // Moves the camera so that a sphere is seen from a direction.
-  look(center, radius, direction, smooth) {
-    const position = new THREE.Vector3().copy(direction).multiplyScalar(this.distanceFor(radius)).add(center);
+  // The point to look at along a direction, and the distance from it, at which the whole shown pose just fits.
+  fit(direction, margin = 1.06) {
+    const { surface, up, recording } = this, pane = this.panes[0];
+    const right = new THREE.Vector3().crossVectors(up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
+    const point = new THREE.Vector3(), low = [1e9, 1e9], high = [-1e9, -1e9], axes = [right, above];
+    const each = (take) => {
+      for (let v = 0; v < recording.clip.vertices; ++v) take(surface.point(v, point));
+    };
+    each((x) => axes.forEach((axis, i) => {
+      const along = x.dot(axis);
+      low[i] = Math.min(low[i], along);
+      high[i] = Math.max(high[i], along);
+    }));
+    const middle = low.map((x, i) => (x + high[i]) / 2);
+    const tangent = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    let far = 0;
+    each((x) => {
+      const across = Math.max((Math.abs(x.dot(right) - middle[0]) * pane.h) / pane.w, Math.abs(x.dot(above) - middle[1]));
+      far = Math.max(far, x.dot(direction) + (margin * across) / tangent);
+    });
+    const depth = surface.bounds().center.dot(direction);
+    const center = new THREE.Vector3().addScaledVector(right, middle[0]).addScaledVector(above, middle[1]).addScaledVector(direction, depth);
+    return { center, distance: Math.max(1e-3, far - depth) };
+  }
+
+  // Moves the camera so that a point is seen along a direction, from a distance.
+  look(center, distance, direction, smooth) {
+    const position = new THREE.Vector3().copy(direction).multiplyScalar(distance).add(center);
     if (!smooth || window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
       this.flight = null;
       this.controls.target.copy(center);
@@ -279,35 +310,37 @@ export class Stage {
     this.controls.update();
   }
 
-  // The direction, of some all round a point, from which the fewest triangles of the shown pose hide it. Directions near the
-  // one in use, and level ones, come first where several are as good.
-  clearestDirection(points, reach) {
-    const { corners, clip } = this.recording, p = this.surface.positions;
-    const up = this.up, side = new THREE.Vector3(up.y, up.z, up.x), front = new THREE.Vector3().crossVectors(side, up);
+  // The direction from which the fewest triangles of the shown pose hide the points, of some all round. Directions near the
+  // one in use, and those from a little above, come first where several are as good.
+  clearestDirection(points, size) {
+    const directions = this.directionsAllRound();
+    const hidden = new Float64Array(directions.length);
+    for (const point of points) addHidden(point, 0.006 * size, this.surface.positions, this.recording.corners, directions, hidden);
     const current = new THREE.Vector3().subVectors(this.camera.position, this.controls.target).normalize();
-    const stride = Math.max(1, Math.floor(clip.triangles / 20000));
-    let best = null;
-    for (let a = 0; a < 24; ++a)
-      for (const elevation of [-0.5, -0.15, 0.25, 0.65, 1.1]) {
-        const azimuth = (a * Math.PI) / 12, level = Math.cos(elevation);
-        const d = new THREE.Vector3()
-          .addScaledVector(side, level * Math.cos(azimuth)).addScaledVector(front, level * Math.sin(azimuth))
-          .addScaledVector(up, Math.sin(elevation));
-        let hidden = 0;
-        for (const point of points) {
-          for (let t = 0; t < clip.triangles; t += stride) {
-            const i = 4 * corners[3 * t], j = 4 * corners[3 * t + 1], k = 4 * corners[3 * t + 2];
-            const x = (p[i] + p[j] + p[k]) / 3 - point.x, y = (p[i + 1] + p[j + 1] + p[k + 1]) / 3 - point.y;
-            const z = (p[i + 2] + p[j + 2] + p[k + 2]) / 3 - point.z;
-            const along = x * d.x + y * d.y + z * d.z;
-            if (along < reach) continue;
-            if (x * x + y * y + z * z - along * along < reach * reach) ++hidden;
-          }
-        }
-        const cost = hidden * stride / points.length + 1.2 * Math.abs(elevation - 0.25) + 0.8 * (1 - d.dot(current));
-        if (!best || cost < best.cost) best = { cost, d };
+    let best = 0, least = Infinity;
+    directions.forEach((d, i) => {
+      let cost = 3 * hidden[i];  // and what hides it nearly
+      directions.forEach((e, j) => { if (j !== i && d.dot(e) > 0.9) cost += 0.25 * Math.min(hidden[j], 2 * points.length); });
+      cost = cost / points.length + 0.5 * Math.abs(d.dot(this.up) - 0.25) + 0.3 * (1 - d.dot(current));
+      if (cost < least) {
+        least = cost;
+        best = i;
       }
-    return best.d;
+    });
+    return directions[best];
+  }
+
+  directionsAllRound() {
+    const { up } = this, side = new THREE.Vector3(up.y, up.z, up.x), front = new THREE.Vector3().crossVectors(side, up);
+    const directions = [];
+    for (const elevation of [-0.9, -0.5, -0.15, 0.2, 0.55, 0.9, 1.3])
+      for (let a = 0; a < 24; ++a) {
+        const azimuth = (a * Math.PI) / 12, level = Math.cos(elevation);
+        directions.push(new THREE.Vector3()
+          .addScaledVector(side, level * Math.cos(azimuth)).addScaledVector(front, level * Math.sin(azimuth))
+          .addScaledVector(up, Math.sin(elevation)));
+      }
+    return directions;
   }
 
   setBones(shown, frame, t) {
@@ -322,5 +355,31 @@ export class Stage {
     for (let b = 0; b < clip.bones; ++b) joints.push(...segments.slice(6 * b, 6 * b + 3));
     setLines(this.skeleton, segments);
     setDots(this.joints, joints, new Array(clip.bones).fill(0.7));
+  }
+}
+
+// Adds to `hidden`, for each direction, how many triangles a ray meets that begins `lift` away from the point in it.
+function addHidden(point, lift, p, corners, directions, hidden) {
+  for (let t = 0; t < corners.length; t += 3) {
+    const i = 4 * corners[t], j = 4 * corners[t + 1], k = 4 * corners[t + 2];
+    const ax = p[i] - point.x, ay = p[i + 1] - point.y, az = p[i + 2] - point.z;
+    const bx = p[j] - point.x, by = p[j + 1] - point.y, bz = p[j + 2] - point.z;
+    const cx = p[k] - point.x, cy = p[k + 1] - point.y, cz = p[k + 2] - point.z;
+    const mx = (ax + bx + cx) / 3, my = (ay + by + cy) / 3, mz = (az + bz + cz) / 3;
+    const far = mx * mx + my * my + mz * mz;
+    const reach = Math.max((ax - mx) ** 2 + (ay - my) ** 2 + (az - mz) ** 2, (bx - mx) ** 2 + (by - my) ** 2 + (bz - mz) ** 2,
+      (cx - mx) ** 2 + (cy - my) ** 2 + (cz - mz) ** 2);
+    for (let n = 0; n < directions.length; ++n) {
+      const d = directions[n], along = mx * d.x + my * d.y + mz * d.z;
+      if (far - along * along > reach || along < -reach) continue;
+      // The ray passes the triangle where it is on one side of all three planes through the point and an edge.
+      const u = d.x * (by * cz - bz * cy) + d.y * (bz * cx - bx * cz) + d.z * (bx * cy - by * cx);
+      const v = d.x * (cy * az - cz * ay) + d.y * (cz * ax - cx * az) + d.z * (cx * ay - cy * ax);
+      const w = d.x * (ay * bz - az * by) + d.y * (az * bx - ax * bz) + d.z * (ax * by - ay * bx);
+      if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) continue;
+      const sum = u + v + w;
+      const distance = ((u * ax + v * bx + w * cx) * d.x + (u * ay + v * by + w * cy) * d.y + (u * az + v * bz + w * cz) * d.z) / sum;
+      if (distance > lift) ++hidden[n];
+    }
   }
 }

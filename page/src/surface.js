@@ -42,15 +42,25 @@ const FRAGMENT = /* glsl */ `
     float fill = max(dot(n, normalize(vec3(0.8, 0.1, 0.4))), 0.0);
     float rim = pow(1.0 - max(dot(n, toEye), 0.0), 3.0);
     vec3 base = pow(vColour.rgb, vec3(2.2));
-    if (!gl_FrontFacing) base *= 0.45;
+    if (!gl_FrontFacing) base *= 0.65;
     vec3 light = mix(vec3(0.20, 0.20, 0.23), vec3(0.46, 0.48, 0.52), sky) + 0.62 * key * vec3(1.0, 0.98, 0.94) + 0.12 * fill;
     vec3 colour = base * light + rim * mix(0.03, 0.10, dark) * vec3(0.8, 0.9, 1.0);
     vec3 width = fwidth(vCorner);
     vec3 near = smoothstep(vec3(0.0), width * 1.1, vCorner);
     float line = 1.0 - min(min(near.x, near.y), near.z);
-    float large = 1.0 - smoothstep(0.06, 0.20, max(max(width.x, width.y), width.z));
-    colour *= 1.0 - edges * 0.38 * line * large;
+    float large = 1.0 - smoothstep(0.15, 0.4, max(max(width.x, width.y), width.z));
+    colour *= 1.0 - edges * 0.30 * line * large;
     outColour = vec4(pow(colour, vec3(1.0 / 2.2)), 1.0);
+  }`;
+
+// Triangles whose colour has no opacity shine through what lies before them.
+const GLOW_FRAGMENT = /* glsl */ `
+  precision highp float;
+  flat in vec4 vColour;
+  out vec4 outColour;
+  void main() {
+    if (vColour.a > 0.5) discard;
+    outColour = vec4(vColour.rgb, 0.55);
   }`;
 
 const widthFor = (count) => Math.min(2048, Math.max(1, count));
@@ -89,23 +99,25 @@ export class Surface {
         vertexWidth: { value: this.width }, colourWidth: { value: this.colourWidth }, edges: { value: 1 }, dark: { value: 0 },
       },
     });
-    const mesh = new THREE.Mesh(this.geometry, material);
-    mesh.frustumCulled = false;
-    return { mesh, colours, colourTexture, material };
+    const glow = new THREE.ShaderMaterial({
+      glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: GLOW_FRAGMENT, side: THREE.DoubleSide, uniforms: material.uniforms,
+      depthTest: false, depthWrite: false, transparent: true,
+    });
+    const group = new THREE.Group();
+    [material, glow].forEach((m, i) => {
+      const mesh = new THREE.Mesh(this.geometry, m);
+      mesh.frustumCulled = false;
+      mesh.renderOrder = i;
+      group.add(mesh);
+    });
+    return { group, glow: group.children[1], colours, colourTexture, material };
   }
 
   // Moves the surface to the share t of the way from frame to frame + 1, or to the end that was predicted of that interval.
   pose(frame, t, predicted) {
-    const { places, ends, endOfInterval, middle, clip } = this.recording;
+    const { places, middle, clip } = this.recording;
     const n = clip.vertices, from = 3 * n * frame;
-    let target = places, to = from;
-    if (t > 0) {
-      to = from + 3 * n;
-      if (predicted && endOfInterval.has(frame)) {
-        target = ends;
-        to = 3 * n * endOfInterval.get(frame);
-      }
-    }
+    const [target, to] = this.end(frame, t, predicted);
     for (let axis = 0; axis < 3; ++axis)
       for (let v = 0, a = from + axis * n, b = to + axis * n; v < n; ++v, ++a, ++b)
         this.positions[4 * v + axis] = ((1 - t) * places[a] + t * target[b]) / 65535 - middle[axis];
@@ -135,8 +147,32 @@ export class Surface {
     }
   }
 
+  // The array that holds the places at the end of an interval, and where they begin in it.
+  end(frame, t, predicted) {
+    const { places, ends, endOfInterval, clip } = this.recording, n = 3 * clip.vertices;
+    if (t > 0 && predicted && endOfInterval.has(frame)) return [ends, n * endOfInterval.get(frame)];
+    return [places, n * (t > 0 ? frame + 1 : frame)];
+  }
+
+  // One vertex at any moment.
+  pointAt(vertex, frame, t, predicted) {
+    const { places, middle, clip } = this.recording, n = clip.vertices;
+    const [target, to] = this.end(frame, t, predicted);
+    const at = (axis) => ((1 - t) * places[3 * n * frame + axis * n + vertex] + t * target[to + axis * n + vertex]) / 65535 - middle[axis];
+    return new THREE.Vector3(at(0), at(1), at(2));
+  }
+
   point(vertex, into) {
     return into.set(this.positions[4 * vertex], this.positions[4 * vertex + 1], this.positions[4 * vertex + 2]);
+  }
+
+  // The mean length of the edges of the shown pose, from some of them.
+  meanEdge() {
+    const { corners } = this.recording, a = new THREE.Vector3(), b = new THREE.Vector3();
+    const stride = 3 * Math.max(1, Math.floor(corners.length / 3 / 500));
+    let sum = 0, count = 0;
+    for (let i = 0; i + 1 < corners.length; i += stride, ++count) sum += this.point(corners[i], a).distanceTo(this.point(corners[i + 1], b));
+    return sum / count;
   }
 
   // The sphere round the box of the shown pose.

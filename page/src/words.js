@@ -36,7 +36,7 @@ export function detailSentence(recording, strategy) {
   if (bad > 0) {
     let text = `In ${bad} of ${many(summary.intervals, "interval")}`;
     if (summary.intersects_at_start > 0 && summary.touches > 0) text += ` (${summary.intersects_at_start} begin with a crossing)`;
-    if (summary.worst) text += `; worst at frame ${number(summary.worst.frame)} with ` +
+    if (summary.worst) text += `; worst at frame ${number(Math.floor(summary.worst.frame))} with ` +
       (summary.worst.start_pairs > 0 ? `${many(summary.worst.start_pairs, "crossing pair")} and ` : "") + many(summary.worst.contacts, "contact");
     parts.push(text + ".");
   } else {

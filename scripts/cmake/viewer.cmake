@@ -16,6 +16,7 @@ std::string_view viewer_page() { return {}; }
 }  // namespace cscd::bench
 ]])
     target_sources(${room} PRIVATE ${made})
+    target_compile_definitions(${room} PUBLIC CSCD_NODE="" CSCD_PAGE_CHECK="" CSCD_PAGE_PACKAGES="")
     return()
   endif()
   find_program(NPM npm)
@@ -37,4 +38,7 @@ std::string_view viewer_page() { return {}; }
     DEPENDS ${packages} ${sources}
     COMMENT "Bundling the viewer" VERBATIM)
   target_sources(${room} PRIVATE ${made})
+  # For the tests that open a page in a browser.
+  target_compile_definitions(${room} PUBLIC CSCD_NODE="${NODE}" CSCD_PAGE_CHECK="${page}/test/check.mjs"
+                             CSCD_PAGE_PACKAGES="${copy}")
 endfunction()

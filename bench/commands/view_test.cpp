@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "bench/testing/test_generated.h"
+#include "bench/testing/test_shell.h"
+#include "bench/view/viewer_page.h"
+
+// cscd view from outside: the page that it writes, and what a browser makes of it.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+json header_of(const std::string& page) {
+  const std::string begin = "id=\"header\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+constexpr char kHostile[] = "<img src=x onerror=alert(1)>";
+
+// A figure whose parts and bones are named by somebody who wishes readers ill.
+scenes::Character hostile_figure() {
+  scenes::Character figure = scenes::walking_figure();
+  for (scenes::Node& node : figure.nodes) node.name = kHostile + node.name + "</script>";
+  for (scenes::Part& part : figure.parts) part.name = kHostile + part.name;
+  return figure;
+}
+
+class View : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    if (viewer_page().empty()) GTEST_SKIP() << "built without the viewer";
+    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  }
+
+  // Has a browser open and use a page of the folder (page/test/check.mjs).
+  void use_in_browser(const std::string& page, const std::string& expected) const {
+    const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_CHECK "' '" CSCD_PAGE_PACKAGES "' " + page +
+                        " --text \"" + expected + "\"");
+    if (ran.status == 77) GTEST_SKIP() << ran.out;
+    EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
+    std::printf("%s", ran.out.c_str());
+  }
+};
+
+TEST_F(View, WritesThePageBesideTheInputsName) {
+  const Ran ran = run("cscd view small");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(files(), "figure.glb small.html");
+  EXPECT_NE(ran.out.find("does not touch itself"), std::string::npos) << ran.out;
+  expect_refused(run("cscd view small"), "small.html");
+  EXPECT_EQ(run("cscd view small --force").status, 0);
+  EXPECT_EQ(run("cscd view small -o - | head -c 15").out, "<!doctype html>");
+}
+
+TEST_F(View, GivesTheAnswersOfAQuery) {
+  ASSERT_EQ(run("cscd view figure.glb --clip hug --strategy drvbc_fast --strategy base -o page.html").status,
+            0);
+  const json header = header_of(text("page.html"));
+  for (const char* strategy : {"drvbc_fast", "base"}) {
+    const json query =
+        json::parse(run(std::string("cscd query figure.glb --clip hug --json - --strategy ") + strategy).out);
+    const json& row = header["strategies"][strategy == std::string("base") ? 1 : 0];
+    EXPECT_EQ(row["name"], strategy);
+    EXPECT_EQ(row["summary"], query["summary"]);
+    EXPECT_EQ(header["rest"], query["rest_crossings"]);
+  }
+  ASSERT_EQ(run("cscd view figure.glb --clip hug --frames 3:7 -o part.html").status, 0);
+  EXPECT_EQ(header_of(text("part.html"))["clip"]["frames"], 5);
+}
+
+TEST_F(View, RefusesWhatItCannotShow) {
+  expect_refused(run("cscd view small --strategy drvbc-fast"), "did you mean drvbc_fast?");
+  expect_refused(run("cscd view small -o page.txt"), "page.txt");
+  expect_refused(run("cscd view small --first --elementary newton"), "--first");
+  expect_refused(run("cscd view figure.glb --clip all"), "only query answers all clips");
+  std::string many = "cscd view small";
+  for (int i = 0; i < 7; ++i) many += " --strategy base";
+  expect_refused(run(many), "up to 6");
+  EXPECT_EQ(files(), "figure.glb");
+}
+
+TEST_F(View, ABrowserShowsTheFirstContactAndHostileNamesAsText) {
+  put("hostile.glb", scenes::to_glb(hostile_figure()));
+  const Ran ran = run("cscd view hostile.glb --clip hug --strategy drvbc --strategy drvbc_fast -o page.html");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const std::string page = text("page.html");
+  EXPECT_EQ(page.find("<img"), std::string::npos);
+  use_in_browser("page.html", "intersects itself, first at frame");
+}
+
+TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {
+  ASSERT_EQ(run("cscd view small -o page.html").status, 0);
+  use_in_browser("page.html", "small does not touch itself in frames 0 to 5");
+}
+
+TEST_F(View, ADamagedPageSaysSoInOneLine) {
+  ASSERT_EQ(run("cscd view small -o page.html").status, 0);
+  std::string page = text("page.html");
+  const std::size_t arrays = page.find("id=\"arrays\">") + 200;
+  page.replace(arrays, 40, std::string(40, 'A'));
+  put("page.html", page);
+  const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_CHECK "' '" CSCD_PAGE_PACKAGES "' page.html");
+  if (ran.status == 77) GTEST_SKIP() << ran.out;
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.out.find("is damaged"), std::string::npos) << ran.out;
+}
+
+}  // namespace
+}  // namespace cscd::bench

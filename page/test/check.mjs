@@ -1,0 +1,191 @@
+// Opens a page of `cscd view` in headless Chromium and uses it as a person would. Exit status: 0 all is well, 1 something is
+// not (one line says what), 77 there is no Chromium.
+//
+//   node check.mjs FOLDER-WITH-node_modules PAGE [--text EXPECTED] [--pictures FOLDER]
+import { createRequire } from "node:module";
+import { accessSync, constants, mkdirSync } from "node:fs";
+import { basename, join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [packages, file, ...options] = process.argv.slice(2);
+const option = (name) => (options.includes(name) ? options[options.indexOf(name) + 1] : null);
+
+function chromiumOfThisMachine() {
+  for (const path of [process.env.CSCD_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"])
+    try {
+      if (path) {
+        accessSync(path, constants.X_OK);
+        return path;
+      }
+    } catch { /* the next one */ }
+  return null;
+}
+
+const executablePath = chromiumOfThisMachine();
+if (!executablePath) {
+  console.log("skipped: there is no Chromium here (Debian's package chromium, or CSCD_CHROMIUM)");
+  process.exit(77);
+}
+const { chromium } = createRequire(join(resolve(packages), "package.json"))("playwright-core");
+
+function require(holds, what) {
+  if (!holds) throw new Error(what);
+}
+
+const browser = await chromium.launch({
+  executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+const page = await browser.newPage({ viewport: { width: 1100, height: 720 } });
+const complaints = [], requests = [];
+page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
+page.on("pageerror", (error) => complaints.push(String(error)));
+page.on("request", (request) => requests.push(request.url()));
+page.on("dialog", (dialog) => complaints.push(`a dialog: ${dialog.message()}`));
+
+// What the canvas shows, as 160 x 120 pixels of red, green and blue.
+const look = () => page.evaluate(() => {
+  const small = document.createElement("canvas");
+  small.width = 160;
+  small.height = 120;
+  const context = small.getContext("2d");
+  window.cscd.stage.draw();
+  context.drawImage(document.getElementById("canvas"), 0, 0, small.width, small.height);
+  return Array.from(context.getImageData(0, 0, small.width, small.height).data.filter((_, i) => i % 4 < 3));
+});
+const different = (a, b) => {
+  let count = 0;
+  for (let i = 0; i < a.length; i += 3)
+    if (Math.max(...[0, 1, 2].map((k) => Math.abs(a[i + k] - b[i + k]))) > 16) ++count;
+  return count;
+};
+const settle = () => page.waitForFunction(() => !window.cscd.stage.flight && !window.cscd.stage.requested);
+const clock = () => page.textContent("#clock");
+const folder = option("--pictures");
+const picture = async (name) => {
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${basename(file, ".html")}-${name}.png`) });
+};
+
+try {
+  const opened = Date.now();
+  await page.goto(pathToFileURL(resolve(file)).href);
+  await page.waitForFunction(() => window.cscd || document.body.classList.contains("failed"));
+  require(!(await page.evaluate(() => document.body.classList.contains("failed"))), await page.textContent("#details"));
+  await settle();
+  const openedIn = Date.now() - opened;
+  const said = await page.textContent("#verdict");
+  if (option("--text")) require(said.includes(option("--text")), `the verdict does not say "${option("--text")}": ${said}`);
+  await picture("opening");
+
+  const first = await look();
+  require(new Set(first).size > 20, "the canvas is empty");
+  require(different(first, await look()) === 0, "one view gives two pictures");
+
+  // The slider and the keys change the frame.
+  const moments = await page.evaluate(() => window.cscd.momentsOf(window.cscd.active).length);
+  const before = await clock();
+  await page.click("#whole");
+  await settle();
+  const whole = await look();
+  await page.locator("#slider").evaluate((slider) => {
+    slider.value = String(Number(slider.max) * 0.8);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  require((await clock()) !== before, "the slider does not change the frame");
+  require(different(whole, await look()) > 20, "the slider does not move the surface");
+  await page.focus("#canvas");
+  await page.keyboard.press("Home");
+  require((await clock()).startsWith(await page.evaluate(() => `frame ${window.cscd.recording.clip.frame_number[0].toFixed(2)}`)), `Home leads to ${await clock()}`);
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Shift+ArrowRight");
+  require((await page.evaluate(() => window.cscd.position)) === Math.min(11, await page.evaluate(() => window.cscd.recording.intervals)), "arrows do not step frames");
+
+  // Playing moves, and pausing stops.
+  await page.keyboard.press(" ");
+  await page.waitForTimeout(1500);
+  const times = await page.evaluate(() => window.cscd.stage.frameTimes.slice(-60));
+  await page.keyboard.press(" ");
+  const paused = await clock();
+  require((await page.evaluate(() => window.cscd.position)) !== 11, "the clip does not play");
+  await page.waitForTimeout(200);
+  require((await clock()) === paused, "the clip does not pause");
+  const gaps = times.slice(1).map((t, i) => t.at - times[i].at).sort((a, b) => a - b);
+  const scripts = times.map((t) => t.cpu).sort((a, b) => a - b);
+
+  // Every way of colouring shows colours of its own.
+  const modes = await page.locator("#modes button").all();
+  const pictures = [];
+  for (const mode of modes) {
+    await mode.click();
+    pictures.push(await look());
+    await picture(`colour-${await mode.getAttribute("value")}`);
+  }
+  const values = await Promise.all(modes.map((mode) => mode.getAttribute("value")));
+  for (const name of ["atomic", "place"])
+    if (values.includes(name)) require(different(pictures[0], pictures[values.indexOf(name)]) > 50, `colour by ${name} changes nothing`);
+
+  // A contact in the list moves the camera to it, at its own time.
+  if (moments > 0) {
+    await page.keyboard.press("1");
+    await page.click("#whole");
+    await settle();
+    const far = await page.evaluate(() => window.cscd.stage.camera.position.toArray());
+    const row = page.locator("#list > button:not(.one)").nth(Math.min(2, moments - 1));
+    await row.click();
+    await settle();
+    const arrived = await page.evaluate(() => {
+      const { stage, chosen } = window.cscd, point = window.cscd.pointOf(chosen);
+      return { moved: stage.camera.position.toArray(), off: stage.controls.target.distanceTo(point), radius: stage.whole.radius, interval: window.cscd.interval() };
+    });
+    require(Math.hypot(...far.map((x, i) => x - arrived.moved[i])) > 0.1 * arrived.radius, "a contact in the list does not move the camera");
+    require(arrived.off < 0.01 * arrived.radius, "the camera does not look at the contact");
+    require(different(whole, await look()) > 100, "a contact in the list does not change the picture");
+    require(await row.getAttribute("aria-current") || (await page.locator("#list button.one[aria-current]").count()) > 0, "the list does not mark the chosen contact");
+    const one = page.locator("#list button.one").last();
+    if (await one.count()) {
+      await one.click();
+      await settle();
+      const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.timeOf(window.cscd.active, window.cscd.chosen)]);
+      require(pinned[0] === pinned[1], "the surface is not shown at the contact's time");
+    }
+    await picture("contact");
+  }
+
+  // Another strategy has colours of its own.
+  if ((await page.locator("#strategies button").count()) > 1) {
+    await page.click("#whole");
+    await settle();
+    await page.evaluate(() => window.cscd.setMode("cluster"));
+    const one = await look();
+    await page.focus("#canvas");
+    await page.keyboard.press("s");
+    require(different(one, await look()) > 50, "another strategy changes no colour");
+    await page.click("#together");
+    require((await page.locator(".pane").count()) === (await page.locator("#strategies button").count()), "not every strategy has a pane");
+    await picture("together");
+    await page.click("#together");
+  }
+
+  // Names from files are text.
+  require((await page.locator("img, iframe, object, embed, link").count()) === 0, "a name became an element");
+
+  await page.click("#theme");
+  await picture("other-theme");
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.waitForTimeout(100);
+  require(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "the page is wider than a phone");
+  await picture("phone");
+
+  require(complaints.length === 0, `the browser complains: ${complaints[0]}`);
+  require(requests.length === 1, `the page asks for ${requests[1]}`);
+  console.log(JSON.stringify({
+    page: basename(file), opened_ms: openedIn, moments, frame_ms: gaps[Math.floor(gaps.length / 2)],
+    script_ms: scripts[Math.floor(scripts.length / 2)], frames: times.length,
+  }));
+} catch (error) {
+  console.log(`${file}: ${error.message}`);
+  process.exitCode = 1;
+} finally {
+  await browser.close();
+}
