@@ -58,10 +58,11 @@ TEST_F(View, WritesThePageBesideTheInputsName) {
 }
 
 TEST_F(View, GivesTheAnswersOfAQuery) {
-  ASSERT_EQ(run("cscd view figure.glb --clip hug --strategy drvbc_fast --strategy base -o page.html").status,
+  ASSERT_EQ(run("cscd view figure.glb --clip hug --strategy drvbc_fast_complete --strategy base -o page.html")
+                .status,
             0);
   const json header = header_of(text("page.html"));
-  for (const char* strategy : {"drvbc_fast", "base"}) {
+  for (const char* strategy : {"drvbc_fast_complete", "base"}) {
     const json query =
         json::parse(run(std::string("cscd query figure.glb --clip hug --json - --strategy ") + strategy).out);
     const json& row = header["strategies"][strategy == std::string("base") ? 1 : 0];
@@ -86,11 +87,14 @@ TEST_F(View, RefusesWhatItCannotShow) {
 
 TEST_F(View, ABrowserShowsTheFirstContactAndHostileNamesAsText) {
   put("hostile.glb", scenes::to_glb(hostile_figure()));
-  const Ran ran = run("cscd view hostile.glb --clip hug --strategy drvbc --strategy drvbc_fast -o page.html");
+  const Ran ran =
+      run("cscd view hostile.glb --clip hug --component largest --strategy drvbc --strategy drvbc_fast -o "
+          "page.html");
   ASSERT_EQ(ran.status, 0) << ran.errors;
   const std::string page = text("page.html");
   EXPECT_EQ(page.find("<img"), std::string::npos);
-  use_in_browser("page.html", "intersects itself, first at frame");
+  use_in_browser("page.html",
+                 "hostile.glb touches itself, first at frame 25.75 (0.858 s): <img src=x onerror=alert(1)>");
 }
 
 TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {

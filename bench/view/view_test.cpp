@@ -99,7 +99,7 @@ TEST(PositionCoder, TakesASurfaceOfOnePoint) {
   grid.include(point);
   PositionCoder coder(grid);
   coder.append(point);
-  for (const std::uint16_t place : decoded(coder.bytes(), 1, 12)[0]) EXPECT_EQ(place, 0);
+  EXPECT_EQ(decoded(coder.bytes(), 1, 12)[0], std::vector<std::uint16_t>(12, 0));
 }
 
 TEST(ViewBits, AreDifferencesFromTheRowBefore) {
