@@ -30,6 +30,7 @@ class Viewer {
     this.playing = false;
     this.position = 0;  // in frames
     this.pinned = null;  // the moment of a chosen contact: {interval, t, predicted}
+    this.anchor = null;
     this.chosen = null;  // the chosen contact or crossing: {interval, contact} or {interval, pair}
     this.modes = this.possibleModes();
     this.stage = new Stage(byId("canvas"), recording, upAxis(recording), () => this.placeInset());
@@ -316,6 +317,7 @@ class Viewer {
       this.poseKey = key;
       this.stage.whole = this.stage.surface.bounds();
       this.stage.meanEdge = this.stage.surface.meanEdge();
+      this.stage.follow(this.anchorPoint());
     }
     this.stage.setBones(this.bonesShown, pose.interval, pose.t);
     this.shown.forEach((s, i) => {
@@ -360,9 +362,9 @@ class Viewer {
     else if (this.mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
     else if (this.mode === "atomic" || this.mode === "cluster") {
       const cluster = `one colour for each cluster${active.name.startsWith("drvbc_fast") ? " of the first cover" : ""}`;
-      rows.push(element("span", !active.has_clusters ? `${active.name} has no clusters`
+      rows.push(element("b", !active.has_clusters ? `${active.name} has no clusters`
         : this.mode === "atomic" ? `${cluster}, as made in advance` : `${cluster} that has one observer in this interval`));
-    } else rows.push(element("span", { place: "one colour for each name", part: "one colour for each part" }[this.mode]));
+    } else rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[this.mode]));
     if (this.chosen && this.chosen.contact !== undefined && this.chosen.interval === interval)
       rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     legend.replaceChildren(...rows);
@@ -574,8 +576,20 @@ class Viewer {
 
   // --- Camera ------------------------------------------------------------------------------------------------------------
 
+  // What the camera follows: a vertex of the contact that was looked at last, or else the middle of the surface.
+  anchorPoint() {
+    return this.anchor === null ? this.stage.whole.center : this.stage.surface.point(this.anchor, new THREE.Vector3());
+  }
+
+  setAnchor(vertex) {
+    this.anchor = vertex;
+    this.stage.follow(null);
+    this.stage.follow(this.anchorPoint());
+  }
+
   showWhole(smooth) {
-    const direction = this.broadSide(), { center, distance } = this.stage.fit(direction);
+    this.setAnchor(null);
+    const direction = this.broadSide(), { center, distance } = this.stage.fit(direction, this.together ? 1.3 : 1.06);  // room for names
     this.stage.look(center, distance, direction, smooth);
   }
 
@@ -585,6 +599,8 @@ class Viewer {
       this.showWhole(smooth);
       return;
     }
+    const { contact, pair } = this.chosen, { contact_vertex: vertex, crossing } = this.active;
+    this.setAnchor(contact !== undefined ? vertex[4 * contact] : this.recording.corners[3 * crossing[2 * pair]]);
     const { stage } = this, whole = stage.surface.bounds();
     const { contactOffset } = this.active, { interval } = this.chosen;
     const points = [point];

@@ -231,8 +231,9 @@ export class Stage {
     const box = this.insetBox && this.insetShown ? this.insetBox() : null;
     if (box) {
       const away = new THREE.Vector3().subVectors(camera.position, this.controls.target).normalize();
-      this.insetCamera.position.copy(this.whole.center).addScaledVector(away, this.distanceFor(this.whole.radius) * 1.02);
-      this.insetCamera.lookAt(this.whole.center);
+      const { center, distance: from } = this.fit(away, 1.25, box, 2000);  // some of the vertices tell enough
+      this.insetCamera.position.copy(center).addScaledVector(away, from);
+      this.insetCamera.lookAt(center);
       this.insetCamera.near = 0.01;
       draw(0, box, this.insetCamera, true);
     }
@@ -252,12 +253,12 @@ export class Stage {
   }
 
   // The point to look at along a direction, and the distance from it, at which the whole shown pose just fits.
-  fit(direction, margin = 1.06) {
-    const { surface, up, recording } = this, pane = this.panes[0];
+  fit(direction, margin = 1.06, pane = this.panes[0], most = Infinity) {
+    const { surface, up, recording } = this, stride = Math.max(1, Math.floor(recording.clip.vertices / most));
     const right = new THREE.Vector3().crossVectors(up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
     const point = new THREE.Vector3(), low = [1e9, 1e9], high = [-1e9, -1e9], axes = [right, above];
     const each = (take) => {
-      for (let v = 0; v < recording.clip.vertices; ++v) take(surface.point(v, point));
+      for (let v = 0; v < recording.clip.vertices; v += stride) take(surface.point(v, point));
     };
     each((x) => axes.forEach((axis, i) => {
       const along = x.dot(axis);
@@ -271,9 +272,20 @@ export class Stage {
       const across = Math.max((Math.abs(x.dot(right) - middle[0]) * pane.h) / pane.w, Math.abs(x.dot(above) - middle[1]));
       far = Math.max(far, x.dot(direction) + (margin * across) / tangent);
     });
-    const depth = surface.bounds().center.dot(direction);
+    const depth = (this.whole || surface.bounds()).center.dot(direction);
     const center = new THREE.Vector3().addScaledVector(right, middle[0]).addScaledVector(above, middle[1]).addScaledVector(direction, depth);
     return { center, distance: Math.max(1e-3, far - depth) };
+  }
+
+  // Moves the camera along with a point of the surface, so that what is looked at stays in view.
+  follow(point) {
+    if (this.followed && point && !this.flight) {
+      const way = new THREE.Vector3().subVectors(point, this.followed);
+      this.camera.position.add(way);
+      this.controls.target.add(way);
+      this.controls.update();
+    }
+    this.followed = point ? point.clone() : null;
   }
 
   // Moves the camera so that a point is seen along a direction, from a distance.

@@ -73,10 +73,14 @@ export class Timeline {
     }
     context.fillStyle = colour("--soft");
     const step = niceStep(n, width / 85);
+    let free = 0;  // where the next label may begin
     for (let f = 0; f <= n; f += step) {
-      context.fillRect(x(f), bottom, 1, 4);
-      context.textAlign = f === 0 ? "left" : x(f) > width - 30 ? "right" : "center";
-      context.fillText(this.label(f), Math.min(width, x(f)), height - 2);
+      context.fillRect(Math.min(width - 1, x(f)), bottom, 1, 4);
+      const text = this.label(f), long = context.measureText(text).width;
+      const left = Math.min(width - long, Math.max(0, x(f) - long / 2));
+      if (left < free) continue;
+      context.fillText(text, left, height - 2);
+      free = left + long + 8;
     }
     context.fillStyle = colour("--text");
     context.fillRect(x(this.position) - 1, 0, 2, bottom);
