@@ -15,14 +15,15 @@ namespace cscd::bench {
 void export_glb(const std::string& input, const ModelOptions& options, const std::filesystem::path& output,
                 bool force) {
   if (is_model_file(input))
-    throw InputError("input " + input +
-                     ": is a file; only a scene, by its name in `cscd list`, can become a .glb file; export "
-                     "this as .h5");
+    throw InputError(
+        "input " + input +
+        ": is a file; only a scene, by its name in `cscd list`, can become a .glb file with bones; "
+        "export this with --bake, or as .h5");
   if (is_point_cache(input))
     throw InputError(
         "input " + input +
         ": is a point cache, which has no weights that bind vertices to bones, so it cannot become "
-        "a .glb file; export it as .h5, or name a scene");
+        "a .glb file with bones; export it with --bake, or as .h5, or name a scene");
   if (options != ModelOptions{})
     throw InputError(
         "input " + input +

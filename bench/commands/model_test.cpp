@@ -262,7 +262,7 @@ TEST(Models, WhatCannotBeDoneIsSaidInOneLine) {
   const Scratch scratch;
   const std::string file = scratch / "motley.gltf", out = scratch / "out.json";
   write(file, scenes::to_gltf(motley()));
-  write(scratch.path / "text.obj", "v 0 0 0\n");
+  write(scratch.path / "text.stl", "solid\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{file, "--clip", "run"}, "choose one of 0 'bend'"},
       {{file, "--component", "3"}, "there are components 0 to 2"},
@@ -274,7 +274,7 @@ TEST(Models, WhatCannotBeDoneIsSaidInOneLine) {
       {{file, "--component", "2", "--clip", "bend", "--strategy", "drvbc"}, "boundary edges: 3"},
       {{file, "--frames", "9:99"}, "--frames 9:99"},
       {{scratch / "none.glb"}, "no such file"},
-      {{scratch / "text.obj"}, "convert it to one of"}};
+      {{scratch / "text.stl"}, "convert it to one of"}};
   for (const auto& [words, what] : cases) {
     std::vector<std::string> arguments{"query"};
     arguments.insert(arguments.end(), words.begin(), words.end());

@@ -176,6 +176,9 @@ std::string import_text(const ImportReport& r) {
                        std::to_string(r.joints) + " bones";
     if (clip.ticks_per_second == 0 && r.format != "glTF 2")
       text += "; the file gives no ticks a second, 25 assumed";
+    if (r.joints == 0)  // a moving surface alone
+      text = std::to_string(clip.frames) + " frames, taken as " + number(r.fps) +
+             " a second (--fps): " + number(clip.seconds) + " s";
     line(text);
   }
   if (r.lead_in > 0)

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "bench/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
 
@@ -74,7 +75,7 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
   for (const Contact& contact : answer.found.contacts) {
     if (contact.verdict != Verdict::contact) continue;
     ++contacts;
-    mark_touched(contact.pair, touched);
+    mark_touched(input_.mesh, contact.pair, touched);
     if (kept == kMostContacts) continue;
     ++kept;
     add_contact(contact, interval.motion, places);
@@ -89,20 +90,6 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
       crossing_.push_back(static_cast<std::int32_t>(t));
   kept_pairs_.push_back(count(pairs));
   if (has_clusters()) add_view(interval);
-}
-
-// Marks the triangles that have a feature of the pair.
-void StrategyRecording::mark_touched(const FeaturePair& pair, std::vector<bool>& touched) const {
-  const auto mark = [&](std::span<const TriangleId> triangles) {
-    for (const TriangleId t : triangles) touched[+t] = true;
-  };
-  if (pair.kind == FeaturePair::Kind::vertex_face) {
-    mark(input_.mesh.triangles_at(VertexId{pair.a}));
-    touched[+TriangleId{pair.b}] = true;
-  } else {
-    mark(input_.mesh.triangles_at(EdgeId{pair.a}));
-    mark(input_.mesh.triangles_at(EdgeId{pair.b}));
-  }
 }
 
 void StrategyRecording::add_contact(const Contact& contact, const Motion& motion, TextTable& places) {

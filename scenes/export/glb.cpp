@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "scenes/export/glb_container.h"
 
 // Section numbers refer to the glTF 2.0 specification.
 namespace cscd::scenes {
@@ -227,23 +228,6 @@ class ClipWriter {
   std::map<std::vector<float>, std::size_t> inputs_;
 };
 
-// Write numbers of four bytes and the chunks of the container (4.4).
-std::string word(std::size_t number) {
-  const auto value = static_cast<std::uint32_t>(number);
-  return {reinterpret_cast<const char*>(&value), sizeof value};
-}
-
-std::string container(const std::string& json, const std::string& binary) {
-  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
-  const std::size_t padding = (4 - json.size() % 4) % 4;
-  const std::size_t length = kHeader + 2 * kChunkHeader + json.size() + padding + binary.size();
-  if (length > UINT32_MAX) refuse("the file would have " + std::to_string(length) + " bytes");
-  std::string out = "glTF" + word(2) + word(length) + word(json.size() + padding) + "JSON" + json;
-  out.append(padding, ' ');
-  out += word(binary.size()) + std::string("BIN\0", 4);
-  return out += binary;
-}
-
 }  // namespace
 
 std::string to_glb(const Character& character) {
@@ -281,7 +265,7 @@ std::string to_glb(const Character& character) {
   file["accessors"] = buffer.accessors();
   file["bufferViews"] = buffer.views();
   file["buffers"] = Json::array({{{"byteLength", buffer.bytes().size()}}});
-  return container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
+  return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
 }
 
 }  // namespace cscd::scenes

@@ -12,8 +12,10 @@
 #include "core/base/error.h"
 #include "core/base/temporaries.h"
 #include "scenes/character/report.h"
+#include "scenes/exchange/mesh_sequence.h"
 #include "scenes/import/convert.h"
 #include "scenes/import/read_model.h"
+#include "scenes/import/sequence_import.h"
 
 namespace {
 
@@ -44,8 +46,10 @@ int main(int argc, char** argv) {
   try {
     const CharacterLimits limits;
     const ImportOptions options = parse_arguments(std::span(words).subspan(4));
-    const Character character = read_model(words[0], limits);
-    const ImportReport report = convert(character, options, limits, words[1], words[3]);
+    const ImportReport report =
+        is_mesh_sequence(words[0])
+            ? import_sequence(words[0], options, limits, words[1], words[3])
+            : convert(read_model(words[0], limits), options, limits, words[1], words[3]);
     std::ofstream out(words[2], std::ios::binary);
     out << to_text(report);
     out.close();

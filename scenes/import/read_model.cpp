@@ -50,7 +50,8 @@ const Format& format_of(const std::filesystem::path& path) {
     if (extension == format.extension) return format;
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw InputError("files of the kind '" + extension + "' are not read; convert it to one of " + known);
+  throw InputError("files of the kind '" + extension + "' are not read; convert it to one of " + known +
+                   ", or to .obj, .ply, .pc2 or .mdd");
 }
 
 void keep_only(Assimp::Importer& importer, std::string_view name) {

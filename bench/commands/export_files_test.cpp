@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/testing/test_generated.h"
+#include "bench/testing/test_shell.h"
+#include "scenes/clip/point_cache.h"
+
+// The files that cscd export writes for other programs: read back by cscd, and opened by the readers of VTK
+// and meshio where Debian's packages are installed.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+class ExportFiles : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  }
+  json answer(const std::string& words) const {
+    const Ran ran = run("cscd query " + words + " --json -");
+    EXPECT_EQ(ran.status, 0) << words << ": " << ran.errors;
+    return json::parse(ran.out);
+  }
+  // Runs a script of Python; skips the test without the module.
+  std::string python(const std::string& module, const std::string& script) const {
+    if (run("/usr/bin/python3 -c 'import " + module + "'").status != 0) return "skip";
+    const Ran ran = run("/usr/bin/python3 - <<'SCRIPT'\n" + script + "\nSCRIPT");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    return ran.out;
+  }
+};
+
+// Verdict and time of each interval.
+std::vector<std::pair<std::string, double>> verdicts(const json& answer) {
+  std::vector<std::pair<std::string, double>> out;
+  for (const json& interval : answer["intervals"])
+    out.emplace_back(interval["verdict"], interval["time"].is_null() ? -1 : interval["time"].get<double>());
+  return out;
+}
+
+TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
+  // The eyes cross the head at rest, which a moving surface alone cannot say.
+  const auto expected = verdicts(answer("figure.glb --clip hug --component largest"));
+  ASSERT_GT(
+      std::count_if(expected.begin(), expected.end(), [](const auto& v) { return v.first == "touches"; }), 0);
+  for (const char* output : {"exact.obj", "exact.ply", "near.pc2", "near.mdd --force", "baked.glb --bake"}) {
+    const Ran ran = run(std::string("cscd export figure.glb --clip hug --component largest ") + output);
+    ASSERT_EQ(ran.status, 0) << output << ran.errors;
+  }
+  EXPECT_EQ(verdicts(answer("exact.0000.obj")), expected);
+  EXPECT_EQ(verdicts(answer("exact.0007.ply")), expected);
+  const Ran fps = run("cscd query exact.0000.obj --fps 60 --frames 0:1 -- 2>&1");
+  EXPECT_NE(fps.out.find("60 a second"), std::string::npos) << fps.out;
+  for (const char* input : {"near.pc2", "near.mdd", "baked.glb"}) {
+    const auto found = verdicts(answer(input));
+    ASSERT_EQ(found.size(), expected.size()) << input;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].first, expected[i].first) << input << " " << i;
+      EXPECT_NEAR(found[i].second, expected[i].second, 1e-2) << input << " " << i;
+    }
+  }
+}
+
+TEST_F(ExportFiles, NothingIsWrittenWhereOneFileStandsInTheWay) {
+  put("walk.0003.obj", "mine");
+  expect_refused(run("cscd export small walk.obj"), "walk.0003.obj");
+  put("cache.obj", "mine");
+  expect_refused(run("cscd export small cache.pc2"), "cache.obj");
+  EXPECT_EQ(files(), "cache.obj figure.glb walk.0003.obj");
+  EXPECT_EQ(run("cscd export small walk.obj --force").status, 0);
+  expect_refused(run("cscd export small walk.pc2 --bake"), "--bake");
+  expect_refused(run("cscd export small walk.stl"), ".usda");
+}
+
+TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
+  ASSERT_EQ(
+      run("cscd export small a.obj && cscd export small c.pc2 && cscd export small c.mdd --force").status, 0);
+  const struct {
+    const char *change, *query, *line;
+  } kCases[] = {
+      {"true", "c.obj", "has no number"},
+      {"cp a.0000.obj lone.1.obj", "lone.1.obj", "only file of its sequence"},
+      {"mv a.0002.obj kept", "a.0000.obj", "frame 2 of its sequence is missing before a.0003.obj"},
+      {"mv kept a.0002.obj; head -n -1 a.0002.obj > b; mv b a.0002.obj", "a.0000.obj",
+       "other faces than the first"},
+      {"grep -v '^v ' a.0001.obj > b; mv b a.0001.obj", "a.0000.obj", "a.0001.obj: has no vertices"},
+      {"printf 'v 0 0\\n' > a.0001.obj", "a.0000.obj", "a.0001.obj: line 1: '' is no coordinate"},
+      {"printf 'v 0 0 0\\nf 1 2 9\\n' > a.0000.obj", "a.0000.obj", "has a face of vertex"},
+      {"head -c 500 c.pc2 > d.pc2; cp c.obj d.obj", "d.pc2", "which is not what its 500 bytes hold"},
+      {"cp c.mdd e.mdd", "e.mdd", "has no faces; put the OBJ file"},
+      {"printf 'ply\\nformat ascii 1.0\\nend_header\\n' | tee f.1.ply > f.2.ply", "f.1.ply",
+       "has no vertices"},
+      {"true", "c.pc2 --clip x", "leave out all options"},
+  };
+  for (const auto& one : kCases) {
+    ASSERT_EQ(run(one.change).status, 0) << one.change;
+    expect_refused(run(std::string("cscd query ") + one.query), one.line);
+  }
+}
+
+TEST_F(ExportFiles, VtkReadsSurfaceAndContacts) {
+  const json query = answer("figure.glb --clip hug");
+  ASSERT_EQ(run("cscd export figure.glb --clip hug p.pvd").status, 0);
+  const std::string out = python("vtkmodules.vtkIOXML", R"(
+import json
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+import xml.etree.ElementTree as tree
+rows = []
+for item in tree.parse("p.pvd").getroot().iter("DataSet"):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(item.get("file"))
+    reader.Update()
+    data = reader.GetOutput()
+    arrays = data.GetCellData() if item.get("part") == "0" else data.GetPointData()
+    names = [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())]
+    total = {n: sum(arrays.GetArray(n).GetValue(i) for i in range(arrays.GetArray(n).GetNumberOfTuples())) for n in names if n != "normal"}
+    rows.append([item.get("part"), float(item.get("timestep")), data.GetNumberOfPoints(), data.GetNumberOfCells(), total])
+print(json.dumps(rows)))");
+  if (out == "skip") GTEST_SKIP() << "Debian's python3-vtk9 is not installed";
+  const json rows = json::parse(out);
+  const json& intervals = query["intervals"];
+  ASSERT_EQ(rows.size(), 2 * (intervals.size() + 1));
+  double touched = 0;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    EXPECT_EQ(rows[2 * i + 1][2], intervals[i]["contacts"].size()) << i;
+    EXPECT_EQ(rows[2 * i][3], query["import"]["chosen_triangles"]);
+    EXPECT_NEAR(rows[2 * i][1].get<double>(), intervals[i]["seconds"].get<double>(), 1e-6);
+    touched += rows[2 * i][4]["touches"].get<double>();
+  }
+  EXPECT_GT(touched, 0);
+}
+
+TEST_F(ExportFiles, MeshioReadsObjAndPly) {
+  ASSERT_EQ(run("cscd export small s.obj && cscd export small s.ply").status, 0);
+  const std::string out = python("meshio", R"(
+import meshio, numpy
+obj, ply = meshio.read("s.0003.obj"), meshio.read("s.0003.ply")
+assert numpy.array_equal(obj.points, ply.points), "positions differ"
+print(len(obj.points), len(ply.cells_dict["triangle"]), len(obj.cells_dict["triangle"])))");
+  if (out == "skip") GTEST_SKIP() << "Debian's python3-meshio is not installed";
+  EXPECT_EQ(out, "82 160 160\n");
+}
+
+TEST_F(ExportFiles, UsdHoldsEveryFrame) {
+  ASSERT_EQ(
+      run("cscd export figure.glb --clip hug --frames 2>/dev/null; cscd export figure.glb --clip hug f.usda")
+          .status,
+      0);
+  const std::string usd = text("f.usda");
+  const json query = answer("figure.glb --clip hug");
+  EXPECT_EQ(usd.substr(0, 10), "#usda 1.0\n");
+  EXPECT_NE(usd.find("endTimeCode = " + std::to_string(query["intervals"].size())), std::string::npos);
+  EXPECT_EQ(std::count(usd.begin(), usd.end(), '{'), std::count(usd.begin(), usd.end(), '}'));
+  EXPECT_EQ(std::count(usd.begin(), usd.end(), '['), std::count(usd.begin(), usd.end(), ']'));
+  EXPECT_NE(usd.find("(0.899999976, 0.620000005, 0)"), std::string::npos) << "no triangle touches";
+}
+
+}  // namespace
+}  // namespace cscd::bench

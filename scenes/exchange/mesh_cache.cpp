@@ -1,0 +1,80 @@
+#include "scenes/exchange/mesh_cache.h"
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include "core/base/error.h"
+#include "scenes/exchange/number_bytes.h"
+
+namespace cscd::scenes {
+namespace {
+
+constexpr std::string_view kPc2Begin("POINTCACHE2\0", 12);
+constexpr std::size_t kPc2Head = 32, kMddHead = 8;
+
+void append_float(double value, bool big, std::string& out) {
+  append_bits(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, big, out);
+}
+
+bool is_big(MeshCacheFormat format) {
+  return format == MeshCacheFormat::mdd;
+}
+
+}  // namespace
+
+std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::size_t frames, double fps) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (vertices > kMost || frames > kMost)
+    throw InputError("more frames or vertices than a mesh cache can count; export it as .h5");
+  std::string out;
+  if (format == MeshCacheFormat::pc2) {
+    out = kPc2Begin;
+    append_bits(1, 4, false, out);  // version
+    append_bits(vertices, 4, false, out);
+    append_float(0, false, out);  // the first frame
+    append_float(1, false, out);  // frames from one sample to the next
+    append_bits(frames, 4, false, out);
+  } else {
+    append_bits(frames, 4, true, out);
+    append_bits(vertices, 4, true, out);
+    for (std::size_t f = 0; f < frames; ++f) append_float(static_cast<double>(f) / fps, true, out);
+  }
+  return out;
+}
+
+std::string mesh_cache_frame(MeshCacheFormat format, std::span<const Vec3> positions) {
+  std::string out;
+  out.reserve(12 * positions.size());
+  for (const Vec3& x : positions)
+    for (int axis = 0; axis < 3; ++axis) append_float(x[axis], is_big(format), out);
+  return out;
+}
+
+MeshCache::MeshCache(MeshCacheFormat format, std::string_view bytes) : format_(format) {
+  const bool pc2 = format == MeshCacheFormat::pc2;
+  const std::size_t fixed = pc2 ? kPc2Head : kMddHead;
+  if (bytes.size() < fixed || (pc2 && !bytes.starts_with(kPc2Begin)))
+    throw InputError(std::string("is no ") + (pc2 ? "PC2" : "MDD") + " cache; export it again");
+  const auto count = [&](std::size_t at) { return bits_of(bytes.substr(at, 4), is_big(format)); };
+  vertices_ = count(pc2 ? 16 : 4);
+  frames_ = count(pc2 ? 28 : 0);
+  const std::uint64_t head = fixed + (pc2 ? 0 : 4 * frames_), each = 12 * vertices_;
+  if (vertices_ == 0 || frames_ == 0) throw InputError("holds no frame; export it again");
+  if (bytes.size() < head || (bytes.size() - head) / each != frames_ || (bytes.size() - head) % each != 0)
+    throw InputError("says that it has " + std::to_string(frames_) + " frames of " +
+                     std::to_string(vertices_) + " vertices, which is not what its " +
+                     std::to_string(bytes.size()) + " bytes hold; export it again");
+  body_ = bytes.substr(head);
+}
+
+void MeshCache::read_frame(std::size_t frame, std::vector<Vec3>& positions) const {
+  positions.resize(vertices_);
+  std::size_t at = 12 * vertices_ * frame;
+  for (Vec3& x : positions)
+    for (int axis = 0; axis < 3; ++axis, at += 4)
+      x[axis] =
+          std::bit_cast<float>(static_cast<std::uint32_t>(bits_of(body_.substr(at, 4), is_big(format_))));
+}
+
+}  // namespace cscd::scenes

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/triangle_mesh.h"
+
+// Moving surfaces without bones, as programs exchange them: an OBJ or PLY file a frame, or a PC2 or MDD cache
+// beside an OBJ file.
+namespace cscd::scenes {
+
+// Whether a file's extension is one of a moving surface without bones: .obj, .ply, .pc2, .mdd.
+bool is_mesh_sequence(const std::filesystem::path& path);
+
+// The files of one sequence. Their names differ in the last number before the extension alone, as
+// walk.0001.obj and walk.0002.obj do. Returns them in the order of their numbers. Throws InputError if `path`
+// has no number, if it is the only file, or if a number is missing in between.
+std::vector<std::filesystem::path> files_of_sequence(const std::filesystem::path& path);
+
+class MeshSequence {
+ public:
+  virtual ~MeshSequence() = default;
+  virtual std::string format() const = 0;
+  virtual std::size_t frame_count() const = 0;
+  virtual std::size_t vertex_count() const = 0;
+  // Corners of all triangles, in the order of the file of the first frame; those that repeat a corner too.
+  virtual std::span<const std::array<std::int32_t, 3>> triangles() const = 0;
+  // Throws InputError for a frame that cannot be read or is not of the same surface as frame 0.
+  virtual void read_frame(std::size_t frame, std::vector<Vec3>& positions) = 0;
+};
+
+// Opens the sequence that a file belongs to: one file of an OBJ or PLY sequence, or a PC2 or MDD cache, whose
+// faces are in the OBJ file of the same name beside it. Throws InputError.
+std::unique_ptr<MeshSequence> open_mesh_sequence(const std::filesystem::path& path);
+
+}  // namespace cscd::scenes

@@ -1,0 +1,96 @@
+#include "scenes/exchange/usd_file.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace cscd::scenes {
+namespace {
+
+void append_vector(const Vec3& x, std::string& out) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", x.x(), x.y(), x.z());
+  out += text;
+}
+
+template <class Row, class Append>
+void append_list(const Row& row, const Append& append, std::string& out) {
+  out += '[';
+  bool first = true;
+  for (const auto& value : row) {
+    if (!first) out += ", ";
+    first = false;
+    append(value);
+  }
+  out += ']';
+}
+
+}  // namespace
+
+UsdSurface::UsdSurface(std::span<const Triangle> triangles, double fps) : fps_(fps) {
+  append_list(
+      triangles, [&](const Triangle&) { counts_ += '3'; }, counts_);
+  append_list(
+      triangles,
+      [&](const Triangle& c) {
+        corners_ += std::to_string(+c[0]) + ", " + std::to_string(+c[1]) + ", " + std::to_string(+c[2]);
+      },
+      corners_);
+}
+
+void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
+                        std::span<const Colour> palette, std::span<const Vec3> marks) {
+  const std::string time = "            " + std::to_string(frames_++) + ": ";
+  const auto vector_into = [](std::string& out) { return [&out](const Vec3& x) { append_vector(x, out); }; };
+  points_ += time;
+  append_list(positions, vector_into(points_), points_);
+  points_ += ",\n";
+  Vec3 low = positions[0], high = low;
+  for (const Vec3& x : positions) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  extents_ += time;
+  append_list(std::array{low, high}, vector_into(extents_), extents_);
+  extents_ += ",\n";
+  marks_ += time;
+  append_list(marks, vector_into(marks_), marks_);
+  marks_ += ",\n";
+  if (std::ranges::equal(colour, last_colour_)) return;
+  last_colour_.assign(colour.begin(), colour.end());
+  colours_ += time;
+  append_list(
+      colour,
+      [&](std::uint8_t c) {
+        append_vector({palette[c][0], palette[c][1], palette[c][2]}, colours_);
+      },
+      colours_);
+  colours_ += ",\n";
+}
+
+std::string UsdSurface::text(double mark_width) const {
+  char number[32];
+  std::snprintf(number, sizeof number, "%.9g", fps_);
+  std::string out = "#usda 1.0\n(\n    defaultPrim = \"surface\"\n    startTimeCode = 0\n    endTimeCode = " +
+                    std::to_string(frames_ - 1) + "\n    timeCodesPerSecond = " + number +
+                    "\n    upAxis = \"Y\"\n)\n\n";
+  const auto samples = [&](const std::string& name, const std::string& rows, const std::string& notes = "") {
+    out += "    " + name + ".timeSamples = {\n" + rows + "    }" + notes + "\n";
+  };
+  out +=
+      "def Mesh \"surface\"\n{\n    uniform token subdivisionScheme = \"none\"\n    int[] faceVertexCounts "
+      "= " +
+      counts_ + "\n    int[] faceVertexIndices = " + corners_ + "\n";
+  samples("float3[] extent", extents_);
+  samples("point3f[] points", points_);
+  out += "    color3f[] primvars:displayColor (\n        interpolation = \"uniform\"\n    )\n";
+  samples("color3f[] primvars:displayColor", colours_);
+  out += "}\n\ndef Points \"contacts\"\n{\n";
+  samples("point3f[] points", marks_);
+  std::snprintf(number, sizeof number, "%.9g", mark_width);
+  out += std::string("    float[] widths = [") + number +
+         "] (\n        interpolation = \"constant\"\n    )\n" +
+         "    color3f[] primvars:displayColor = [(0, 0.447, 0.698)]\n}\n";
+  return out;
+}
+
+}  // namespace cscd::scenes
