@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "bench/commands/command.h"
-#include "bench/commands/export_files.h"
 #include "bench/commands/export_glb.h"
 #include "bench/commands/model_options.h"
+#include "bench/exchange/export_files.h"
 #include "bench/input/input.h"
 #include "bench/output/output_format.h"
 #include "core/base/error.h"

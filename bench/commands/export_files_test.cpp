@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "bench/testing/test_generated.h"
 #include "bench/testing/test_shell.h"
@@ -143,11 +144,43 @@ print(len(obj.points), len(ply.cells_dict["triangle"]), len(obj.cells_dict["tria
   EXPECT_EQ(out, "82 160 160\n");
 }
 
+TEST_F(ExportFiles, BlenderLoadsMeshCacheAndContacts) {
+  if (run("command -v blender").status != 0) GTEST_SKIP() << "Debian's blender is not installed";
+  ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest walk.pc2").status, 0);
+  const json query = answer("walk.pc2");
+  put("walk.json", query.dump());
+  const std::string script =
+      (scenes::scenes_folder().parent_path() / "scripts/blender/cscd_contacts.py").string();
+  const Ran ran = run("blender --background --python '" + script +
+                      "' -- walk.obj walk.pc2 walk.json --save walk.blend 2>&1 | grep '^{'");
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const json made = json::parse(ran.out);
+  std::size_t clouds = 0, contacts = 0, first = 0;
+  std::set<int> vertices;
+  for (const json& interval : query["intervals"]) {
+    if (interval["contacts"].empty()) continue;
+    if (clouds++ == 0) first = interval["index"];
+    contacts += interval["contacts"].size();
+    for (const json& contact : interval["contacts"])
+      for (const json& vertex : contact["vertices"]) vertices.insert(vertex.get<int>());
+  }
+  ASSERT_GT(clouds, 0u);
+  EXPECT_EQ(made["clouds"], clouds);
+  EXPECT_EQ(made["contacts"], contacts);
+  EXPECT_EQ(made["touching_vertices"], vertices.size());
+  EXPECT_GE(made["markers"], 2);
+  // The mesh follows its cache: this is where its first vertex is in the frame of the first contact.
+  ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest walk.h5").status, 0);
+  scenes::PointCacheReader frames(folder / "walk.h5");
+  const Vec3 expected = frames.load_frame(first).positions[0];
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(made["first_vertex"][static_cast<std::size_t>(axis)].get<double>(), expected[axis],
+                1e-4 * expected.norm());
+  EXPECT_TRUE(fs::exists(folder / "walk.blend"));
+}
+
 TEST_F(ExportFiles, UsdHoldsEveryFrame) {
-  ASSERT_EQ(
-      run("cscd export figure.glb --clip hug --frames 2>/dev/null; cscd export figure.glb --clip hug f.usda")
-          .status,
-      0);
+  ASSERT_EQ(run("cscd export figure.glb --clip hug f.usda").status, 0);
   const std::string usd = text("f.usda");
   const json query = answer("figure.glb --clip hug");
   EXPECT_EQ(usd.substr(0, 10), "#usda 1.0\n");

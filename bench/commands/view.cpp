@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -84,9 +85,8 @@ void view(const ViewOptions& options) {
   std::vector<std::unique_ptr<Contestant>> contestants;
   for (const Strategy* strategy : strategies) {
     watchdog.restart();
-    contestants.push_back(
-        std::make_unique<Contestant>(Contestant{Answerer(input, *strategy, elementary, options.answers),
-                                                StrategyRecording(input, names, *strategy, elementary)}));
+    contestants.emplace_back(new Contestant{Answerer(input, *strategy, elementary, options.answers),
+                                            StrategyRecording(input, names, *strategy, elementary)});
   }
   {
     Progress progress("view " + options.input, range.last - range.first);
@@ -118,7 +118,9 @@ void view(const ViewOptions& options) {
   std::printf("%s\n%s", options.input.c_str(), rows[0]["text"].get<std::string>().c_str());
   json header = {{"schema", "cscd.view/1"},
                  {"name", std::filesystem::path(options.input).filename().string()},
-                 {"kind", input.import ? "model" : is_point_cache(options.input) ? "cache" : "scene"},
+                 {"kind", input.import                    ? "model"
+                          : is_point_cache(options.input) ? "cache"
+                                                          : "scene"},
                  {"version", version_number()},
                  {"elementary", elementary.name},
                  {"clip", clip.write(sections)},

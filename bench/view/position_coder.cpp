@@ -1,6 +1,7 @@
 #include "bench/view/position_coder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 

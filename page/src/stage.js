@@ -33,6 +33,7 @@ const DOT_FRAGMENT = /* glsl */ `
     outColour = vec4(mix(vec3(1.0), colour, inside), alpha * (0.55 + 0.45 * vWeight));
   }`;
 
+// Round dots of a size in pixels, which the surface does not hide.
 function dots(colour, size) {
   const material = new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader: DOT_VERTEX, fragmentShader: DOT_FRAGMENT, transparent: true, depthTest: false,
@@ -45,12 +46,9 @@ function dots(colour, size) {
   return points;
 }
 
-function lines(colour, width, { hidden = false, opacity = 1 } = {}) {
-  const material = new LineMaterial({ color: colour, linewidth: width, transparent: true, opacity, depthTest: hidden });
-  if (hidden) {
-    material.polygonOffset = true;
-    material.polygonOffsetFactor = -4;
-  }
+// Lines of a width in pixels, which the surface does not hide.
+function lines(colour, width, opacity = 1) {
+  const material = new LineMaterial({ color: colour, linewidth: width, transparent: true, opacity, depthTest: false });
   const made = new LineSegments2(new LineSegmentsGeometry(), material);
   made.frustumCulled = false;
   made.renderOrder = 4;
@@ -80,12 +78,12 @@ export class Marks {
     this.group = new THREE.Group();
     this.contacts = dots(BLUE, 13);
     this.chosen = dots(BLUE, 20);
-    this.others = lines("#20303c", 1.2, { opacity: 0.75 });
+    this.others = lines("#20303c", 1.2, 0.75);
     this.normals = lines(BLUE, 2);
     this.first = lines(BLUE, 4);
     this.second = lines(PINK, 4);
     this.crossings = lines(RED, 3);
-    this.crossingGlow = lines("#7a1f00", 5, { opacity: 0.35 });
+    this.crossingGlow = lines("#7a1f00", 5, 0.35);
     this.group.add(this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
   }
   setContacts(numbers, weights) { setDots(this.contacts, numbers, weights); }
@@ -107,7 +105,7 @@ export class Stage {
     this.meanEdge = 0;
     this.insetColour = new THREE.Color("#ffffff");
     this.scene = new THREE.Scene();
-    this.skeleton = lines("#101820", 2.2, { opacity: 0.85 });
+    this.skeleton = lines("#101820", 2.2, 0.85);
     this.joints = dots(YELLOW, 8);
     this.scene.add(this.skeleton, this.joints);
     this.insetDot = dots(RED, 18);

@@ -5,7 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
 #include "scenes/exchange/number_bytes.h"

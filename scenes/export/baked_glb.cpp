@@ -1,9 +1,12 @@
 #include "scenes/export/baked_glb.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/error.h"

@@ -1,4 +1,4 @@
-#include "bench/commands/export_files.h"
+#include "bench/exchange/export_files.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,6 +12,7 @@
 #include "bench/rows/catalogue.h"
 #include "bench/view/touched.h"
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "core/detect/contact_geometry.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/surface_file.h"

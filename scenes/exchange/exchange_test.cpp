@@ -1,0 +1,126 @@
+#include <bit>
+#include <functional>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "scenes/exchange/mesh_cache.h"
+#include "scenes/exchange/number_bytes.h"
+#include "scenes/exchange/surface_file.h"
+#include "scenes/exchange/usd_file.h"
+#include "scenes/exchange/vtk_file.h"
+
+// Files of other programs, as those programs write them and as this one does.
+namespace cscd::scenes {
+namespace {
+
+using Corners = std::array<std::int32_t, 3>;
+
+std::string refusal(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::vector<Vec3> kPositions = {{0, 0.1, -1e-300}, {1.0 / 3, 2e10, 3}, {-1, -2, -3.5}, {7, 8, 9}};
+const std::vector<Triangle> kTriangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
+                                          {VertexId{0}, VertexId{2}, VertexId{3}}};
+
+TEST(SurfaceFiles, GiveEveryPositionBackBitForBit) {
+  for (const SurfaceFile& read :
+       {read_obj(to_obj(kPositions, kTriangles)), read_ply(to_ply(kPositions, kTriangles))}) {
+    EXPECT_EQ(read.positions, kPositions);
+    EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}}));
+  }
+}
+
+TEST(SurfaceFiles, ObjIsReadAsOthersWriteIt) {
+  const SurfaceFile read = read_obj(
+      "# a comment\r\nmtllib x.mtl\no part\nv 0 0 0 1.0\nv 1 0 0\r\nv 1 1 0\nvn 0 0 1\nvt 0 0\nv 0 1 0\n\n"
+      "usemtl m\ns 1\nf 1/1/1 2//1 3/1 4\nf -4 -3 -2\nl 1 2");
+  EXPECT_EQ(read.positions.size(), 4u);
+  EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
+  EXPECT_NE(refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }).find("line 2: a face has fewer than three"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { read_obj("v 0 0 x\n"); }).find("line 1: 'x' is no coordinate"), std::string::npos);
+  EXPECT_NE(refusal([] { read_obj("v 0 0 nan\n"); }).find("not finite"), std::string::npos);
+  EXPECT_NE(refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("names no vertex"), std::string::npos);
+  EXPECT_NE(refusal([] { read_obj(""); }).find("no vertices"), std::string::npos);
+}
+
+TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
+  const std::string head =
+      "element vertex 3\nproperty float x\nproperty uchar red\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar short vertex_index\nend_header\n";
+  const std::string ascii = "ply\nformat ascii 1.0\n" + head + "0 255 0 0\n1 0 0.5 0\n0 0 1 -2\n3 0 1 2\n";
+  std::string binary[2];
+  for (const bool big : {false, true}) {
+    std::string& out = binary[big];
+    out = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + head;
+    const auto number = [&](float x) { append_bits(std::bit_cast<std::uint32_t>(x), 4, big, out); };
+    for (const auto& x :
+         {std::array{0.F, 0.F, 0.F}, std::array{1.F, 0.5F, 0.F}, std::array{0.F, 1.F, -2.F}}) {
+      number(x[0]);
+      out += '\7';
+      number(x[1]);
+      number(x[2]);
+    }
+    out += '\3';
+    for (const unsigned v : {0U, 1U, 2U}) append_bits(v, 2, big, out);
+  }
+  for (const std::string& file : {ascii, binary[0], binary[1]}) {
+    const SurfaceFile read = read_ply(file);
+    EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0.5, 0}, {0, 1, -2}}));
+    EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}}));
+    for (std::size_t cut = 0; cut + 1 < file.size(); ++cut)
+      EXPECT_NE(refusal([&] { read_ply(file.substr(0, cut)); }), "") << "of " << cut << " bytes";
+  }
+}
+
+TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
+  for (const MeshCacheFormat format : {MeshCacheFormat::pc2, MeshCacheFormat::mdd}) {
+    const std::vector<Vec3> one = {{1, 2, 3}, {-0.5, 1e10, 0}}, other = {{4, 5, 6}, {7, 8, 9}};
+    const std::string bytes =
+        mesh_cache_head(format, 2, 2, 30) + mesh_cache_frame(format, one) + mesh_cache_frame(format, other);
+    const MeshCache cache(format, bytes);
+    EXPECT_EQ(cache.vertices(), 2u);
+    ASSERT_EQ(cache.frames(), 2u);
+    std::vector<Vec3> read;
+    cache.read_frame(0, read);
+    EXPECT_EQ(read, one);
+    cache.read_frame(1, read);
+    EXPECT_EQ(read, other);
+    for (std::size_t cut = 0; cut < bytes.size(); ++cut)
+      EXPECT_NE(refusal([&] { MeshCache(format, std::string_view(bytes).substr(0, cut)); }), "") << cut;
+    EXPECT_NE(refusal([&] { MeshCache(format, bytes + "x"); }), "");
+  }
+}
+
+TEST(VtkFiles, EscapeNames) {
+  VtkSurface surface(kPositions, kTriangles);
+  surface.add("<a & \"b\">", std::vector<float>{1, 2});
+  EXPECT_NE(surface.text().find("Name=\"&lt;a &amp; &quot;b&quot;&gt;\""), std::string::npos);
+  const std::vector<VtkMoment> moments = {{0.5, 1, "a&b.vtp"}};
+  EXPECT_NE(to_pvd(moments).find("timestep=\"0.5\" part=\"1\" file=\"a&amp;b.vtp\""), std::string::npos);
+}
+
+TEST(UsdFiles, WriteColoursWhereTheyChange) {
+  UsdSurface surface(kTriangles, 24);
+  constexpr UsdSurface::Colour kPalette[] = {{0, 0, 0}, {1, 0, 0}};
+  for (const std::uint8_t second : {0, 0, 1})
+    surface.append(kPositions, std::vector<std::uint8_t>{0, second}, kPalette, {});
+  const std::string text = surface.text(0.1);
+  EXPECT_NE(text.find("timeCodesPerSecond = 24"), std::string::npos);
+  EXPECT_NE(text.find("int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]"), std::string::npos);
+  const std::string colours = text.substr(text.find("displayColor.timeSamples"), 200);
+  EXPECT_NE(colours.find("0: [(0, 0, 0), (0, 0, 0)],\n            2: [(0, 0, 0), (1, 0, 0)]"),
+            std::string::npos)
+      << colours;
+}
+
+}  // namespace
+}  // namespace cscd::scenes
