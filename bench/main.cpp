@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   cscd::bench::add_scale(app);
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);
+  cscd::bench::add_report(app);
   cscd::bench::add_scene(app);
   cscd::bench::add_help(app);
 

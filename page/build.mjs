@@ -1,5 +1,5 @@
-// Bundles the viewer into one HTML page whose content policy allows its own script and style alone, and writes the page as
-// a C++ source.
+// Bundles the viewer and the report into one HTML page each, whose content policy allows its own script and style alone, and
+// writes both as a C++ source.
 //
 //   node build.mjs FOLDER-WITH-node_modules OUT.cpp
 import { createHash } from "node:crypto";
@@ -29,29 +29,41 @@ async function bundle(entry, loader) {
 
 const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
-const script = (await bundle("main.js")).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const style = await bundle("view.css");
-const policy = `default-src 'none'; script-src ${digest(script)}; style-src ${digest(style)}; base-uri 'none'; form-action 'none'`;
-const licence = JSON.parse(readFileSync(join(packages, "node_modules", "three", "package.json"), "utf8"));
-const page = readFileSync(join(here, "src", "view.html"), "utf8")
-  .replace("{{policy}}", () => policy)
-  .replace("{{licences}}", () => `three.js ${licence.version}, ${licence.license} licence, three.js authors`)
-  .replace("{{style}}", () => style)
-  .replace("{{script}}", () => script);
+const version = (name) => JSON.parse(readFileSync(join(packages, "node_modules", name, "package.json"), "utf8"));
+const licence = (name) => `${name} ${version(name).version} (${version(name).license} licence)`;
+
+async function pageOf(name, entry, library) {
+  const script = (await bundle(entry)).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+  const style = await bundle(`${name}.css`);
+  const policy = `default-src 'none'; script-src ${digest(script)}; style-src ${digest(style)}; base-uri 'none'; form-action 'none'`;
+  return readFileSync(join(here, "src", `${name}.html`), "utf8")
+    .replace("{{policy}}", () => policy)
+    .replace("{{licences}}", () => licence(library))
+    .replace("{{style}}", () => style)
+    .replace("{{script}}", () => script);
+}
 
 // A literal of C++ holds what its delimiter is not part of; compilers limit the length of one literal, not of several in a row.
-const pieces = [];
-for (let i = 0; i < page.length; i += 8000) pieces.push(`R"page(${page.slice(i, i + 8000)})page"`);
+function literal(page) {
+  const pieces = [];
+  for (let i = 0; i < page.length; i += 8000) pieces.push(`R"page(${page.slice(i, i + 8000)})page"`);
+  return pieces.join("\n");
+}
+
+const functionOf = (name, page) => `std::string_view ${name}() {
+  static constexpr char kPage[] =
+${literal(page)};
+  return {kPage, sizeof kPage - 1};
+}
+`;
+
 writeFileSync(
   out,
   `// Made by page/build.mjs.
 #include "bench/view/viewer_page.h"
 namespace cscd::bench {
-std::string_view viewer_page() {
-  static constexpr char kPage[] =
-${pieces.join("\n")};
-  return {kPage, sizeof kPage - 1};
-}
+${functionOf("viewer_page", await pageOf("view", "main.js", "three"))}
+${functionOf("report_page", await pageOf("report", "report.js", "uplot"))}
 }  // namespace cscd::bench
 `,
 );

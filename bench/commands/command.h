@@ -21,6 +21,7 @@ void add_inspect(CLI::App& app);
 void add_elementary(CLI::App& app);
 void add_run(CLI::App& app);
 void add_tables(CLI::App& app);
+void add_report(CLI::App& app);
 void add_export(CLI::App& app);
 void add_list(CLI::App& app);
 void add_verify(CLI::App& app);

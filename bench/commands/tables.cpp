@@ -6,9 +6,9 @@
 #include "bench/commands/command.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
-#include "bench/record/record.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/paper_tables.h"
+#include "bench/tables/record_inputs.h"
 #include "bench/tables/tables_text.h"
 #include "core/base/error.h"
 
@@ -20,23 +20,6 @@ struct TableOptions {
   std::string folder, scene;
   bool force = false;
 };
-
-std::vector<Record> read_records(const std::vector<std::string>& paths) {
-  std::vector<Record> records;
-  for (const std::string& path : paths) {
-    Record record = read_record(path);
-    if (!record.verification.ok())
-      throw InputError("record " + path +
-                       ": its verification failed, so it holds no times; mend the strategy and "
-                       "run again");
-    for (const Record& other : records)
-      if (other.scene.name == record.scene.name)
-        throw InputError("record " + path + ": a second record of scene " + record.scene.name +
-                         "; give one a scene");
-    records.push_back(std::move(record));
-  }
-  return records;
-}
 
 void tables(const TableOptions& options) {
   const std::vector<Record> records = read_records(options.records);

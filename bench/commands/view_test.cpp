@@ -39,7 +39,7 @@ class View : public Program {
 
   // Has a browser open and use a page of the folder (page/test/check.mjs).
   void use_in_browser(const std::string& page, const std::string& expected) const {
-    const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_CHECK "' '" CSCD_PAGE_PACKAGES "' " + page +
+    const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check.mjs' '" CSCD_PAGE_PACKAGES "' " + page +
                         " --text \"" + expected + "\"");
     if (ran.status == 77) GTEST_SKIP() << ran.out;
     EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
@@ -108,7 +108,7 @@ TEST_F(View, ADamagedPageSaysSoInOneLine) {
   const std::size_t arrays = page.find("id=\"arrays\">") + 200;
   page.replace(arrays, 40, std::string(40, 'A'));
   put("page.html", page);
-  const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_CHECK "' '" CSCD_PAGE_PACKAGES "' page.html");
+  const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check.mjs' '" CSCD_PAGE_PACKAGES "' page.html");
   if (ran.status == 77) GTEST_SKIP() << ran.out;
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.out.find("is damaged"), std::string::npos) << ran.out;

@@ -19,27 +19,36 @@ std::string json_for_html(const nlohmann::json& value) {
   return out;
 }
 
+std::string header_element(const nlohmann::json& value) {
+  return "<script type=\"application/json\" id=\"header\">" + json_for_html(value) + "</script>";
+}
+
+std::string with_data(std::string_view page, const std::string& data) {
+  require_viewer();
+  const std::size_t place = page.find(kDataPlace);
+  if (place == std::string_view::npos) throw std::logic_error("a page has no place for data");
+  return std::string(page.substr(0, place)) + data + std::string(page.substr(place + kDataPlace.size()));
+}
+
 }  // namespace
 
 void require_viewer() {
   if (viewer_page().empty())
     throw InputError(
-        "this program was built without its viewer; install nodejs and npm, and build it again with "
+        "this program was built without its pages; install nodejs and npm, and build it again with "
         "-DCSCD_VIEWER=ON");
 }
 
 std::string viewer_with(const nlohmann::json& header, const Sections& sections) {
-  require_viewer();
-  const std::string_view page = viewer_page();
-  const std::size_t place = page.find(kDataPlace);
-  if (place == std::string_view::npos) throw std::logic_error("the viewer's page has no place for data");
   nlohmann::json whole = header;
   whole["sections"] = sections.table();
-  std::string out(page.substr(0, place));
-  out += "<script type=\"application/json\" id=\"header\">" + json_for_html(whole) + "</script>\n";
-  out += "<script type=\"application/octet-stream\" id=\"arrays\">" + base64(sections.bytes()) + "</script>";
-  out += page.substr(place + kDataPlace.size());
-  return out;
+  return with_data(viewer_page(), header_element(whole) +
+                                      "\n<script type=\"application/octet-stream\" id=\"arrays\">" +
+                                      base64(sections.bytes()) + "</script>");
+}
+
+std::string report_with(const nlohmann::json& document) {
+  return with_data(report_page(), header_element(document));
 }
 
 }  // namespace cscd::bench

@@ -11,7 +11,10 @@ namespace cscd::bench {
 // InputError if the program was built without the viewer.
 std::string viewer_with(const nlohmann::json& header, const Sections& sections);
 
-// Throws InputError if the program was built without the viewer.
+// Puts a JSON document into the page of the report. Throws as viewer_with() does.
+std::string report_with(const nlohmann::json& document);
+
+// Throws InputError if the program was built without the viewer and the report.
 void require_viewer();
 
 }  // namespace cscd::bench

@@ -8,7 +8,10 @@ namespace cscd::bench {
 // CMake was told to build without it (CSCD_VIEWER=OFF).
 std::string_view viewer_page();
 
-// The place in the page that the data take.
+// The page of cscd report, likewise.
+std::string_view report_page();
+
+// The place in a page that the data take.
 inline constexpr std::string_view kDataPlace = "<!--data-->";
 
 }  // namespace cscd::bench

@@ -2,45 +2,15 @@
 // not (one line says what), 77 there is no Chromium.
 //
 //   node check.mjs FOLDER-WITH-node_modules PAGE [--text EXPECTED] [--pictures FOLDER]
-import { createRequire } from "node:module";
-import { accessSync, constants, mkdirSync } from "node:fs";
+import { mkdirSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { openBrowser, require } from "./browser.mjs";
 
 const [packages, file, ...options] = process.argv.slice(2);
 const option = (name) => (options.includes(name) ? options[options.indexOf(name) + 1] : null);
 
-function chromiumOfThisMachine() {
-  for (const path of [process.env.CSCD_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"])
-    try {
-      if (path) {
-        accessSync(path, constants.X_OK);
-        return path;
-      }
-    } catch { /* the next one */ }
-  return null;
-}
-
-const executablePath = chromiumOfThisMachine();
-if (!executablePath) {
-  console.log("skipped: there is no Chromium here (Debian's package chromium, or CSCD_CHROMIUM)");
-  process.exit(77);
-}
-const { chromium } = createRequire(join(resolve(packages), "package.json"))("playwright-core");
-
-function require(holds, what) {
-  if (!holds) throw new Error(what);
-}
-
-const browser = await chromium.launch({
-  executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
-const page = await browser.newPage({ viewport: { width: 1100, height: 720 } });
-const complaints = [], requests = [];
-page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
-page.on("pageerror", (error) => complaints.push(String(error)));
-page.on("request", (request) => requests.push(request.url()));
-page.on("dialog", (dialog) => complaints.push(`a dialog: ${dialog.message()}`));
+const { browser, page, complaints, requests } = await openBrowser(packages, { width: 1100, height: 720 });
 
 // What the canvas shows, as 160 x 120 pixels of red, green and blue.
 const look = () => page.evaluate(() => {

@@ -13,10 +13,11 @@ function(cscd_viewer room)
 #include "bench/view/viewer_page.h"
 namespace cscd::bench {
 std::string_view viewer_page() { return {}; }
+std::string_view report_page() { return {}; }
 }  // namespace cscd::bench
 ]])
     target_sources(${room} PRIVATE ${made})
-    target_compile_definitions(${room} PUBLIC CSCD_NODE="" CSCD_PAGE_CHECK="" CSCD_PAGE_PACKAGES="")
+    target_compile_definitions(${room} PUBLIC CSCD_NODE="" CSCD_PAGE_TESTS="" CSCD_PAGE_PACKAGES="")
     return()
   endif()
   find_program(NPM npm)
@@ -39,6 +40,6 @@ std::string_view viewer_page() { return {}; }
     COMMENT "Bundling the viewer" VERBATIM)
   target_sources(${room} PRIVATE ${made})
   # For the tests that open a page in a browser.
-  target_compile_definitions(${room} PUBLIC CSCD_NODE="${NODE}" CSCD_PAGE_CHECK="${page}/test/check.mjs"
+  target_compile_definitions(${room} PUBLIC CSCD_NODE="${NODE}" CSCD_PAGE_TESTS="${page}/test"
                              CSCD_PAGE_PACKAGES="${copy}")
 endfunction()
