@@ -111,6 +111,7 @@ void view(const ViewOptions& options) {
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s) {
     Contestant& contestant = *contestants[s];
+    contestant.recording.set_preparation(contestant.answerer.preparation_ms());
     rows.push_back(contestant.recording.write(sections, "s" + std::to_string(s) + ".",
                                               contestant.answerer.rest_crossings(), left_out));
   }

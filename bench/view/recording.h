@@ -48,7 +48,8 @@ class StrategyRecording {
                     const ElementaryTest& elementary);
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
-  const AnswerSummary& summary() const { return summary_; }
+  // Tells how long the preparation of what answers took.
+  void set_preparation(double milliseconds) { summary_.preparation_ms = milliseconds; }
   bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
 
   // Adds all arrays to `sections`, their names behind `prefix`, and returns what else the page has to know.
