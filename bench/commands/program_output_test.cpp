@@ -94,7 +94,7 @@ TEST_F(ProgramOutput, FollowsLinks) {
 }
 
 TEST_F(ProgramOutput, HasTheFormatThatItsExtensionNames) {
-  expect_refused(run("cscd export small small.obj"), ".obj is not written here; let its name end in .h5");
+  expect_refused(run("cscd export small small.stl"), ".stl is not written here; let its name end in .h5");
   expect_refused(run("cscd export small small"), "has no extension");
   expect_refused(run("cscd query small --json out.obj"),
                  ".obj is not written here; let its name end in .json");
