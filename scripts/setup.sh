@@ -8,7 +8,7 @@ packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcl
 packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_kernels=(libbenchmark-dev)
-packages_tests=(assimp-testmodels pybind11-dev python3-dev python3-numpy python3-h5py doxygen pkg-config)
+packages_tests=(assimp-testmodels pybind11-dev python3-dev python3-numpy python3-h5py python3-yaml doxygen pkg-config)
 packages_clang=(clang)
 
 say() { printf '\n== %s\n' "$*"; }
