@@ -182,11 +182,13 @@ Comparison of_processes(std::size_t count, double slower, bool in_turns) {
     const int second = static_cast<int>(i);
     Record one = small_record("aaaaaaaaaaaaaaaa", in_turns ? 2 * second : second),
            other = small_record("bbbbbbbbbbbbbbbb", in_turns ? 2 * second + 1 : 30 + second);
-    const double noise = 1 + 0.001 * static_cast<double>(i % 3);
-    for (Record* record : {&one, &other})
+    const double noise = 1 + 0.0002 * static_cast<double>(i % 3);
+    for (Record* record : {&one, &other}) {
+      record->strategies[0].ms["traversal"] = {{6, 12}, {6, 12}};
       for (auto& [stage, repetitions] : record->strategies[0].ms)
         for (auto& repetition : repetitions)
           for (double& ms : repetition) ms *= noise;
+    }
     for (auto& repetition : other.strategies[0].ms["traversal"])
       for (double& ms : repetition) ms *= slower;
     before.push_back(std::move(one));

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kPairs = 36;  // as scripts/bench_commits runs them unless told otherwise
+constexpr std::size_t kPairs = 60;  // as scripts/bench_commits runs them unless told otherwise
 
 class KeptSamples {
  public:

@@ -10,7 +10,7 @@
 namespace cscd::bench {
 
 // What one process took: [repetition][interval], positive. What stands for the process is the mean over the
-// intervals of the lower quartile over the repetitions: on a shared machine disturbances only slow, and the
+// intervals of the lowest decile over the repetitions: on a shared machine disturbances only slow, and the
 // minimum alone would depend on how many repetitions there are.
 using ProcessTimes = std::vector<std::vector<double>>;
 
