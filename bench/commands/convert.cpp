@@ -31,7 +31,8 @@ void add_convert(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "convert",
       "Write the times of records in the format of another tool.\n\n"
-      "  cscd convert rope.json --to google-benchmark --json rope-gb.json    for Google Benchmark's compare.py\n"
+      "  cscd convert rope.json --to google-benchmark --json rope-gb.json    for Google Benchmark's "
+      "compare.py\n"
       "  cscd convert records --to github-action --json -                    for github-action-benchmark\n\n"
       "`cscd compare` reads Google Benchmark's files as it reads records, without truth and counters.");
   command->add_option("records", options->records, "records: files or folders, commas between")->required();

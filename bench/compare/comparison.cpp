@@ -27,8 +27,9 @@ void compare_scene(const std::string& scene, const Records& before, const Record
   if (one.scene.digest != other.scene.digest)
     out.refusals.push_back({scene, "digests of contacts", "other scenes: the frames differ"});
   else if (one.elementary != other.elementary)
-    out.refusals.push_back({scene, "digests of contacts", "other pipelines: the elementary tests are " +
-                                                              one.elementary + " and " + other.elementary});
+    out.refusals.push_back(
+        {scene, "digests of contacts",
+         "other pipelines: the elementary tests are " + one.elementary + " and " + other.elementary});
   append(out.truth, compare_truth(before, after));
   if (const std::string why = counters_refused(one, other); !why.empty()) {
     out.refusals.push_back({scene, "counters", why});
@@ -51,7 +52,8 @@ void compare_all_times(const Side& before, const Side& after, Comparison& out) {
         }))
       scenes.push_back(scene);
   std::size_t count = 0;
-  for (const std::string& scene : scenes) count += count_times(before.scenes.at(scene), after.scenes.at(scene));
+  for (const std::string& scene : scenes)
+    count += count_times(before.scenes.at(scene), after.scenes.at(scene));
   for (const std::string& scene : scenes)
     for (TimeFinding& finding : compare_times(before.scenes.at(scene), after.scenes.at(scene), count))
       out.times.push_back(std::move(finding));

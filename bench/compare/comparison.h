@@ -35,7 +35,7 @@ struct Comparison {
   Lane lane = Lane::all;
   std::string old_commit, new_commit;
   bool old_dirty = false, new_dirty = false;
-  std::vector<std::string> scenes;  // compared
+  std::vector<std::string> scenes;       // compared
   std::vector<std::string> only_in_one;  // scenes and rows that one side does not have
   std::vector<TruthFinding> truth;
   std::size_t compared_counts = 0;

@@ -45,7 +45,8 @@ TEST(Comparison, OfEqualRecordsFindsNothing) {
 }
 
 TEST(Comparison, FindsEveryLossOfTruth) {
-  expect_lost(after([](Record& r) { r.strategies[0].digests[1] = "xx"; }), "other contacts on 1 interval (1)");
+  expect_lost(after([](Record& r) { r.strategies[0].digests[1] = "xx"; }),
+              "other contacts on 1 interval (1)");
   expect_lost(after([](Record& r) { r.strategies[1].first_times[2] = 0.5000000000000001; }),
               "another first time on 1 interval (2)");
   expect_lost(after([](Record& r) { r.strategies[1].first_times[1].reset(); }), "another first time");
@@ -137,10 +138,14 @@ TEST(Comparison, RefusesTimesOfOtherMachinesWithTheReason) {
   EXPECT_EQ(other.refusals[0].reason, "other machines: cpu is a machine and another machine");
   EXPECT_EQ(exit_status(other.verdict()), 2);
   // Truth and counters are compared all the same.
-  EXPECT_EQ(exit_status(after([](Record& r) {
-              r.environment["cpu"] = "another machine";
-              r.strategies[0].digests[1] = "xx";
-            }, Lane::all).verdict()), 1);
+  EXPECT_EQ(exit_status(after(
+                            [](Record& r) {
+                              r.environment["cpu"] = "another machine";
+                              r.strategies[0].digests[1] = "xx";
+                            },
+                            Lane::all)
+                            .verdict()),
+            1);
   EXPECT_EQ(exit_status(after([](Record& r) { r.environment["cpu"] = "another machine"; }).verdict()), 0);
 }
 
@@ -150,14 +155,17 @@ TEST(Comparison, RefusesWhatCannotBeCompared) {
     for (const Refusal& refusal : comparison.refusals) out += refusal.what + ": " + refusal.reason + "\n";
     return out;
   };
-  EXPECT_NE(reasons(after([](Record& r) { r.scene.digest = "other"; }, Lane::all)).find("counters: the scene"),
-            std::string::npos);
-  EXPECT_NE(reasons(after([](Record& r) { r.elementary = "exact"; }, Lane::all)).find("times: other pipelines"),
-            std::string::npos);
+  EXPECT_NE(
+      reasons(after([](Record& r) { r.scene.digest = "other"; }, Lane::all)).find("counters: the scene"),
+      std::string::npos);
+  EXPECT_NE(
+      reasons(after([](Record& r) { r.elementary = "exact"; }, Lane::all)).find("times: other pipelines"),
+      std::string::npos);
   EXPECT_NE(reasons(after([](Record&) {}, Lane::all)).find("times: the smaller side has 1 process"),
             std::string::npos);
-  EXPECT_NE(reasons(after([](Record& r) { r.environment["instruction_set"] = "SSE2"; }))
-                .find("counters: instruction sets"),
+  EXPECT_NE(reasons(after([](Record& r) {
+              r.environment["instruction_set"] = "SSE2";
+            })).find("counters: instruction sets"),
             std::string::npos);
   EXPECT_EQ(exit_status(after([](Record& r) { r.scene.name = "foot"; }).verdict()), 2);
 }
@@ -170,8 +178,7 @@ TEST(Comparison, RefusesRecordsOfTwoCommitsOnOneSide) {
 TEST(Comparison, FindsProcessesThatAnswerDifferently) {
   std::vector<Record> before = {small_record()}, changed = {small_record(), small_record()};
   changed[1].strategies[2].digests[1] = "xx";
-  const Comparison comparison =
-      compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::counters);
+  const Comparison comparison = compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::counters);
   expect_lost(comparison, "processes of NEW answer differently");
 }
 
@@ -239,7 +246,8 @@ TEST(Comparison, WithholdsWhatOnlySomeLayoutsShow) {
 TEST(Comparison, RefusesTimesThatWereNotMeasuredInTurns) {
   const Comparison after_each_other = of_processes(9, 1.1, false);
   EXPECT_EQ(exit_status(after_each_other.verdict()), 2);
-  EXPECT_NE(comparison_text(after_each_other).find("one side was measured after the other"), std::string::npos);
+  EXPECT_NE(comparison_text(after_each_other).find("one side was measured after the other"),
+            std::string::npos);
 }
 
 // The lost contact ends it with status 1 whatever the times say.

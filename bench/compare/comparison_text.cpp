@@ -54,17 +54,17 @@ std::string tally(const std::vector<Finding>& findings) {
     return std::count_if(findings.begin(), findings.end(),
                          [&](const Finding& finding) { return finding.change == change; });
   };
-  std::string out = std::to_string(count(Change::worse)) + " worse, " +
-                    std::to_string(count(Change::better)) + " better";
+  std::string out =
+      std::to_string(count(Change::worse)) + " worse, " + std::to_string(count(Change::better)) + " better";
   if (const auto different = count(Change::different)) out += ", " + std::to_string(different) + " different";
   return out;
 }
 
 std::string truth_line(const Comparison& c) {
   const auto lost = std::count_if(c.truth.begin(), c.truth.end(), [](const auto& f) { return f.is_lost; });
-  return lost > 0 ? std::to_string(lost) + " losses"
-                  : c.truth.empty() ? "the same"
-                                    : "nothing lost; " + std::to_string(c.truth.size()) + " changes";
+  return lost > 0          ? std::to_string(lost) + " losses"
+         : c.truth.empty() ? "the same"
+                           : "nothing lost; " + std::to_string(c.truth.size()) + " changes";
 }
 
 // What this comparison could have seen.
@@ -77,10 +77,12 @@ std::string power_line(const Comparison& c) {
     floors.push_back(time.noise_floor);
   }
   if (detectable.empty()) return "";
-  return "A whole query slower by " + percent(median(detectable)) + " would show in 4 of 5 such comparisons (" +
+  return "A whole query slower by " + percent(median(detectable)) +
+         " would show in 4 of 5 such comparisons (" +
          percent(*std::min_element(detectable.begin(), detectable.end())) + " to " +
          percent(*std::max_element(detectable.begin(), detectable.end())) +
-         ", by row and scene). The noise floor, what as many processes of OLD differ by among themselves, is " +
+         ", by row and scene). The noise floor, what as many processes of OLD differ by among themselves, "
+         "is " +
          percent(median(floors)) + " (" + percent(*std::min_element(floors.begin(), floors.end())) + " to " +
          percent(*std::max_element(floors.begin(), floors.end())) + ").";
 }
@@ -115,8 +117,9 @@ Rows time_rows(const Comparison& c, bool reported_only) {
   }
   return rows;
 }
-const std::vector<std::string> kTimeHead = {"scene and row", "stage",      "OLD, ms",     "NEW, ms", "change",
-                                            "detectable",    "noise floor", "pairings agree", ""};
+const std::vector<std::string> kTimeHead = {"scene and row", "stage",          "OLD, ms",
+                                            "NEW, ms",       "change",         "detectable",
+                                            "noise floor",   "pairings agree", ""};
 
 Rows mean_rows(const Comparison& c) {
   Rows rows;
@@ -153,7 +156,8 @@ std::string plain_or_nothing(const std::vector<std::string>& head, const Rows& r
 }
 
 std::string refusal_text(const Refusal& refusal) {
-  return (refusal.scene.empty() ? "" : refusal.scene + ": ") + refusal.what + " not compared: " + refusal.reason;
+  return (refusal.scene.empty() ? "" : refusal.scene + ": ") + refusal.what +
+         " not compared: " + refusal.reason;
 }
 
 ordered_json interval_json(const Estimate& ratio) {

@@ -57,7 +57,8 @@ TEST(GoogleBenchmark, FilesAreComparedWithoutTruth) {
   for (int i = 0; i < 8; ++i) {
     before.push_back(record);
     after.push_back(record);
-    before.back().environment["date"] = after.back().environment["date"] = "2026-11-25T12:00:0" + std::to_string(i);
+    before.back().environment["date"] = after.back().environment["date"] =
+        "2026-11-25T12:00:0" + std::to_string(i);
     for (auto& repetition : after.back().strategies[0].ms["traversal"]) repetition[0] *= 1.5;
   }
   const Comparison comparison = compare(side_of(before, "OLD"), side_of(after, "NEW"), Lane::all);

@@ -48,7 +48,8 @@ ProcessTimes stage_times(const Record& record, const StrategyRecord& row, const 
     return sums;
   }
   std::vector<std::size_t> columns;
-  for (const SharedInterval& i : shared_intervals(record.timed_intervals, intervals)) columns.push_back(i.before);
+  for (const SharedInterval& i : shared_intervals(record.timed_intervals, intervals))
+    columns.push_back(i.before);
   if (columns.empty()) return sums;
   if (stage == kTotal)
     for (const std::string_view part : kQueryStages) add_stage(row, part, columns, sums);

@@ -43,7 +43,8 @@ std::vector<std::size_t> shared_timed(std::span<const Record> before, std::span<
   std::vector<std::size_t> shared = before.front().timed_intervals;
   const auto keep = [&](const Record& record) {
     std::vector<std::size_t> kept;
-    for (const SharedInterval& i : shared_intervals(shared, record.timed_intervals)) kept.push_back(i.interval);
+    for (const SharedInterval& i : shared_intervals(shared, record.timed_intervals))
+      kept.push_back(i.interval);
     shared = std::move(kept);
   };
   for (const Record& record : before) keep(record);
@@ -187,8 +188,7 @@ bool in_turns(std::span<const Record> before, std::span<const Record> after) {
 
 std::string times_refused(std::span<const Record> before, std::span<const Record> after) {
   if (!has_times(before) || !has_times(after)) return "a side has no times";
-  if (before.front().scene.digest != after.front().scene.digest)
-    return "other scenes: the frames differ";
+  if (before.front().scene.digest != after.front().scene.digest) return "other scenes: the frames differ";
   for (const std::span<const Record> side : {before, after})
     for (const Record& record : side) {
       if (const std::string why = other_machine(before.front(), record); !why.empty()) return why;
@@ -242,7 +242,8 @@ std::vector<MeanFinding> mean_over_scenes(std::span<const TimeFinding> times, st
       for (std::size_t i = 0; i < resampled.size(); ++i)
         resampled[i] += share * scene->resampled.resampled[i];
     }
-    out.push_back({row, scenes.size(), interval(log_mean, half_width(pairs, comparisons) * standard_deviation(resampled))});
+    out.push_back({row, scenes.size(),
+                   interval(log_mean, half_width(pairs, comparisons) * standard_deviation(resampled))});
   }
   return out;
 }

@@ -15,13 +15,13 @@ namespace cscd::bench {
 // per cent.
 struct TimeFinding {
   std::string scene, row, stage;
-  std::size_t pairs = 0;                // of processes
-  double before_ms = 0, after_ms = 0;   // an interval, medians over the processes
+  std::size_t pairs = 0;               // of processes
+  double before_ms = 0, after_ms = 0;  // an interval, medians over the processes
   ProcessRatio resampled = {};
-  Estimate ratio = {};                  // after over before, with its interval
-  double floor = 0;                     // the least change that would be reported however small the noise
-  double noise_floor = 0;               // what two sets of as many old processes differ by (95 of 100)
-  double smallest_detectable = 0;       // the change that these samples would show in 4 of 5 such comparisons
+  Estimate ratio = {};             // after over before, with its interval
+  double floor = 0;                // the least change that would be reported however small the noise
+  double noise_floor = 0;          // what two sets of as many old processes differ by (95 of 100)
+  double smallest_detectable = 0;  // the change that these samples would show in 4 of 5 such comparisons
   std::size_t pairings = 0, agreeing = 0;
   Change change = Change::same;
   // Why a change that the interval shows is not reported; empty where it is, or where there is none.

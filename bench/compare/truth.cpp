@@ -29,8 +29,8 @@ bool contains(const std::vector<std::size_t>& intervals, std::size_t interval) {
 
 // "3 intervals (4, 7, 9)"; at most five are listed.
 std::string listed(const std::vector<std::size_t>& intervals) {
-  std::string out = std::to_string(intervals.size()) +
-                    (intervals.size() == 1 ? " interval (" : " intervals (");
+  std::string out =
+      std::to_string(intervals.size()) + (intervals.size() == 1 ? " interval (" : " intervals (");
   for (std::size_t i = 0; i < std::min<std::size_t>(intervals.size(), 5); ++i)
     out += (i > 0 ? ", " : "") + std::to_string(intervals[i]);
   return out + (intervals.size() > 5 ? ", ...)" : ")");
@@ -43,7 +43,8 @@ bool has_contact(const StrategyRecord& row, std::size_t place) {
 
 // Whether rows of first_contact promise nothing on an interval, because its start is not embedded.
 bool promises_nothing(const Record& record, std::size_t interval) {
-  return contains(record.verification.unembedded, interval) || contains(record.verification.excused, interval);
+  return contains(record.verification.unembedded, interval) ||
+         contains(record.verification.excused, interval);
 }
 
 void compare_verification(const Record& before, const Record& after, Findings& out) {
@@ -84,16 +85,20 @@ void compare_accuracy(const Record& before, const Record& after, Findings& out) 
     const VerifiedStrategy* old_row = verified(before, row.name);
     if (old_row == nullptr || old_row->contacts_found == row.contacts_found) continue;
     if (old_row->contacts_expected != row.contacts_expected) {
-      out.push_back({scene, row.name, "the reference's contacts have changed from " +
-                                          std::to_string(old_row->contacts_expected) + " to " +
-                                          std::to_string(row.contacts_expected), true});
+      out.push_back({scene, row.name,
+                     "the reference's contacts have changed from " +
+                         std::to_string(old_row->contacts_expected) + " to " +
+                         std::to_string(row.contacts_expected),
+                     true});
       continue;
     }
     // Which later contacts a row of first_contact keeps is chance.
     const bool lost = row.guarantee != kFirstContact && row.contacts_found < old_row->contacts_found;
-    out.push_back({scene, row.name, "found " + std::to_string(row.contacts_found) + " of " +
-                                        std::to_string(row.contacts_expected) + " contacts, in OLD " +
-                                        std::to_string(old_row->contacts_found), lost});
+    out.push_back({scene, row.name,
+                   "found " + std::to_string(row.contacts_found) + " of " +
+                       std::to_string(row.contacts_expected) + " contacts, in OLD " +
+                       std::to_string(old_row->contacts_found),
+                   lost});
   }
 }
 
@@ -120,11 +125,13 @@ void compare_first(const Record& before, const StrategyRecord& old_row, const Re
     else if (old_row.digests[i.before] != new_row.digests[i.after])
       later.push_back(i.interval);
   }
-  const std::string what = have_times ? "tells another first time on " : "disagrees on whether there is contact on ";
+  const std::string what =
+      have_times ? "tells another first time on " : "disagrees on whether there is contact on ";
   if (!lost.empty()) out.push_back({after.scene.name, new_row.name, what + listed(lost), true});
   if (!allowed.empty())
     out.push_back({after.scene.name, new_row.name,
-                   what + listed(allowed) + ", where the start is not embedded and nothing is promised", false});
+                   what + listed(allowed) + ", where the start is not embedded and nothing is promised",
+                   false});
   if (!later.empty())
     out.push_back({after.scene.name, new_row.name,
                    "finds other contacts on " + listed(later) +

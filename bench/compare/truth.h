@@ -20,8 +20,8 @@ struct TruthFinding {
 // - A failed verification is lost truth.
 // - Rows that are complete have to give the same digests of contacts, whatever else they differ in.
 // - Rows that promise the first contact have to give the same first time, except where the record says
-//   that the start is not embedded. Other contacts may differ. Records without first times are compared by whether there was
-//   any contact.
+//   that the start is not embedded. Other contacts may differ. Records without first times are compared by
+//   whether there was any contact.
 // - The elementary test may not miss, invent or leave undecided more contacts than before, nor tell their
 //   times less exactly.
 // - All processes of one side have to answer alike.

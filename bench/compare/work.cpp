@@ -91,21 +91,22 @@ std::vector<CounterFinding> compare_counters(const Record& before, const Record&
   const ordered_json costs = data_json("comparison.json").at("costs");
   const auto shared = shared_intervals(before.counted_intervals, after.counted_intervals);
   std::vector<CounterFinding> out;
-  for_each_counter(before, after, [&](const std::string& row, const std::string& counter,
-                                      const std::vector<std::uint64_t>& old_column,
-                                      const std::vector<std::uint64_t>& new_column) {
-    CounterFinding finding{after.scene.name, row, counter, 0, 0, shared.size(), 0, Change::different};
-    for (const SharedInterval& i : shared) {
-      finding.before += old_column[i.before];
-      finding.after += new_column[i.after];
-      finding.intervals_that_differ += old_column[i.before] != new_column[i.after];
-    }
-    if (finding.intervals_that_differ == 0) return;
-    const bool is_cost = std::find(costs.begin(), costs.end(), counter) != costs.end();
-    if (is_cost && finding.before != finding.after)
-      finding.change = finding.after > finding.before ? Change::worse : Change::better;
-    out.push_back(std::move(finding));
-  });
+  for_each_counter(
+      before, after,
+      [&](const std::string& row, const std::string& counter, const std::vector<std::uint64_t>& old_column,
+          const std::vector<std::uint64_t>& new_column) {
+        CounterFinding finding{after.scene.name, row, counter, 0, 0, shared.size(), 0, Change::different};
+        for (const SharedInterval& i : shared) {
+          finding.before += old_column[i.before];
+          finding.after += new_column[i.after];
+          finding.intervals_that_differ += old_column[i.before] != new_column[i.after];
+        }
+        if (finding.intervals_that_differ == 0) return;
+        const bool is_cost = std::find(costs.begin(), costs.end(), counter) != costs.end();
+        if (is_cost && finding.before != finding.after)
+          finding.change = finding.after > finding.before ? Change::worse : Change::better;
+        out.push_back(std::move(finding));
+      });
   return out;
 }
 

@@ -36,7 +36,8 @@ ordered_json estimate_json(const Estimate& estimate) {
 }
 
 // Over the medians of the processes; of one process, over its repetitions.
-Estimate stage_estimate(const std::vector<Record>& records, const std::string& row, const std::string& stage) {
+Estimate stage_estimate(const std::vector<Record>& records, const std::string& row,
+                        const std::string& stage) {
   std::vector<double> medians, samples;
   for (const Record& record : records) {
     const StrategyRecord* strategy = record.strategy(row);
@@ -54,7 +55,8 @@ ordered_json row_json(const std::vector<Record>& records, const StrategyRecord& 
     for (const std::uint64_t value : column) sum += value;
     counters[counter] = sum;
   }
-  for (const std::string& stage : stages_of(row)) ms[stage] = estimate_json(stage_estimate(records, row.name, stage));
+  for (const std::string& stage : stages_of(row))
+    ms[stage] = estimate_json(stage_estimate(records, row.name, stage));
   return {{"name", row.name},
           {"guarantee", row.guarantee},
           {"answers", answers_of(row)},
@@ -97,14 +99,17 @@ ordered_json read_entry(const fs::path& path) {
 }
 
 void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vector<Course>& courses) {
-  const auto wanted = [](const std::string& one, const std::string& name) { return one.empty() || one == name; };
+  const auto wanted = [](const std::string& one, const std::string& name) {
+    return one.empty() || one == name;
+  };
   const std::string machine = machine_of(entry);
   if (!wanted(choice.machine, machine)) return;
   for (const ordered_json& scene : entry.at("scenes"))
     for (const ordered_json& row : scene.at("rows"))
       for (const auto& [stage, ms] : row.at("ms").items()) {
         const std::string scene_name = scene.at("name"), row_name = row.at("name");
-        if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) || !wanted(choice.stage, stage))
+        if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) ||
+            !wanted(choice.stage, stage))
           continue;
         auto course = std::find_if(courses.begin(), courses.end(), [&](const Course& c) {
           return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage;
@@ -141,8 +146,9 @@ std::string step_text(double ratio) {
 
 std::string point_text(const Course& course, std::size_t i) {
   char text[128];
-  std::snprintf(text, sizeof text, "  %s  %.10s  %10.4g ms [%.4g, %.4g]", course.dates[i].substr(0, 16).c_str(),
-                course.commits[i].c_str(), course.ms[i].value, course.ms[i].low, course.ms[i].high);
+  std::snprintf(text, sizeof text, "  %s  %.10s  %10.4g ms [%.4g, %.4g]",
+                course.dates[i].substr(0, 16).c_str(), course.commits[i].c_str(), course.ms[i].value,
+                course.ms[i].low, course.ms[i].high);
   std::string out = text;
   for (const ChangePoint& change : course.changes)
     if (change.first == i) out += "  <- " + step_text(change.ratio);
@@ -153,8 +159,9 @@ std::string point_text(const Course& course, std::size_t i) {
 
 ordered_json history_entry(const Side& side, const std::string& committed) {
   if (side.dirty || side.commit == "unknown")
-    throw InputError("history: the records are of no commit, as the sources differed from it; commit them and "
-                     "measure again");
+    throw InputError(
+        "history: the records are of no commit, as the sources differed from it; commit them and "
+        "measure again");
   ordered_json scenes = ordered_json::array(), environment = ordered_json::object();
   for (const char* key : kEnvironment)
     if (const ordered_json& all = side.scenes.begin()->second.front().environment; all.contains(key))
@@ -162,7 +169,8 @@ ordered_json history_entry(const Side& side, const std::string& committed) {
   for (const auto& [name, records] : side.scenes) {
     const Record& first = records.front();
     if (!first.verification.ok())
-      throw InputError("history: the verification of " + name + " failed, so it holds no times; mend it first");
+      throw InputError("history: the verification of " + name +
+                       " failed, so it holds no times; mend it first");
     ordered_json rows = ordered_json::array();
     for (const StrategyRecord& row : first.strategies) rows.push_back(row_json(records, row));
     scenes.push_back({{"name", name},
@@ -173,9 +181,8 @@ ordered_json history_entry(const Side& side, const std::string& committed) {
                       {"timed_intervals", first.timed_intervals},
                       {"rows", std::move(rows)}});
   }
-  return {{"schema", kHistorySchema}, {"commit", side.commit},
-          {"committed", committed},   {"measured", side.measured},
-          {"environment", environment}, {"scenes", std::move(scenes)}};
+  return {{"schema", kHistorySchema},  {"commit", side.commit},      {"committed", committed},
+          {"measured", side.measured}, {"environment", environment}, {"scenes", std::move(scenes)}};
 }
 
 fs::path history_file(const fs::path& folder, const ordered_json& entry) {
@@ -187,7 +194,8 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
   std::vector<ordered_json> entries;
   std::error_code error;
   for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, error))
-    if (file.is_regular_file() && file.path().extension() == ".json") entries.push_back(read_entry(file.path()));
+    if (file.is_regular_file() && file.path().extension() == ".json")
+      entries.push_back(read_entry(file.path()));
   if (entries.empty())
     throw InputError("history " + folder.string() +
                      ": holds no entry; add one with scripts/bench_commits --keep or cscd history --keep");
@@ -210,7 +218,8 @@ ordered_json courses_json(const std::vector<Course>& courses) {
       points.back()["answers"] = course.answers[i];
     }
     for (const ChangePoint& change : course.changes)
-      changes.push_back({{"first", change.first}, {"commit", course.commits[change.first]}, {"ratio", change.ratio}});
+      changes.push_back(
+          {{"first", change.first}, {"commit", course.commits[change.first]}, {"ratio", change.ratio}});
     out.push_back({{"machine", course.machine},
                    {"scene", course.scene},
                    {"row", course.row},

@@ -37,8 +37,8 @@ struct CourseChoice {
   std::string machine, scene, row, stage;
 };
 
-// Reads every entry below a folder. Throws InputError, naming the file, for one that is not of the schema, and
-// for a folder without entries.
+// Reads every entry below a folder. Throws InputError, naming the file, for one that is not of the schema,
+// and for a folder without entries.
 std::vector<Course> read_courses(const std::filesystem::path& folder, const CourseChoice& choice);
 
 nlohmann::ordered_json courses_json(const std::vector<Course>& courses);

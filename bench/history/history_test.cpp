@@ -62,7 +62,8 @@ TEST(History, FindsTheCommitThatChangedARow) {
   ASSERT_EQ(courses[0].changes.size(), 1u);
   EXPECT_EQ(courses[0].commits[courses[0].changes[0].first], "ffffffffffffffff");
   EXPECT_NEAR(courses[0].changes[0].ratio, 0.7, 1e-6);
-  EXPECT_NE(courses_text(courses, true).find("<- 1.43 times faster"), std::string::npos) << courses_text(courses, true);
+  EXPECT_NE(courses_text(courses, true).find("<- 1.43 times faster"), std::string::npos)
+      << courses_text(courses, true);
   EXPECT_EQ(courses_json(courses)["courses"][0]["changes"][0]["commit"], "ffffffffffffffff");
   std::ofstream(folder / "m" / "other.json") << "{}";
   EXPECT_THROW(read_courses(folder, {}), InputError);

@@ -116,7 +116,8 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
                const Verifier& verifier, std::vector<StrategyRecord>& records) {
   Progress progress("counting " + input.name, counted.size());
   EmbeddingTest embedding(input.mesh, input.reference);
-  WarmUp out{{counted.begin(), counted.end()}, std::vector<std::vector<Report>>(contestants.size()), {}, {}, {}};
+  WarmUp out{
+      {counted.begin(), counted.end()}, std::vector<std::vector<Report>>(contestants.size()), {}, {}, {}};
   ContactSet found;
   std::vector<Answer> answers(contestants.size());
   for (const std::size_t i : counted) {
@@ -138,8 +139,7 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
       if (!embedded) out.excused.push_back(i);
       return embedded;
     };
-    if (!agree(contestants, answers, starts_embedded))
-      out.disagreeing.push_back(i);
+    if (!agree(contestants, answers, starts_embedded)) out.disagreeing.push_back(i);
     progress.advance();
   }
   return out;

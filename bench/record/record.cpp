@@ -105,7 +105,8 @@ ordered_json to_json(const StrategyRecord& s) {
                       {"digests", s.digests}};
   if (!s.first_times.empty()) {
     ordered_json& times = out["first_times"] = ordered_json::array();
-    for (const std::optional<double>& time : s.first_times) times.push_back(time ? ordered_json(*time) : nullptr);
+    for (const std::optional<double>& time : s.first_times)
+      times.push_back(time ? ordered_json(*time) : nullptr);
   }
   if (!s.ms.empty()) out["ms"] = s.ms;
   return out;

@@ -105,7 +105,8 @@ ProcessRatio bootstrap_process_ratio(std::span<const ProcessPair> pairs) {
   }
   for (int i = 0; i < kNoiseResamples; ++i) {
     for (double& log : logs)
-      log = before[any_place(pairs.size(), random)].any(random) - before[any_place(pairs.size(), random)].any(random);
+      log = before[any_place(pairs.size(), random)].any(random) -
+            before[any_place(pairs.size(), random)].any(random);
     noise.push_back(std::abs(middle_mean(logs)));
   }
   // The bootstrap's variance is that of n samples around their own mean, too small by (n - 1) / n.
