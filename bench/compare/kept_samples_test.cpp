@@ -12,8 +12,8 @@
 #include "bench/output/gzip.h"
 #include "scenes/catalog/scene.h"
 
-// What the comparison finds on kept samples (kept_samples.json.gz): 162 processes of one program in six layouts
-// (scripts/lib/layouts.py), run in turns on a machine of two cores with a load of five to nine. In a
+// What the comparison finds on kept samples (kept_samples.json.gz): 162 processes of one program in six
+// layouts (scripts/lib/layouts.py), run in turns on a machine of two cores with a load of five to nine. In a
 // round each layout ran once, in a random order, with the options of scripts/bench_commits on the scene hand.
 namespace cscd::bench {
 namespace {

@@ -111,7 +111,7 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
         if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) ||
             !wanted(choice.stage, stage))
           continue;
-        auto course = std::find_if(courses.begin(), courses.end(), [&](const Course& c) {
+        auto course = std::find_if(courses.begin(), courses.end(), [&, &stage = stage](const Course& c) {
           return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage;
         });
         if (course == courses.end()) {
