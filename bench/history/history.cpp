@@ -35,17 +35,18 @@ ordered_json estimate_json(const Estimate& estimate) {
   return {{"median", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
 }
 
-// Over the medians of the processes; of one process, over its repetitions.
+// The median over the processes (process_time); of one process, over its repetitions.
 Estimate stage_estimate(const std::vector<Record>& records, const std::string& row,
                         const std::string& stage) {
-  std::vector<double> medians, samples;
-  for (const Record& record : records) {
-    const StrategyRecord* strategy = record.strategy(row);
-    if (strategy == nullptr) continue;
-    samples = stage_samples(record, *strategy, stage);
-    if (!samples.empty()) medians.push_back(median(samples));
-  }
-  return bootstrap_median(medians.size() > 1 ? medians : samples);
+  std::vector<double> processes, repetitions;
+  for (const Record& record : records)
+    if (const StrategyRecord* strategy = record.strategy(row)) {
+      const ProcessTimes times = stage_times(record, *strategy, stage, record.timed_intervals);
+      if (times.empty()) continue;
+      processes.push_back(process_time(times));
+      repetitions = stage_samples(record, *strategy, stage);
+    }
+  return bootstrap_median(processes.size() > 1 ? processes : repetitions);
 }
 
 ordered_json row_json(const std::vector<Record>& records, const StrategyRecord& row) {
