@@ -30,9 +30,10 @@ int run(int argc, char** argv) {
       "  cscd view rope                       a page that shows it\n"
       "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
       "  cscd tables r.json --out tables      the paper's tables, published beside measured\n"
+      "  cscd compare before after            faster or slower, truer or less true?\n"
       "  cscd help query                      what a command does and takes\n\n"
-      "Exit status: 0 done; 1 a verification failed; 2 bad usage or bad input; 3 query --fail-on-contact "
-      "found one.",
+      "Exit status: 0 done; 1 a verification failed, or compare found something worse; 2 bad usage or bad "
+      "input; 3 query\n--fail-on-contact found one.",
       "cscd");
   app.formatter(std::make_shared<cscd::bench::HelpFormat>());  // commands that are added have it, too
   app.require_subcommand(1);
@@ -53,6 +54,9 @@ int run(int argc, char** argv) {
   cscd::bench::add_run(app);
   cscd::bench::add_tables(app);
   cscd::bench::add_report(app);
+  cscd::bench::add_compare(app);
+  cscd::bench::add_history(app);
+  cscd::bench::add_convert(app);
   cscd::bench::add_scene(app);
   cscd::bench::add_help(app);
 

@@ -10,7 +10,8 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages_bu
 packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_kernels=(libbenchmark-dev)
-packages_tests=(assimp-testmodels chromium pybind11-dev python3-dev python3-numpy python3-h5py doxygen pkg-config)
+packages_tests=(assimp-testmodels chromium pybind11-dev python3-dev python3-numpy python3-h5py python3-yaml doxygen
+                pkg-config)
 packages_clang=(clang)
 
 say() { printf '\n== %s\n' "$*"; }

@@ -10,7 +10,7 @@
 #include "bench/output/progress.h"
 #include "bench/output/schema.h"
 #include "bench/record/environment.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "bench/rows/catalogue.h"
 #include "bench/studies/knobs.h"
 #include "bench/studies/tally.h"

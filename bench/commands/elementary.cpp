@@ -5,7 +5,7 @@
 
 #include "bench/commands/command.h"
 #include "bench/output/output.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "bench/rows/catalogue.h"
 #include "core/elementary/queries/query_file.h"
 

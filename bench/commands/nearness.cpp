@@ -12,7 +12,7 @@
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "core/detect/start/embedding.h"
 
 namespace cscd::bench {

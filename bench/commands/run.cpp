@@ -168,6 +168,7 @@ VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contes
   }
   VerificationRecord verified = verifier.record();
   verified.disagreeing = counted.disagreeing;
+  verified.excused = counted.excused;
   if (void_times) verified.strategies[void_times->contestant].failures.push_back(void_times->failure);
   return verified;
 }

@@ -116,7 +116,8 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
                const Verifier& verifier, std::vector<StrategyRecord>& records) {
   Progress progress("counting " + input.name, counted.size());
   EmbeddingTest embedding(input.mesh, input.reference);
-  WarmUp out{{counted.begin(), counted.end()}, std::vector<std::vector<Report>>(contestants.size()), {}, {}};
+  WarmUp out{
+      {counted.begin(), counted.end()}, std::vector<std::vector<Report>>(contestants.size()), {}, {}, {}};
   ContactSet found;
   std::vector<Answer> answers(contestants.size());
   for (const std::size_t i : counted) {
@@ -125,6 +126,7 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
       answers[c] = answer(contestants[c], interval, found);
       append_counts(answers[c].report, found, records[c].counts);
       records[c].digests.push_back(answers[c].digest);
+      records[c].first_times.push_back(answers[c].first);
       out.reports[c].push_back(answers[c].report);
       if (verifier.has_judged(i) && !same_culling(answers[c].report, verifier.report(c, i))) {
         out.unrepeatable = {c,
@@ -132,8 +134,12 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
         return out;
       }
     }
-    if (!agree(contestants, answers, [&] { return embedding.embedded(interval.motion.start()); }))
-      out.disagreeing.push_back(i);
+    const auto starts_embedded = [&] {
+      const bool embedded = embedding.embedded(interval.motion.start());
+      if (!embedded) out.excused.push_back(i);
+      return embedded;
+    };
+    if (!agree(contestants, answers, starts_embedded)) out.disagreeing.push_back(i);
     progress.advance();
   }
   return out;

@@ -71,6 +71,7 @@ ordered_json to_json(const VerificationRecord& v) {
                       {"unembedded", v.unembedded},
                       {"colliding", v.colliding},
                       {"disagreeing", v.disagreeing},
+                      {"excused", v.excused},
                       {"strategies", strategies},
                       {"accuracy",
                        {{"misses", v.accuracy.misses},
@@ -102,6 +103,11 @@ ordered_json to_json(const StrategyRecord& s) {
                       {"footprint", std::move(footprint)},
                       {"counts", s.counts},
                       {"digests", s.digests}};
+  if (!s.first_times.empty()) {
+    ordered_json& times = out["first_times"] = ordered_json::array();
+    for (const std::optional<double>& time : s.first_times)
+      times.push_back(time ? ordered_json(*time) : nullptr);
+  }
   if (!s.ms.empty()) out["ms"] = s.ms;
   return out;
 }
@@ -114,6 +120,7 @@ VerificationRecord verification_from(const ordered_json& v) {
   out.unembedded = v.at("unembedded").get<std::vector<std::size_t>>();
   out.colliding = v.at("colliding").get<std::vector<std::size_t>>();
   out.disagreeing = v.value("disagreeing", std::vector<std::size_t>());
+  out.excused = v.value("excused", std::vector<std::size_t>());
   for (const ordered_json& s : v.at("strategies"))
     out.strategies.push_back({s.at("name"), s.at("guarantee"), s.at("contacts_expected"),
                               s.at("contacts_found"), s.at("intervals_promised"),
@@ -146,6 +153,9 @@ StrategyRecord strategy_from(const ordered_json& s) {
   if (footprint.contains("instructions")) out.footprint.instructions = footprint["instructions"];
   out.counts = s.at("counts").get<CountColumns>();
   out.digests = s.at("digests").get<std::vector<std::string>>();
+  if (s.contains("first_times"))
+    for (const ordered_json& time : s["first_times"])
+      out.first_times.push_back(time.is_null() ? std::nullopt : std::optional(time.get<double>()));
   if (s.contains("ms")) out.ms = s["ms"].get<TimeColumns>();
   return out;
 }
@@ -159,6 +169,10 @@ void require_whole(const Record& record) {
       if (column.size() != record.counted_intervals.size())
         throw InputError("strategy " + strategy.name + ": counts of " + key +
                          " are not one a counted interval");
+    if (!strategy.first_times.empty() && strategy.first_times.size() != record.counted_intervals.size())
+      throw InputError("strategy " + strategy.name + ": first times are not one a counted interval");
+    if (!strategy.digests.empty() && strategy.digests.size() != record.counted_intervals.size())
+      throw InputError("strategy " + strategy.name + ": digests are not one a counted interval");
     for (const auto& [stage, repetitions] : strategy.ms)
       for (const std::vector<double>& row : repetitions)
         if (row.size() != record.timed_intervals.size() ||

@@ -51,6 +51,9 @@ struct StrategyRecord {
   Footprint footprint;
   CountColumns counts;
   std::vector<std::string> digests;  // of the contacts, one an interval
+  // Time of the earliest contact in [0, 1], one an interval; none without a contact. Older records have no
+  // such list.
+  std::vector<std::optional<double>> first_times = {};
   TimeColumns ms;
 };
 
@@ -70,6 +73,9 @@ struct VerificationRecord {
   // Verified intervals on which the answers of two rows had differed when all counted intervals were answered
   // with the timed elementary test.
   std::vector<std::size_t> disagreeing;
+  // Counted intervals on which rows that promise the first contact told different first times, as they may,
+  // because the start is not embedded.
+  std::vector<std::size_t> excused;
   std::vector<VerifiedStrategy> strategies;
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;

@@ -10,7 +10,7 @@
 #include "bench/measure/footprint.h"
 #include "bench/measure/timing.h"
 #include "bench/record/record.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

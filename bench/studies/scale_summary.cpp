@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "bench/studies/scaling.h"
 
 namespace cscd::bench {

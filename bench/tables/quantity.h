@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/record/record.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 

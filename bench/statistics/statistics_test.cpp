@@ -1,4 +1,4 @@
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

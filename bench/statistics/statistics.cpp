@@ -1,4 +1,4 @@
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 
 #include <algorithm>
 #include <cassert>
@@ -50,9 +50,13 @@ double median(std::span<const double> samples) {
 }
 
 double quantile(std::span<const double> samples, double share) {
-  assert(!samples.empty() && share >= 0 && share <= 1);
   std::vector<double> sorted(samples.begin(), samples.end());
   std::sort(sorted.begin(), sorted.end());
+  return quantile_of_sorted(sorted, share);
+}
+
+double quantile_of_sorted(std::span<const double> sorted, double share) {
+  assert(!sorted.empty() && share >= 0 && share <= 1);
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);

@@ -12,6 +12,7 @@ double mean(std::span<const double> samples);    // of at least one
 double median(std::span<const double> samples);  // of at least one
 // Linear between order statistics (type 7 of Hyndman and Fan 1996); `share` in [0, 1].
 double quantile(std::span<const double> samples, double share);
+double quantile_of_sorted(std::span<const double> sorted, double share);
 
 struct Estimate {
   double value, low, high;  // the statistic of the samples, and its 95 % interval

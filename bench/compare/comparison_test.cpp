@@ -1,0 +1,287 @@
+#include "bench/compare/comparison.h"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "bench/compare/test_records.h"
+#include "bench/output/json_text.h"
+#include "bench/output/schema.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+using test::small_record;
+
+Side one_side(Record record) {
+  std::vector<Record> records;
+  records.push_back(std::move(record));
+  return side_of(std::move(records), "a test");
+}
+
+// What comes out where the new record is the old one after `change`.
+Comparison after(const std::function<void(Record&)>& change, Lane lane = Lane::counters) {
+  Record changed = small_record();
+  change(changed);
+  return compare(one_side(small_record()), one_side(std::move(changed)), lane);
+}
+
+void expect_lost(const Comparison& comparison, const std::string& text) {
+  EXPECT_EQ(comparison.verdict(), ComparisonVerdict::less_true) << comparison_text(comparison);
+  EXPECT_NE(comparison_text(comparison).find(text), std::string::npos) << comparison_text(comparison);
+  EXPECT_EQ(schema_violation(comparison_json(comparison), "compare.schema.json"), "");
+}
+
+TEST(Comparison, OfEqualRecordsFindsNothing) {
+  const Comparison same = after([](Record&) {});
+  EXPECT_EQ(same.verdict(), ComparisonVerdict::nothing_worse) << comparison_text(same);
+  EXPECT_TRUE(same.truth.empty());
+  EXPECT_TRUE(same.counters.empty());
+  EXPECT_EQ(same.compared_counts, 3u * 2 * 4);  // rows, costs and other counters, intervals
+  EXPECT_EQ(exit_status(same.verdict()), 0);
+}
+
+TEST(Comparison, FindsEveryLossOfTruth) {
+  expect_lost(after([](Record& r) { r.strategies[0].digests[1] = "xx"; }),
+              "other contacts on 1 interval (1)");
+  expect_lost(after([](Record& r) { r.strategies[1].first_times[2] = 0.5000000000000001; }),
+              "another first time on 1 interval (2)");
+  expect_lost(after([](Record& r) { r.strategies[1].first_times[1].reset(); }), "another first time");
+  expect_lost(after([](Record& r) { r.verification.strategies[1].failures = {"missing contact"}; }),
+              "verification failed: missing contact");
+  expect_lost(after([](Record& r) { r.verification.accuracy.misses = 2; }), "contacts missed 2, in OLD 1");
+  expect_lost(after([](Record& r) { r.verification.accuracy.false_alarms = 1; }), "contacts invented 1");
+  expect_lost(after([](Record& r) { r.verification.accuracy.largest_time_error = 2e-9; }), "error of a time");
+  expect_lost(after([](Record& r) { r.verification.strategies[2].contacts_found = 1; }), "found 1 of 3");
+  expect_lost(after([](Record& r) { r.strategies[0].guarantee = "heuristic"; }), "promises less");
+  expect_lost(after([](Record& r) { r.verification.intervals.clear(); }), "verified no interval");
+}
+
+// Records without first times only tell whether there was any contact.
+TEST(Comparison, FindsALostContactWithoutFirstTimes) {
+  Record before = small_record();
+  for (StrategyRecord& row : before.strategies) row.first_times.clear();
+  Record changed = before;
+  changed.strategies[1].counts["contacts"][2] = 0;
+  changed.strategies[1].digests[2] = "e0";
+  expect_lost(compare(one_side(before), one_side(changed), Lane::counters), "whether there is contact");
+}
+
+TEST(Comparison, AllowsWhatAGuaranteeAllows) {
+  // A later contact may come or go where only the first one is promised.
+  Comparison later = after([](Record& r) {
+    r.strategies[1].digests[1] = "xx";
+    r.verification.strategies[1].contacts_found = 1;
+  });
+  EXPECT_EQ(later.verdict(), ComparisonVerdict::nothing_worse) << comparison_text(later);
+  EXPECT_EQ(later.truth.size(), 2u);
+  // Nothing is promised where the start crosses itself.
+  Record unembedded = small_record();
+  unembedded.verification.unembedded = {2};
+  Record changed = unembedded;
+  changed.strategies[1].first_times[2] = 0.75;
+  later = compare(one_side(unembedded), one_side(changed), Lane::counters);
+  EXPECT_EQ(later.verdict(), ComparisonVerdict::nothing_worse) << comparison_text(later);
+  EXPECT_EQ(later.truth.size(), 1u);
+}
+
+TEST(Comparison, JudgesCountersExactly) {
+  const Comparison worse = after([](Record& r) { ++r.strategies[1].counts["bvot"][3]; });
+  ASSERT_EQ(worse.counters.size(), 1u);
+  EXPECT_EQ(worse.counters[0].change, Change::worse);
+  EXPECT_EQ(worse.counters[0].after, 1001u);
+  EXPECT_EQ(exit_status(worse.verdict()), 1);
+  const Comparison better = after([](Record& r) { --r.strategies[1].counts["bvot"][3]; });
+  EXPECT_EQ(better.counters.at(0).change, Change::better);
+  EXPECT_EQ(exit_status(better.verdict()), 0);
+  const Comparison other = after([](Record& r) { ++r.strategies[1].counts["clusters"][3]; });
+  EXPECT_EQ(other.counters.at(0).change, Change::different);
+  EXPECT_EQ(exit_status(other.verdict()), 0);
+}
+
+TEST(Comparison, ComparesTheIntervalsThatBothHave) {
+  const Comparison fewer = after([](Record& r) {
+    r.counted_intervals = {1, 3};
+    for (StrategyRecord& row : r.strategies) {
+      row.digests = {row.digests[1], row.digests[3]};
+      row.first_times = {row.first_times[1], row.first_times[3]};
+      for (auto& [counter, column] : row.counts) column = {column[1], column[3]};
+    }
+    r.timed_intervals = {1, 3};
+    ++r.strategies[0].counts["bvot"][0];
+  });
+  ASSERT_EQ(fewer.counters.size(), 1u);
+  EXPECT_EQ(fewer.counters[0].intervals, 2u);
+  EXPECT_EQ(fewer.counters[0].before, 600u);
+}
+
+TEST(Comparison, JudgesMemoryBeyondItsFloor) {
+  const auto with_memory = [](std::uint64_t bytes) {
+    Record record = small_record();
+    record.strategies[0].footprint.peak_bytes = bytes;
+    return one_side(record);
+  };
+  const Comparison noise = compare(with_memory(100 << 20), with_memory(102 << 20), Lane::counters);
+  EXPECT_TRUE(noise.footprint.empty());
+  const Comparison more = compare(with_memory(100 << 20), with_memory(110 << 20), Lane::counters);
+  EXPECT_EQ(more.footprint.at(0).change, Change::worse);
+  EXPECT_EQ(exit_status(more.verdict()), 1);
+}
+
+TEST(Comparison, RefusesTimesOfOtherMachinesWithTheReason) {
+  const Comparison other = after([](Record& r) { r.environment["cpu"] = "another machine"; }, Lane::all);
+  ASSERT_EQ(other.refusals.size(), 1u);
+  EXPECT_EQ(other.refusals[0].what, "times");
+  EXPECT_EQ(other.refusals[0].reason, "other machines: cpu is a machine and another machine");
+  EXPECT_EQ(exit_status(other.verdict()), 2);
+  // Truth and counters are compared all the same.
+  EXPECT_EQ(exit_status(after(
+                            [](Record& r) {
+                              r.environment["cpu"] = "another machine";
+                              r.strategies[0].digests[1] = "xx";
+                            },
+                            Lane::all)
+                            .verdict()),
+            1);
+  EXPECT_EQ(exit_status(after([](Record& r) { r.environment["cpu"] = "another machine"; }).verdict()), 0);
+}
+
+TEST(Comparison, RefusesWhatCannotBeCompared) {
+  const auto reasons = [](const Comparison& comparison) {
+    std::string out;
+    for (const Refusal& refusal : comparison.refusals) out += refusal.what + ": " + refusal.reason + "\n";
+    return out;
+  };
+  EXPECT_NE(
+      reasons(after([](Record& r) { r.scene.digest = "other"; }, Lane::all)).find("counters: the scene"),
+      std::string::npos);
+  EXPECT_NE(
+      reasons(after([](Record& r) { r.elementary = "exact"; }, Lane::all)).find("times: other pipelines"),
+      std::string::npos);
+  EXPECT_NE(reasons(after([](Record&) {}, Lane::all)).find("times: the smaller side has 1 process"),
+            std::string::npos);
+  EXPECT_NE(reasons(after([](Record& r) {
+              r.environment["instruction_set"] = "SSE2";
+            })).find("counters: instruction sets"),
+            std::string::npos);
+  EXPECT_EQ(exit_status(after([](Record& r) { r.scene.name = "foot"; }).verdict()), 2);
+}
+
+TEST(Comparison, RefusesRecordsOfTwoCommitsOnOneSide) {
+  std::vector<Record> records = {small_record("aaaaaaaaaaaaaaaa"), small_record("bbbbbbbbbbbbbbbb")};
+  EXPECT_THROW(side_of(std::move(records), "OLD"), InputError);
+}
+
+TEST(Comparison, FindsProcessesThatAnswerDifferently) {
+  std::vector<Record> before = {small_record()}, changed = {small_record(), small_record()};
+  changed[1].strategies[2].digests[1] = "xx";
+  const Comparison comparison = compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::counters);
+  expect_lost(comparison, "processes of NEW answer differently");
+}
+
+// The new processes take `slower` times as long in the traversal of the row `slow`.
+Comparison of_processes(std::size_t count, double slower, bool in_turns) {
+  std::vector<Record> before, changed;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int second = static_cast<int>(i);
+    Record one = small_record("aaaaaaaaaaaaaaaa", in_turns ? 2 * second : second),
+           other = small_record("bbbbbbbbbbbbbbbb", in_turns ? 2 * second + 1 : 30 + second);
+    const double noise = 1 + 0.0002 * static_cast<double>(i % 3);
+    for (Record* record : {&one, &other}) {
+      record->strategies[0].ms["traversal"] = {{6, 12}, {6, 12}};
+      for (auto& [stage, repetitions] : record->strategies[0].ms)
+        for (auto& repetition : repetitions)
+          for (double& ms : repetition) ms *= noise;
+    }
+    for (auto& repetition : other.strategies[0].ms["traversal"])
+      for (double& ms : repetition) ms *= slower;
+    before.push_back(std::move(one));
+    changed.push_back(std::move(other));
+  }
+  return compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::all);
+}
+
+TEST(Comparison, ReportsASlowerStage) {
+  const Comparison slower = of_processes(9, 1.1, true);
+  EXPECT_TRUE(slower.refusals.empty()) << comparison_text(slower);
+  EXPECT_EQ(exit_status(slower.verdict()), 1);
+  for (const TimeFinding& time : slower.times)
+    EXPECT_EQ(time.change, time.row == "slow" && (time.stage == "traversal" || time.stage == "total")
+                               ? Change::worse
+                               : Change::same)
+        << time.row << " " << time.stage;
+  ASSERT_EQ(slower.means.size(), 3u);
+  EXPECT_NEAR(slower.means.at(0).ratio.value, 1 + 0.1 * 9 / 10, 1e-3);  // refit takes 1 of 10 and is the same
+  EXPECT_EQ(schema_violation(comparison_json(slower), "compare.schema.json"), "");
+  EXPECT_NE(comparison_markdown(slower).find("### Times that changed"), std::string::npos);
+  EXPECT_EQ(exit_status(of_processes(9, 0.9, true).verdict()), 0);
+}
+
+TEST(Comparison, WithholdsWhatIsBelowTheFloor) {
+  const Comparison little = of_processes(9, 1.01, true);
+  EXPECT_EQ(exit_status(little.verdict()), 0);
+  EXPECT_EQ(little.times.at(1).stage, "traversal");
+  EXPECT_EQ(little.times.at(1).withheld, "below the floor");
+}
+
+TEST(Comparison, WithholdsWhatOnlySomeLayoutsShow) {
+  std::vector<Record> before, changed;
+  for (int i = 0; i < 12; ++i) {
+    before.push_back(small_record("aaaaaaaaaaaaaaaa", 2 * i));
+    changed.push_back(small_record("bbbbbbbbbbbbbbbb", 2 * i + 1));
+    changed.back().environment["layout"] = std::to_string(i % 3);
+    const double factor = i % 3 == 0 ? 0.99 : 1.1;
+    for (auto& repetition : changed.back().strategies[0].ms["traversal"])
+      for (double& ms : repetition) ms *= factor;
+  }
+  const Comparison comparison = compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::all);
+  EXPECT_EQ(exit_status(comparison.verdict()), 0) << comparison_text(comparison);
+  EXPECT_EQ(comparison.times.at(1).pairings, 3u);
+  EXPECT_EQ(comparison.times.at(1).agreeing, 2u);
+}
+
+TEST(Comparison, RefusesTimesThatWereNotMeasuredInTurns) {
+  const Comparison after_each_other = of_processes(9, 1.1, false);
+  EXPECT_EQ(exit_status(after_each_other.verdict()), 2);
+  EXPECT_NE(comparison_text(after_each_other).find("one side was measured after the other"),
+            std::string::npos);
+}
+
+// The lost contact ends it with status 1 whatever the times say.
+TEST(Comparison, PutsTruthBeforeTimes) {
+  Record lost = small_record();
+  lost.strategies[0].digests[1] = "xx";
+  for (auto& [stage, repetitions] : lost.strategies[0].ms)
+    for (auto& repetition : repetitions)
+      for (double& ms : repetition) ms /= 2;
+  const Comparison comparison = compare(one_side(small_record()), one_side(lost), Lane::all);
+  EXPECT_EQ(comparison.verdict(), ComparisonVerdict::less_true);
+}
+
+TEST(Sides, AreReadFromFilesAndFolders) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("cscd-compare-test-" + std::to_string(getpid()));
+  fs::create_directories(folder / "many");
+  const auto put = [&](const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  put("one.json", json_text(to_json(small_record())));
+  put("many/a.json", json_text(to_json(small_record("aaaaaaaaaaaaaaaa", 1))));
+  put("many/tables.json", R"({"schema": "cscd.tables/1"})");
+  EXPECT_EQ(read_side((folder / "one.json").string()).scenes.at("hand").size(), 1u);
+  const Side both = read_side((folder / "one.json").string() + "," + (folder / "many").string());
+  EXPECT_EQ(both.scenes.at("hand").size(), 2u);
+  EXPECT_EQ(both.scenes.at("hand")[0].strategies[1].first_times, small_record().strategies[1].first_times);
+  EXPECT_THROW(read_side((folder / "none.json").string()), InputError);
+  EXPECT_THROW(read_side((folder / "many/tables.json").string()), InputError);
+  EXPECT_THROW(read_side(""), InputError);
+  fs::create_directories(folder / "empty");
+  EXPECT_THROW(read_side((folder / "empty").string()), InputError);
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,97 @@
+#include "bench/compare/side.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "bench/compare/google_benchmark.h"
+#include "bench/output/gzip.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of a file, unpacked
+
+bool names_json(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.ends_with(".json") || name.ends_with(".json.gz");
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf()))
+    throw InputError("record " + path.string() + ": cannot be read; name a file that `cscd run` wrote");
+  return without_gzip(text.str(), "record " + path.string(), kMostBytes);
+}
+
+void add_file(const fs::path& path, bool named_itself, std::vector<Record>& records) {
+  const std::string text = text_of(path);
+  const ordered_json document = ordered_json::parse(text, nullptr, false);
+  if (is_google_benchmark(document)) {
+    records.push_back(record_from_google_benchmark(document, path.string()));
+    return;
+  }
+  const bool is_record =
+      document.is_object() && document.contains("schema") && document["schema"] == kRunSchema;
+  if (is_record || named_itself) records.push_back(parse_record(text, path.string()));
+}
+
+void add_named(const fs::path& path, std::vector<Record>& records) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return add_file(path, true, records);
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path))
+    if (entry.is_regular_file() && names_json(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  const std::size_t before = records.size();
+  for (const fs::path& file : files) add_file(file, false, records);
+  if (records.size() == before)
+    throw InputError("folder " + path.string() +
+                     ": holds no record; name one into which `cscd run --json` wrote");
+}
+
+}  // namespace
+
+std::string environment_text(const Record& record, const char* key) {
+  if (!record.environment.contains(key)) return "unknown";
+  const ordered_json& value = record.environment[key];
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string layout_of(const Record& record) {
+  return record.environment.contains("layout") ? environment_text(record, "layout") : "0";
+}
+
+Side side_of(std::vector<Record> records, const std::string& named) {
+  if (records.empty()) throw InputError(named + ": names no record; name what `cscd run` wrote");
+  std::stable_sort(records.begin(), records.end(), [](const Record& a, const Record& b) {
+    return environment_text(a, "date") < environment_text(b, "date");
+  });
+  Side side;
+  side.commit = environment_text(records.front(), "commit");
+  side.measured = environment_text(records.front(), "date");
+  for (Record& record : records) {
+    if (const std::string commit = environment_text(record, "commit"); commit != side.commit)
+      throw InputError(named + ": holds records of two commits, " + side.commit.substr(0, 12) + " and " +
+                       commit.substr(0, 12) + "; name those of one");
+    side.dirty = side.dirty || record.environment.value("dirty", false);
+    side.scenes[record.scene.name].push_back(std::move(record));
+  }
+  return side;
+}
+
+Side read_side(const std::string& named) {
+  std::vector<Record> records;
+  std::stringstream words(named);
+  for (std::string word; std::getline(words, word, ',');)
+    if (!word.empty()) add_named(word, records);
+  return side_of(std::move(records), named);
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/record/record.h"
+
+namespace cscd::bench {
+
+// One of the two programs that are compared: its records, a process each, by scene and in order of their
+// dates.
+struct Side {
+  std::string commit;    // "unknown" where the records do not say; "several" is refused
+  bool dirty = false;    // whether the sources differed from that commit
+  std::string measured;  // the date of the first record
+  std::map<std::string, std::vector<Record>> scenes;
+};
+
+// Reads what the user named: a record, a folder of records, or several of both with commas between. In a
+// folder, other JSON files are passed over. A file of Google Benchmark counts as a record without truth
+// (google_benchmark.h). Throws InputError where nothing is there to read, and where the records are of
+// several commits.
+Side read_side(const std::string& named);
+
+// The same of records that are there.
+Side side_of(std::vector<Record> records, const std::string& named);
+
+// What `environment` says under a key, as text; "unknown" where it says nothing.
+std::string environment_text(const Record& record, const char* key);
+
+// Which of several links of the same objects a record was measured with (scripts/bench_commits); "0" where
+// the record does not say.
+std::string layout_of(const Record& record);
+
+}  // namespace cscd::bench

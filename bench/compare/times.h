@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/compare/work.h"
+#include "bench/record/record.h"
+#include "bench/statistics/process_ratio.h"
+#include "bench/statistics/statistics.h"
+
+namespace cscd::bench {
+
+// What one stage of one row takes in the new program, compared with the old. Shares are of 1: 0.03 is three
+// per cent.
+struct TimeFinding {
+  std::string scene, row, stage;
+  std::size_t pairs = 0;               // of processes
+  double before_ms = 0, after_ms = 0;  // an interval, medians over the processes
+  ProcessRatio resampled = {};
+  Estimate ratio = {};             // after over before, with its interval
+  double floor = 0;                // the least change that would be reported however small the noise
+  double noise_floor = 0;          // what two sets of as many old processes differ by (95 of 100)
+  double smallest_detectable = 0;  // the change that these samples would show in 4 of 5 such comparisons
+  std::size_t pairings = 0, agreeing = 0;
+  Change change = Change::same;
+  // Why a change that the interval shows is not reported; empty where it is, or where there is none.
+  std::string withheld = {};
+};
+
+// The geometric mean over scenes of what the whole query of a row takes, after over before.
+struct MeanFinding {
+  std::string row;
+  std::size_t scenes = 0;
+  Estimate ratio;
+};
+
+// Returns every row and stage of a scene that both have times of. The k-th process of one side is paired with
+// the k-th of the other. A change is reported where all of this holds:
+// - the interval of the ratio excludes 1. Intervals are simultaneous: they are so wide that all of one
+//   comparison hold together but for the share of `false_reports` (comparison.json; Bonferroni);
+// - the change exceeds the relative and the absolute floor (comparison.json);
+// - all pairings agree in its sign. A pairing is a layout of the old program with one of the new; where each
+//   has one layout, it is a third of the pairs, in order of time.
+// `comparisons` is how many rows, stages and scenes the whole answer compares.
+std::vector<TimeFinding> compare_times(std::span<const Record> before, std::span<const Record> after,
+                                       std::size_t comparisons);
+
+// How many rows and stages of a scene can be compared.
+std::size_t count_times(std::span<const Record> before, std::span<const Record> after);
+
+// Why times of two sides cannot be compared: no times, other machines, another pipeline, too few processes,
+// not measured in turns. Empty where they can.
+std::string times_refused(std::span<const Record> before, std::span<const Record> after);
+
+std::vector<MeanFinding> mean_over_scenes(std::span<const TimeFinding> times, std::size_t comparisons);
+
+}  // namespace cscd::bench

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/record/record.h"
+
+// What two programs counted: work, which is exact, and memory and instructions, which nearly are.
+namespace cscd::bench {
+
+enum class Change { same, better, worse, different };
+
+struct CounterFinding {
+  std::string scene, row, counter;
+  std::uint64_t before = 0, after = 0;  // sums over the counted intervals that both have
+  std::size_t intervals = 0, intervals_that_differ = 0;
+  Change change = Change::same;
+};
+
+struct FootprintFinding {
+  std::string scene, row, what;  // peak_bytes, held_bytes or instructions
+  double before = 0, after = 0;  // medians over the processes
+  Change change = Change::same;
+};
+
+// Returns the counters that differ on any interval that both records counted. More of a cost
+// (comparison.json) is worse, less of it better; other counters are merely different.
+std::vector<CounterFinding> compare_counters(const Record& before, const Record& after);
+
+// How many counters of how many intervals were compared to find these.
+std::size_t compared_counts(const Record& before, const Record& after);
+
+// Why the counters of two records cannot be compared; empty where they can.
+std::string counters_refused(const Record& before, const Record& after);
+
+// Returns the footprints that differ by more than the floors of comparison.json.
+std::vector<FootprintFinding> compare_footprints(std::span<const Record> before,
+                                                 std::span<const Record> after);
+
+std::string_view to_string(Change change);
+
+}  // namespace cscd::bench
