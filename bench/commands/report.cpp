@@ -8,7 +8,7 @@
 
 #include "bench/commands/command.h"
 #include "bench/output/output.h"
-#include "bench/record/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/paper_tables.h"
 #include "bench/tables/record_inputs.h"
