@@ -5,11 +5,11 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/session/candidates.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/session/candidates.h"
 #include "core/session/session.h"
 
 #include "cscd/cscd.h"

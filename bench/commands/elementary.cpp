@@ -5,8 +5,8 @@
 
 #include "bench/commands/command.h"
 #include "bench/output/output.h"
-#include "bench/statistics/statistics.h"
 #include "bench/rows/catalogue.h"
+#include "bench/statistics/statistics.h"
 #include "core/elementary/queries/query_file.h"
 
 namespace cscd::bench {

@@ -7,8 +7,8 @@
 
 #include "bench/input/input.h"
 #include "bench/measure/interval_choice.h"
-#include "bench/statistics/statistics.h"
 #include "bench/rows/catalogue.h"
+#include "bench/statistics/statistics.h"
 #include "bench/studies/knob_volumes.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"

@@ -12,11 +12,11 @@ namespace cscd {
 
 // Keeps the crossing triangle pairs of a surface while it moves from one pose to the next.
 //
-// Finding them from nothing tests every neighbourhood of the surface with exact predicates, which takes many
-// times as long as a query. But two triangles begin or cease to cross only at a moment at which a feature
-// pair that they carry touches (theorem "crossings follow from contacts" in core/soundness.md). So a caller
-// who knows all feature pairs that touched on the way from a known pose has to look at their carriers alone.
-// Where nothing touched, the same pairs cross as before: in particular, an embedded pose stays embedded.
+// Finding them from nothing takes at least as long as a query. But two triangles begin or cease to cross only
+// at a moment at which a feature pair that they carry touches (theorem "crossings follow from contacts" in
+// core/soundness.md). So a caller who knows all feature pairs that touched on the way from a known pose has
+// to look at their carriers alone. Where nothing touched, the same pairs cross as before: in particular, an
+// embedded pose stays embedded.
 class PoseCrossings {
  public:
   // `test` finds crossings from nothing. At most `most` pairs are kept for a pose.
