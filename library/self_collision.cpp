@@ -121,7 +121,7 @@ class SelfCollision::Engine {
       if (pair.kind == FeaturePair::Kind::vertex_face)
         out.vertex_face.push_back({pair.a, pair.b});
       else
-        out.edge_edge.push_back(vertices_of(pair));
+        out.edge_edge.push_back(indices_of(pair));
   }
 
  private:
@@ -148,27 +148,16 @@ class SelfCollision::Engine {
     if (options_.check_positions) require_finite(rows_of(positions), which + " positions");
   }
 
-  std::array<int, 4> vertices_of(const FeaturePair& pair) const {
-    std::array<int, 4> out{};
-    std::size_t n = 0;
-    const auto add = [&](const auto& vertices) {
-      for (const VertexId v : vertices) out[n++] = static_cast<int>(v);
-    };
-    if (pair.kind == FeaturePair::Kind::vertex_face) {
-      add(std::array{VertexId{pair.a}});
-      add(mesh_.corners(TriangleId{pair.b}));
-    } else {
-      add(mesh_.ends(EdgeId{pair.a}));
-      add(mesh_.ends(EdgeId{pair.b}));
-    }
-    return out;
+  std::array<int, 4> indices_of(const FeaturePair& pair) const {
+    const auto [a, b, c, d] = vertices_of(mesh_, pair);
+    return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d)};
   }
 
   Contact written(const cscd::Contact& contact, const Motion& motion) const {
     const ContactGeometry geometry = contact_geometry(mesh_, motion, contact.pair, contact.time);
     const bool edges = contact.pair.kind == FeaturePair::Kind::edge_edge;
     return {edges,
-            vertices_of(contact.pair),
+            indices_of(contact.pair),
             edges ? -1 : contact.pair.b,
             contact.time,
             geometry.point,

@@ -71,9 +71,7 @@ json side_json(const Input& input, const SurfaceNames& names, const FeaturePair&
 json contact_json(const Input& input, const SurfaceNames& names, const Contact& contact,
                   const Motion& motion) {
   json vertices = json::array();
-  for (const bool second : {false, true})
-    for (const VertexId vertex : side_vertices(input.mesh, contact.pair, second))
-      vertices.push_back(number(vertex));
+  for (const VertexId vertex : vertices_of(input.mesh, contact.pair)) vertices.push_back(number(vertex));
   const bool face = contact.pair.kind == FeaturePair::Kind::vertex_face;
   json out = {{"kind", face ? "vf" : "ee"}, {"vertices", vertices}, {"time", contact.time}};
   if (face) {

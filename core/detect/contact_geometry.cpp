@@ -121,6 +121,15 @@ ContactGeometry of(const MovingEdgeEdge& q, double time) {
 
 }  // namespace
 
+std::array<VertexId, 4> vertices_of(const TriangleMesh& mesh, const FeaturePair& pair) {
+  if (pair.kind == FeaturePair::Kind::vertex_face) {
+    const Triangle& face = mesh.corners(TriangleId{pair.b});
+    return {VertexId{pair.a}, face[0], face[1], face[2]};
+  }
+  const Edge &first = mesh.ends(EdgeId{pair.a}), &second = mesh.ends(EdgeId{pair.b});
+  return {first[0], first[1], second[0], second[1]};
+}
+
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
                                  double time) {
   if (pair.kind == FeaturePair::Kind::vertex_face)

@@ -30,6 +30,10 @@ struct ContactGeometry {
   std::optional<double> relative_speed;
 };
 
+// Returns the vertices of a feature pair: the vertex and the corners of the face, or the ends of edge `a` and
+// then those of edge `b`.
+std::array<VertexId, 4> vertices_of(const TriangleMesh& mesh, const FeaturePair& pair);
+
 // Returns the geometry of one contact of a moving mesh. `time` is the time of the contact, in [0, 1].
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
                                  double time);
