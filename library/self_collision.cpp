@@ -27,7 +27,12 @@ Prepared make_complete(const Setup& setup) {
   return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
 }
 const Strategy kFirst{"drvbc_fast", "", Guarantee::first_contact, {.closed_mesh = true}, make_first};
-const Strategy kComplete{"drvbc_fast_complete", "", Guarantee::complete, {}, make_complete};
+const Strategy kComplete{.name = "drvbc_fast_complete",
+                         .source = "",
+                         .guarantee = Guarantee::complete,
+                         .needs = {},
+                         .make = make_complete,
+                         .sees_start = true};
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));

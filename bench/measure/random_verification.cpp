@@ -14,6 +14,8 @@
 namespace cscd::bench {
 namespace {
 
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
 template <class Query>
 Answer put_off(const Query&) {
   return {Verdict::undecided, 0};
@@ -59,6 +61,7 @@ struct Subject {
   struct Result {
     ContactSet passed_on, found;
     Report report;
+    Crossings start;  // of a strategy that sees starts
   };
   Result run(const StrategyRow& row, const ElementaryTest& referee) {
     const bool even = seed % 2 == 0;
@@ -68,8 +71,11 @@ struct Subject {
     const std::unique_ptr<Detector> detector = row.strategy->make(setup(test, row.first)).detector;
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
+    const Rig::Interval* const bones = interval.bones ? &*interval.bones : nullptr;
     result.report =
-        detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, result.passed_on);
+        row.strategy->sees_start
+            ? detector->detect_and_see_start(interval.motion, bones, result.passed_on, kAll, result.start)
+            : detector->detect(interval.motion, bones, result.passed_on);
     for (const Contact& contact : result.passed_on.contacts) {
       const auto [entry, fresh] = answers.try_emplace(contact.pair);
       if (fresh) entry->second = ask(referee, mesh, interval.motion, contact.pair);
@@ -102,14 +108,16 @@ std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& a
   return static_cast<std::size_t>(attaining_first(reference) - attaining_first(answer));
 }
 
-// Holds the test that decides starts to the plain one, on both poses of the interval.
-void judge_start_test(const Subject& subject, RandomSummary& summary) {
+// Holds the test that decides starts to the plain one, on both poses of the interval. Returns what crosses at
+// the start.
+Crossings judge_start_test(const Subject& subject, RandomSummary& summary) {
   EmbeddingTest plain(subject.mesh, subject.random.clip.frame(0).positions);
   EmbeddingTest fast = make_embedding_test(subject.setup(elementary_test_named("exact")));
-  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  Crossings start;
   for (std::size_t frame = 0; frame < 2; ++frame) {
     const std::span<const Vec3> pose = subject.random.clip.frame(frame).positions;
     const Crossings expected = plain.find_all(pose, kAll), found = fast.find_all(pose, kAll);
+    if (frame == 0) start = expected;
     ++summary.poses;
     summary.poses_crossing += expected.total > 0;
     summary.crossings += expected.total;
@@ -119,6 +127,7 @@ void judge_start_test(const Subject& subject, RandomSummary& summary) {
            "frame " + std::to_string(frame) + ": finds " + std::to_string(found.total) + " of " +
                std::to_string(expected.total) + " pairs of triangles that cross"});
   }
+  return start;
 }
 
 void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows, RandomSummary& summary) {
@@ -140,7 +149,7 @@ void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows
   if (at_stake) ++summary.embedded_hits_of[std::string(subject.random.family)];
   summary.newton.add(compare_elementary(reference, subject.ask_all(inexact, judged.passed_on)));
 
-  judge_start_test(subject, summary);
+  const Crossings crossings = judge_start_test(subject, summary);
   for (const StrategyRow& asked : rows) {
     const Strategy& strategy = *asked.strategy;
     if (strategy.name == oracle.name && !by_all_pairs) continue;
@@ -161,6 +170,11 @@ void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows
       row.firsts_thinned += missing > 0;
       row.firsts_lost += missing == first_pairs_missing(reference, ContactSet{});
     }
+    if (strategy.sees_start && result.start.pairs != crossings.pairs)
+      summary.failures.push_back(
+          {subject.seed, subject.torn, std::string(subject.random.family), asked.name(),
+           "sees " + std::to_string(result.start.total) + " of " + std::to_string(crossings.total) +
+               " pairs of triangles that cross at the start"});
     if (!verdict.ok)
       summary.failures.push_back(
           {subject.seed, subject.torn, std::string(subject.random.family), asked.name(), verdict.failure});

@@ -67,25 +67,41 @@ bool agree(std::span<const Contestant> contestants, std::span<const Answer> answ
   return true;
 }
 
-// Times the test of the start on all timed intervals, for the rows that rely on it. It has a pass of its own,
-// as it would otherwise drive from the caches what a strategy keeps. Throws std::logic_error where the test
-// differs from the verifier's.
+// Throws std::logic_error where what was timed says of a start what the verifier's plain test does not say.
+void expect_verified(bool embedded, const Verifier& verifier, std::size_t interval, const Input& input) {
+  if (embedded != verifier.starts_embedded(interval))
+    throw std::logic_error("the timed test of the start of interval " + std::to_string(interval) + " of " +
+                           input.name + " says " + (embedded ? "embedded" : "not embedded") +
+                           ", and the verifier's says the opposite");
+}
+
+// Times on all timed intervals what it takes to know whether the start is embedded: the test of the start,
+// for the rows that rely on it, and for the row that answers from starts that are not known, what seeing the
+// start adds to its query. Both have a pass of their own, as they would otherwise drive from the caches what
+// a strategy keeps.
 void time_starts(Input& input, std::span<const Contestant> contestants, std::span<const std::size_t> timed,
                  const Verifier& verifier, EmbeddingTest& test, std::size_t repetition,
                  std::vector<StrategyRecord>& records) {
+  ContactSet found;
+  Crossings start;
   for (const std::size_t i : timed) {
     const scenes::ClipInterval interval = input.clip->load(i);
     stream_positions(interval.motion);
     const auto begin = std::chrono::steady_clock::now();
     const bool embedded = test.embedded(interval.motion.start());
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
-    if (embedded != verifier.starts_embedded(i))
-      throw std::logic_error("the timed test of the start of interval " + std::to_string(i) + " of " +
-                             input.name + " says " + (embedded ? "embedded" : "not embedded") +
-                             ", and the verifier's says the opposite");
-    for (std::size_t c = 0; c < contestants.size(); ++c)
-      if (contestants[c].strategy->guarantee == Guarantee::first_contact)
+    expect_verified(embedded, verifier, i, input);
+    for (std::size_t c = 0; c < contestants.size(); ++c) {
+      const Strategy& strategy = *contestants[c].strategy;
+      if (strategy.guarantee == Guarantee::first_contact)
         append_time("embedding", taken.count(), records[c].ms, repetition);
+      if (strategy.role != Role::stand_in) continue;
+      stream_positions(interval.motion);
+      const Report report = contestants[c].timed->detect_and_see_start(
+          interval.motion, interval.bones ? &*interval.bones : nullptr, found, 0, start);
+      expect_verified(start.total == 0, verifier, i, input);
+      append_time("start", report.start_ms, records[c].ms, repetition);
+    }
   }
 }
 

@@ -36,6 +36,10 @@ constexpr Strategy with_role(Strategy row, Role role) {
   row.role = role;
   return row;
 }
+constexpr Strategy seeing_start(Strategy row) {
+  row.sees_start = true;
+  return row;
+}
 // The library allocates memory as it pleases. A build without any library has no such row.
 [[maybe_unused]] constexpr Strategy in_library(Strategy row) {
   row.settles = false;
@@ -44,12 +48,14 @@ constexpr Strategy with_role(Strategy row, Role role) {
 
 // Members that a row leaves out have the defaults of strategy.h.
 constexpr std::array kStrategies = {
-    with_role(
+    seeing_start(with_role(
         {"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base},
-        Role::reference),
-    with_role({"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle"},
-              Role::oracle),
-    Strategy{"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb},
+        Role::reference)),
+    seeing_start(
+        with_role({"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle"},
+                  Role::oracle)),
+    seeing_start(
+        {"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb}),
     Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
              kAnySurface, make_mcd},
     Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
@@ -67,12 +73,13 @@ constexpr std::array kStrategies = {
              kBones, [](const Setup& setup) { return make_drvbc(setup); }},
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
              kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }},
-    with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
-               Guarantee::complete, kAnySurface,
-               [](const Setup& setup) {
-                 return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-               }},
-              Role::stand_in),
+    seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
+                            Guarantee::complete, kAnySurface,
+                            [](const Setup& setup) {
+                              return make_drvbc_fast(setup,
+                                                     {.name = "drvbc_fast_complete", .complete = true});
+                            }},
+                           Role::stand_in)),
 #ifdef CSCD_BASELINES_FCL
     in_library({"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
                 Guarantee::heuristic, kAnySurface, make_fcl, "checker", true}),

@@ -14,6 +14,8 @@ using nlohmann::ordered_json;
 
 // A row of this guarantee relies on a test of the start, whose time is a stage of this name.
 constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact";
+// The stand-in's own look at the start.
+constexpr std::string_view kStartSeen = "start";
 
 // Why there is no figure.
 struct Missing {
@@ -96,6 +98,8 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
     const auto column = strategy.ms.find(stage);
     if (column == strategy.ms.end() && stage == kStartTest && strategy.guarantee == kFirstContact)
       throw Missing{"this record does not have the time of the test of the start"};
+    if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_stand_in().name)
+      throw Missing{"this record does not have the time of looking at the start"};
     if (column == strategy.ms.end()) continue;
     if (sums.empty()) sums.assign(column->second.size(), std::vector<double>(column->second.front().size()));
     for (std::size_t r = 0; r < sums.size(); ++r)

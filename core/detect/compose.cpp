@@ -9,6 +9,7 @@
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
 #include "core/detect/no_contact_before.h"
+#include "core/elementary/exact/triangles_meet.h"
 #include "core/elementary/question/relative_box.h"
 
 namespace cscd {
@@ -43,9 +44,12 @@ class PairTester : public TrianglePairSink {
         options_(std::move(options)),
         clock_(clock) {}
 
-  void start_interval(const Motion& motion, ContactSet& out) {
+  // `start`, where it is not null, takes up to `most` pairs that cross at the start.
+  void start_interval(const Motion& motion, ContactSet& out, std::size_t most, Crossings* start) {
     restart();
     motion_ = &motion;
+    start_ = start;
+    most_ = most;
     out_ = &out;
     counts_ = {};
     met_.start_interval();
@@ -62,6 +66,7 @@ class PairTester : public TrianglePairSink {
 
  private:
   void take(const std::vector<TrianglePair>& whole) override {
+    if (start_ != nullptr) test_start(whole);
     clock_.enter(Stage::elementary);
     const std::vector<TrianglePair>& block = exclusions_ != nullptr ? without_excluded(whole) : whole;
     if (options_.assignment) {
@@ -76,6 +81,15 @@ class PairTester : public TrianglePairSink {
       test_carried();
     }
     clock_.enter(Stage::traversal);
+  }
+
+  void test_start(const std::vector<TrianglePair>& block) {
+    clock_.enter(Stage::start);
+    for (const TrianglePair& pair : block) {
+      const CrossingPair crossing(std::min(pair.a, pair.b), std::max(pair.a, pair.b));
+      if (!triangles_meet(mesh_, motion_->start(), pair.a, pair.b)) continue;
+      if (start_->total++ < most_) start_->pairs.push_back(crossing);
+    }
   }
 
   const std::vector<TrianglePair>& without_excluded(const std::vector<TrianglePair>& block) {
@@ -180,6 +194,8 @@ class PairTester : public TrianglePairSink {
   StageClock& clock_;
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
+  Crossings* start_ = nullptr;
+  std::size_t most_ = 0;  // crossings that are kept
   PairCounts counts_;
   std::vector<TrianglePair> kept_;        // the block without what is excluded
   std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one pair may be carried repeatedly
@@ -202,8 +218,23 @@ class ComposedDetector : public Detector {
       : culler_(std::move(culler)), tester_(setup, std::move(options), clock_) {}
 
   Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    return run(motion, bones, out, 0, nullptr);
+  }
+  Report detect_and_see_start(const Motion& motion, const Rig::Interval* bones, ContactSet& out,
+                              std::size_t most, Crossings& start) override {
+    start.pairs.clear();
+    start.total = 0;
+    const Report report = run(motion, bones, out, most, &start);
+    std::ranges::sort(start.pairs);
+    return report;
+  }
+  RadialView radial_view() const override { return culler_->radial_view(); }
+
+ private:
+  Report run(const Motion& motion, const Rig::Interval* bones, ContactSet& out, std::size_t most,
+             Crossings* start) {
     out.clear();
-    tester_.start_interval(motion, out);
+    tester_.start_interval(motion, out, most, start);
     clock_.reset();
 
     clock_.enter(Stage::refit);
@@ -222,11 +253,10 @@ class ComposedDetector : public Detector {
     if (classified) report.ms.rv_update = clock_.milliseconds(Stage::rv_update);
     report.ms.traversal = clock_.milliseconds(Stage::traversal);
     report.ms.elementary = clock_.milliseconds(Stage::elementary);
+    report.start_ms = clock_.milliseconds(Stage::start);
     return report;
   }
-  RadialView radial_view() const override { return culler_->radial_view(); }
 
- private:
   StageClock clock_;
   std::unique_ptr<Culler> culler_;
   PairTester tester_;

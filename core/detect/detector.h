@@ -1,7 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
+#include "core/base/ids.h"
 #include "core/detect/contact.h"
 #include "core/detect/counts.h"
 #include "core/detect/radial_view.h"
@@ -20,10 +25,24 @@ struct StageTimes {
   double total() const { return refit + rv_update.value_or(0) + traversal + elementary; }
 };
 
+// Two different triangles of one mesh, the smaller index first.
+using CrossingPair = std::pair<TriangleId, TriangleId>;
+
+// The triangle pairs that cross in one pose. Two triangles *cross* if they meet outside the vertices and
+// edges that they share.
+struct Crossings {
+  std::vector<CrossingPair> pairs;  // sorted; incomplete if more pairs cross than the caller wanted to keep
+  std::size_t total = 0;            // number of all pairs that cross
+
+  bool all_kept() const { return pairs.size() == total; }
+  bool contains(const CrossingPair& pair) const { return std::ranges::binary_search(pairs, pair); }
+};
+
 struct Report {
   CullCounts cull;
   PairCounts pairs;
   StageTimes ms;
+  double start_ms = 0;  // what the exact test of pairs that may cross at the start took; outside of `ms`
 };
 
 // Finds the contacts of one interval after another. A detector whose strategy promises it (Strategy::settles)
@@ -36,6 +55,13 @@ class Detector {
   // interval; it is null for a mesh without a rig. A detector logs nothing; it throws only where a package
   // that it calls fails or refuses the positions (baselines/embree, baselines/fcl).
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
+  // Does what detect() does, and also finds which triangles cross at the start: it tests exactly, in that
+  // pose, the pairs of triangles that the culling passes on. At most `most` crossing pairs are kept. Throws
+  // std::logic_error where the strategy does not promise it (Strategy::sees_start).
+  virtual Report detect_and_see_start(const Motion& /*motion*/, const Rig::Interval* /*bones*/,
+                                      ContactSet& /*out*/, std::size_t /*most*/, Crossings& /*start*/) {
+    throw std::logic_error("this detector does not see what crosses at a start");
+  }
   virtual RadialView radial_view() const { return {}; }
 };
 

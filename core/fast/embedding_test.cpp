@@ -8,6 +8,7 @@
 
 #include "core/elementary/catalogue.h"
 #include "core/fast/cut/surface_clusters.h"
+#include "core/fast/drvbc_fast.h"
 #include "core/fast/fast_culler.h"
 #include "core/mesh/test_shapes.h"
 
@@ -78,6 +79,35 @@ TEST(FastEmbedding, SaysOfEveryPoseWhatThePlainTestSays) {
   }
   EXPECT_GT(embedded, 80u);
   EXPECT_GT(crossing, 80u);
+}
+
+// What crosses at a start is found along the way of a query, whatever happens after the start. Mutations that
+// die here: the pairs at the end of the interval are tested; pairs that the filter dropped are left out.
+TEST(FastEmbedding, AQuerySeesAtItsStartWhatThePlainTestSees) {
+  std::size_t seen = 0;
+  for (const Shape& shape : shapes()) {
+    const TriangleMesh mesh = shape.mesh();
+    EmbeddingTest plain(mesh, shape.positions);
+    const std::unique_ptr<Detector> complete =
+        make_drvbc_fast(setup_of(mesh, shape.positions), {.name = "complete", .complete = true}).detector;
+    std::mt19937 random(5);
+    ContactSet found, alone;
+    Crossings start;
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<Vec3> from = thrown(shape, random), toward = thrown(shape, random);
+      std::vector<Vec3> to = from;  // a long step would spend the time on contacts
+      for (std::size_t v = 0; v < to.size(); ++v) to[v] += 0.01 * (toward[v] - from[v]);
+      const Motion motion(from, to);
+      complete->detect_and_see_start(motion, nullptr, found, kAll, start);
+      ASSERT_EQ(start.pairs, plain.find_all(from, kAll).pairs) << i;
+      EXPECT_EQ(start.total, start.pairs.size());
+      seen += start.total;
+      complete->detect(motion, nullptr, alone);
+      found.sort(), alone.sort();
+      EXPECT_EQ(digest(found), digest(alone)) << i;
+    }
+  }
+  EXPECT_GT(seen, 500u);
 }
 
 // Why the start needs more than signs: pairs of triangles that cross, though both lie in one cluster and have

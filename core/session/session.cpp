@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/detect/exclusions.h"
-#include "core/fast/embedding.h"
 
 namespace cscd {
 namespace {
@@ -34,7 +33,7 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
       stand_in_strategy_(stand_in),
       options_(options),
       poses_({setup.mesh, setup.reference}, kMostCrossings) {
-  if (!options.ignore_starts) find_crossings(rest);
+  if (!options.ignore_starts) find_crossings(rest, nullptr);
   rest_ = poses_.crossings();
   rest_ms_ = searched_ms_;
   if (!options.keep_rest_crossings) {
@@ -68,41 +67,58 @@ bool Session::finds_all(const Row& row) const {
          !first_only();
 }
 
-// The fast test is prepared once the plain one has taken as long as that preparation may take, which is about
-// as long as the strategy's. So a clip whose starts are nearly all known from the steps before them is spared
-// the preparation, and no clip takes more than twice the time that the better choice would take.
-void Session::find_crossings(std::span<const Vec3> pose) {
-  if (!searches_fast_ && main_.detector && searched_ms_ > preparation_ms_) {
-    poses_.use(make_embedding_test(setup_));
-    searches_fast_ = true;
+// Chooses the row that answers a step, and sees to it that what crosses at the start is known, or that the
+// row finds it with its answer.
+Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones) {
+  if (options_.ignore_starts) return main_;
+  if (!poses_.knows(motion.start())) {
+    if (main_.strategy->sees_start) return main_;
+    if (!follow_to(motion.start(), bones)) {
+      if (needs_start() && stand_in_pays()) return stand_in();
+      find_crossings(motion.start(), bones);
+    }
   }
+  return needs_start() && poses_.crossings().total > 0 ? stand_in() : main_;
+}
+
+// A complete row that sees starts answers from a start that is not known in less time than it takes to search
+// that start apart. It is prepared for that once the plain search has taken as long as that preparation may
+// take, which is about as long as the strategy's. So a clip whose starts are nearly all known from the steps
+// before them is spared the preparation, and no clip takes more than twice the time that the better choice
+// would take.
+bool Session::stand_in_pays() const {
+  return stand_in_strategy_.sees_start && (stand_in_ || searched_ms_ > preparation_ms_);
+}
+
+void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones) {
   const Stopwatch searching;
-  poses_.find(pose);
+  if (main_.detector && stand_in_pays()) {
+    std::optional<Rig::Interval> rest;
+    if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
+    stand_in().detector->detect_and_see_start(Motion(pose, pose), rest ? &*rest : nullptr, touched_,
+                                              poses_.most(), seen_);
+    poses_.know(pose, seen_);
+  } else {
+    poses_.find(pose);
+  }
   searched_ms_ += searching.milliseconds();
 }
 
-// Finds which triangles cross at the start. The step before may have left that known. Otherwise it follows
-// from the straight way that leads here from the last known pose, if little touches on that way, or it is
-// found from nothing.
-void Session::know_start(std::span<const Vec3> start, const Rig::Interval* bones) {
-  if (!poses_.knows(start)) follow_to(start, bones);
-  if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
-}
-
-void Session::follow_to(std::span<const Vec3> start, const Rig::Interval* bones) {
+// Finds what crosses at the start from the straight way that leads there from the last known pose. Returns
+// false where that way proves nothing, or where so much touches on it that a search is cheaper.
+bool Session::follow_to(std::span<const Vec3> start, const Rig::Interval* bones) {
   const bool embedded = poses_.crossings().total == 0;
   const bool provable = can_follow() && !main_.strategy->own_test &&
                         (finds_all(main_) || (embedded && main_.strategy->guarantee != Guarantee::heuristic));
   const bool has_bones = bones == nullptr || pose_bones_.size() == bones->start.size();
-  if (!provable || !has_bones || same_bits(touched_end_, start)) return find_crossings(start);
+  if (!provable || !has_bones || same_bits(touched_end_, start)) return false;
   std::optional<Rig::Interval> way;
   if (bones != nullptr && setup_.rig != nullptr) way = Rig::Interval{pose_bones_, bones->start};
   main_.detector->detect(Motion(poses_.positions(), start), way ? &*way : nullptr, touched_);
   const bool all_known = touched_.contacts.empty() || finds_all(main_);
-  if (all_known && touched_.contacts.size() <= kMostFollowed)
-    poses_.follow(start, touched_);
-  else
-    find_crossings(start);
+  if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
+  poses_.follow(start, touched_);
+  return true;
 }
 
 // Keeps what a step proves about its end. `found` holds everything that the row found.
@@ -126,17 +142,28 @@ std::size_t Session::leave_out(ContactSet& found) const {
                        [&](const Contact& contact) { return left_out_.explains(contact.pair); });
 }
 
-const Session::Row& Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones,
-                                 StepAnswer& out) {
+// Asks a row, which finds what crosses at the start where that is not known.
+void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
+  const Rig::Interval* const used = setup_.rig != nullptr ? bones : nullptr;
   out.strategy = row.strategy;
-  out.report = row.detector->detect(motion, setup_.rig != nullptr ? bones : nullptr, out.found);
-  if (!options_.ignore_starts) know_end(motion, bones, row, out.found);
+  if (options_.ignore_starts) {
+    out.report = row.detector->detect(motion, used, out.found);
+  } else {
+    if (poses_.knows(motion.start())) {
+      out.report = row.detector->detect(motion, used, out.found);
+    } else {
+      out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
+      poses_.know(motion.start(), seen_);
+      out.embedding_ms += out.report.start_ms;
+    }
+    if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
+    say_start(out);
+    know_end(motion, bones, row, out.found);
+  }
   out.rest_contacts = leave_out(out.found);
-  return row;
 }
 
-void Session::look_at_start(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
-  know_start(motion.start(), bones);
+void Session::say_start(StepAnswer& out) const {
   out.start = poses_.crossings();
   out.starts_embedded = out.start.total == 0;
   if (setup_.exclusions != nullptr)
@@ -150,18 +177,16 @@ void Session::look_at_start(const Motion& motion, const Rig::Interval* bones, St
 
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Stopwatch whole;
-  if (!options_.ignore_starts) look_at_start(motion, bones, out);
+  Row& row = row_for(motion, bones);
   out.embedding_ms = whole.milliseconds();
-
-  const bool needs_start = main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
-  const Row* row = &ask(needs_start && !out.starts_embedded ? stand_in() : main_, motion, bones, out);
+  ask(row, motion, bones, out);
   // A row that promises the first contact may miss those after it. If that first one is left out as a
   // crossing at rest, the answer has to come from a complete row.
-  if (needs_start && out.rest_contacts > 0 && row == &main_) row = &ask(stand_in(), motion, bones, out);
+  if (needs_start() && &row == &main_ && out.rest_contacts > 0) ask(stand_in(), motion, bones, out);
 
   out.found.sort();
   if (options_.first) keep_first(out.found);
-  const Guarantee guarantee = row->strategy->guarantee;
+  const Guarantee guarantee = out.strategy->guarantee;
   out.proven = setup_.elementary.apart_is_proof &&
                (guarantee == Guarantee::complete ||
                 (guarantee == Guarantee::first_contact && out.starts_embedded && out.rest_contacts == 0));

@@ -7,8 +7,8 @@
 
 #include "core/base/stopwatch.h"
 #include "core/detect/contact.h"
-#include "core/detect/detector.h"
 #include "core/detect/start/crossings.h"
+#include "core/detect/detector.h"
 #include "core/detect/start/pose_crossings.h"
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
@@ -78,13 +78,19 @@ class Session {
   bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
   // Whether the answers of a row hold all contacts of a motion whose start is embedded or not.
   bool finds_all(const Row& row) const;
-  // Finds from nothing which triangles cross in a pose.
-  void find_crossings(std::span<const Vec3> pose);
-  void look_at_start(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
-  void know_start(std::span<const Vec3> start, const Rig::Interval* bones);
-  void follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
+  // Whether the strategy promises nothing from a start that is not embedded, and a stand-in is to answer
+  // there.
+  bool needs_start() const {
+    return main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
+  }
+  Row& row_for(const Motion& motion, const Rig::Interval* bones);
+  bool stand_in_pays() const;
+  // Finds from nothing which triangles cross in a pose. `bones` holds the skeleton in it, at its start.
+  void find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones);
+  bool follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
   void know_end(const Motion& motion, const Rig::Interval* bones, const Row& row, const ContactSet& found);
-  const Row& ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  void ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  void say_start(StepAnswer& out) const;
   std::size_t leave_out(ContactSet& found) const;
 
   Setup setup_;
@@ -96,12 +102,12 @@ class Session {
   PoseCrossings poses_;
   double searched_ms_ = 0;  // that find_crossings() took so far
   double rest_ms_ = 0;      // that it took for the pose at rest
-  bool searches_fast_ = false;
   Crossings rest_;
   RestCrossings left_out_;
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
   std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
   ContactSet touched_;             // on the way to a start
+  Crossings seen_;                 // at a start, by the row that answered
 };
 
 }  // namespace cscd

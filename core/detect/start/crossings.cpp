@@ -12,10 +12,6 @@ std::span<const TriangleId> triangles_with_first(const TriangleMesh& mesh, const
 
 }  // namespace
 
-bool Crossings::contains(const CrossingPair& pair) const {
-  return std::binary_search(pairs.begin(), pairs.end(), pair);
-}
-
 std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
   const TriangleId face{pair.b};
   const std::span<const TriangleId> others =

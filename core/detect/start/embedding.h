@@ -11,10 +11,6 @@
 
 namespace cscd {
 
-// Whether two different triangles meet in these positions, except in the vertices and edges they share.
-// Exact.
-bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, const CrossingPair& pair);
-
 // Decides exactly whether a pose is *embedded*: no two triangles meet outside the vertices and edges that
 // they share. In an embedded pose no feature pair touches and no edge pierces a face. The theorem behind the
 // guarantee `first_contact` needs an embedded start (rule embedded-start, core/soundness.md).

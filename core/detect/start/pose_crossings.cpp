@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/elementary/exact/triangles_meet.h"
+
 namespace cscd {
 
 bool PoseCrossings::knows(std::span<const Vec3> positions) const {
@@ -14,6 +16,11 @@ const Crossings& PoseCrossings::find(std::span<const Vec3> positions) {
   crossings_ = test_.find_all(positions, most_);
   positions_.assign(positions.begin(), positions.end());
   return crossings_;
+}
+
+void PoseCrossings::know(std::span<const Vec3> positions, const Crossings& crossings) {
+  crossings_ = crossings;
+  positions_.assign(positions.begin(), positions.end());
 }
 
 const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const ContactSet& touched) {
@@ -31,7 +38,7 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
     return std::binary_search(changed.begin(), changed.end(), pair);
   });
   for (const CrossingPair& pair : changed)
-    if (triangles_meet(mesh, positions, pair)) crossings_.pairs.push_back(pair);
+    if (triangles_meet(mesh, positions, pair.first, pair.second)) crossings_.pairs.push_back(pair);
   std::sort(crossings_.pairs.begin(), crossings_.pairs.end());
   crossings_.total = crossings_.pairs.size();
   return crossings_;

@@ -22,9 +22,6 @@ class PoseCrossings {
   // `test` finds crossings from nothing. At most `most` pairs are kept for a pose.
   PoseCrossings(EmbeddingTest test, std::size_t most) : test_(std::move(test)), most_(most) {}
 
-  // Finds crossings by another test from then on.
-  void use(EmbeddingTest test) { test_ = std::move(test); }
-
   // Returns whether `positions` are those last asked for, bit for bit, so that
   // their crossings are known already.
   bool knows(std::span<const Vec3> positions) const;
@@ -35,6 +32,12 @@ class PoseCrossings {
 
   // Finds the crossings in `positions` from nothing.
   const Crossings& find(std::span<const Vec3> positions);
+
+  // Takes what a caller knows to be the crossings in `positions`.
+  void know(std::span<const Vec3> positions, const Crossings& crossings);
+
+  // The number of crossing pairs that are kept for a pose.
+  std::size_t most() const { return most_; }
 
   // Derives the crossings in `positions` from the pose last asked for. Every vertex must have moved from
   // there in a straight line, and `touched` must hold all feature pairs that touched on the way, contacts and
