@@ -13,7 +13,8 @@ Shape tube() {
   const test::Shape given = test::uneven_tube(24, 40, 10, [](double) { return 1.0; });
   Shape shape;
   shape.positions = given.positions;
-  for (const Triangle& t : given.mesh().triangles()) shape.triangles.push_back(t);
+  const TriangleMesh mesh = given.mesh();
+  shape.triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
   return shape;
 }
 
@@ -49,8 +50,11 @@ TEST(SurfaceDetails, FoldsRiseAndFallAcrossTheirDirection) {
     if (off > 3 || radius < 0.9) continue;
     const double rise = std::hypot(shape.positions[v].y(), shape.positions[v].z()) - radius;
     const double phase = off - 2 * std::floor(off / 2);  // folds stand at 0 and 2, furrows at 1
-    if (phase < 0.4 || phase > 1.6) EXPECT_GT(rise, 0);
-    if (phase > 0.6 && phase < 1.4) EXPECT_LT(rise, 0);
+    if (phase < 0.4 || phase > 1.6) {
+      EXPECT_GT(rise, 0);
+    } else if (phase > 0.6 && phase < 1.4) {
+      EXPECT_LT(rise, 0);
+    }
   }
 }
 
