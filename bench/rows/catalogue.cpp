@@ -96,6 +96,17 @@ constexpr std::array kStrategies = {
                return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
              },
              kAblation},
+    Strategy{"drvbc_bones", "drvbc with one atomic cluster for each bone", Guarantee::first_contact, kBones,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
+             },
+             kAblation},
+    Strategy{"drvbc_pieces", "drvbc with one atomic cluster for each connected piece of a bone's surface",
+             Guarantee::first_contact, kBones,
+             [](const Setup& setup) {
+               return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
+             },
+             kAblation},
     Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, kBones,
              [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
              kAblation},

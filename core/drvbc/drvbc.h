@@ -5,6 +5,7 @@
 #include "core/detect/compose.h"
 #include "core/detect/strategy.h"
 #include "core/radial/bone_clusters.h"
+#include "core/radial/divided_clusters.h"
 #include "core/radial/orientation.h"
 
 namespace cscd {
@@ -14,6 +15,7 @@ struct DrvbcOptions {
   double gamma = 0.05;  // gamma: clusters merge while less than this share of a candidate's triangles is not
                         // positive; 0: never
   radial::BoneClusterOptions bones{};
+  radial::Division division = radial::Division::joints;  // see the readings in divided_clusters.h
   bool relative_boxes = true;
   // Rows of the ablation leave one thing out each.
   std::string_view name = "drvbc";  // begins error texts

@@ -108,14 +108,15 @@ bool MegaClusters::fits(std::size_t cluster, const Observer& observer, const Ori
 }
 
 // Returns the joint that the bones of two clusters share: the head of the child, or of either bone if they
-// are siblings.
+// are siblings. Two clusters of one bone share the joint at its head.
 std::optional<MovingPoint> MegaClusters::shared_joint(std::size_t a, std::size_t b,
                                                       const Rig::Interval& bones) const {
   const BoneId bone_a = atomic_.clusters[a].bone, bone_b = atomic_.clusters[b].bone;
   const BoneId parent_a = rig_.parent[+bone_a], parent_b = rig_.parent[+bone_b];
   const auto head = [&](BoneId bone) { return MovingPoint{bones.start[+bone].head, bones.end[+bone].head}; };
   if (parent_b == bone_a) return head(bone_b);
-  if (parent_a == bone_b || (parent_a == parent_b && parent_a != BoneId{-1})) return head(bone_a);
+  if (parent_a == bone_b || bone_a == bone_b || (parent_a == parent_b && parent_a != BoneId{-1}))
+    return head(bone_a);
   return std::nullopt;
 }
 

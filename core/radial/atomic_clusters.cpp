@@ -46,15 +46,24 @@ AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const Bo
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 
+  std::vector<BoneId> bones;
+  for (const Key& k : keys) bones.push_back(k.first);
+  std::vector<std::int32_t> of_triangle;
+  of_triangle.reserve(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    of_triangle.push_back(
+        static_cast<std::int32_t>(std::lower_bound(keys.begin(), keys.end(), key(t)) - keys.begin()));
+  return clusters_of_partition(mesh, std::move(of_triangle), bones);
+}
+
+AtomicClusters clusters_of_partition(const TriangleMesh& mesh, std::vector<std::int32_t> of_triangle,
+                                     std::span<const BoneId> bones) {
   AtomicClusters atomic;
-  for (const Key& k : keys) atomic.clusters.push_back({k.first, {}});
-  atomic.of_triangle.reserve(mesh.triangle_count());
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const auto position = std::lower_bound(keys.begin(), keys.end(), key(t)) - keys.begin();
-    atomic.of_triangle.push_back(static_cast<std::int32_t>(position));
-    atomic.clusters[static_cast<std::size_t>(position)].triangles.push_back(
+  for (const BoneId bone : bones) atomic.clusters.push_back({bone, {}});
+  atomic.of_triangle = std::move(of_triangle);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    atomic.clusters[static_cast<std::size_t>(atomic.of_triangle[t])].triangles.push_back(
         TriangleId{static_cast<std::int32_t>(t)});
-  }
   find_neighbours(mesh, atomic);
   return atomic;
 }

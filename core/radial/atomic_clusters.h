@@ -26,4 +26,9 @@ struct AtomicClusters {
 // bone for each triangle.
 AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const BoneId> bone_of_triangle);
 
+// Makes the clusters of a given partition. Every triangle of cluster c of `of_triangle` follows bone
+// `bones[c]`, and no cluster may be empty or span two components.
+AtomicClusters clusters_of_partition(const TriangleMesh& mesh, std::vector<std::int32_t> of_triangle,
+                                     std::span<const BoneId> bones);
+
 }  // namespace cscd::radial

@@ -32,6 +32,7 @@ std::size_t count_positive(const TriangleMesh& mesh, std::span<const Vec3> refer
 Observer observer(ObserverKind kind, const Bone& start, const Bone& end) {
   if (kind == ObserverKind::bone_segment)
     return Observer::segment({start.head, end.head}, {start.tail, end.tail});
+  if (kind == ObserverKind::bone_head) return Observer::point({start.head, end.head});
   return Observer::point({centre(start), centre(end)});
 }
 

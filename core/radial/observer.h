@@ -9,8 +9,9 @@
 
 namespace cscd::radial {
 
-// What the triangles of a cluster are viewed from: the centre of its bone, or the bone as a segment.
-enum class ObserverKind { bone_centre, bone_segment };
+// What the triangles of a cluster are viewed from: the centre of its bone, the bone as a segment, or the
+// joint at which the bone begins.
+enum class ObserverKind { bone_centre, bone_segment, bone_head };
 
 // Returns the observer of one bone, from the bone's positions at the start and at the end of an interval.
 Observer observer(ObserverKind kind, const Bone& start, const Bone& end);

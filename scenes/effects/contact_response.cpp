@@ -104,8 +104,11 @@ EffectRow contact_response_row() {
           Pace::frame,
           kRows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return make_contact_response(parameters, shape,
-                                         [](const Setup& setup) { return make_drvbc(setup).detector; });
+            // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
+            // follows.
+            return make_contact_response(parameters, shape, [](const Setup& setup) {
+              return make_drvbc(setup, {.division = radial::Division::none}).detector;
+            });
           },
           true};
 }

@@ -84,7 +84,7 @@ TEST(SkinnedScene, EverySceneOfTheCatalogueIsReadBackOrRefused) {
 TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
   const std::string frames = R"({"op": "replace", "path": "/frames", "value": 41})";
   expect_round_trip(changed(
-      "man", frames + R"(, {"op": "replace", "path": "/effects/2", "value": {"name": "skinning_linear"}})"));
+      "man", frames + R"(, {"op": "replace", "path": "/effects/3", "value": {"name": "skinning_linear"}})"));
   expect_round_trip(changed("box", frames + R"(, {"op": "remove", "path": "/effects/4"},
       {"op": "replace", "path": "/effects/3", "value": {"name": "skinning_linear"}})"));
 }

@@ -169,6 +169,7 @@ class Builder {
     add_bones(shape);
     add_weights(graph, shape);
     shape.positions = std::move(positions_);
+    add_details(p_.details, shape);
     return shape;
   }
 

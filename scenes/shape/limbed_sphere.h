@@ -7,6 +7,7 @@
 #include "scenes/shape/box_grid.h"
 #include "scenes/shape/limb_form.h"
 #include "scenes/shape/shape.h"
+#include "scenes/shape/surface_details.h"
 
 namespace cscd::scenes {
 
@@ -35,6 +36,7 @@ struct LimbedSphereParameters {
   int relax = 100;        // sweeps that space the body's vertices evenly; the outlines of limbs stay in place
   int smooth = 0;         // sweeps that round the creases where limbs begin
   std::vector<Limb> limbs;
+  std::vector<SurfaceDetail> details;  // raised and dented places of the finished surface
 };
 
 // Builds a body with limbs out of a quad sphere. The grid of a cube is laid onto the body. Some square

@@ -107,6 +107,7 @@ ShapeRow limbed_sphere_row() {
       {"relax", ParameterKind::integer, "sweeps that space the body's vertices evenly", false, 0, 1e5},
       {"smooth", ParameterKind::integer, "sweeps that round the creases where limbs begin", false, 0, 1e5},
       {"limbs", ParameterKind::objects, "one object a limb"},
+      {"details", ParameterKind::objects, "one object for each raised, dented or folded place", false},
   };
   return {"limbed_sphere",
           "body of a cube's grid, patches of which are extruded into limbs",
@@ -129,6 +130,7 @@ ShapeRow limbed_sphere_row() {
             p.smooth = parameters.integer("smooth", p.smooth);
             for (const Parameters& limb : parameters.objects("limbs"))
               p.limbs.push_back(read_limb(limb, p.body_bones));
+            if (parameters.has("details")) p.details = read_details(parameters.objects("details"));
             return limbed_sphere(p);
           },
           [](const Parameters& parameters, double factor) {

@@ -1,0 +1,73 @@
+#include "scenes/shape/surface_details.h"
+
+#include <Eigen/Geometry>
+
+#include "core/base/error.h"
+#include "scenes/shape/circle.h"
+
+namespace cscd::scenes {
+namespace {
+
+double displacement(const SurfaceDetail& detail, const Vec3& x) {
+  const Vec3 off = x - detail.at;
+  const double inside = 1 - off.cwiseQuotient(detail.reach).squaredNorm();
+  if (!(inside > 0)) return 0;
+  const double fold =
+      detail.wave_length > 0 ? circle_point(off.dot(detail.across) / detail.wave_length).cosine : 1;
+  return detail.height * inside * inside * fold;
+}
+
+// The sum of the area vectors round every vertex, scaled to length 1.
+std::vector<Vec3> vertex_normals(const Shape& shape) {
+  std::vector<Vec3> normals(shape.positions.size(), Vec3::Zero());
+  for (const Triangle& t : shape.triangles) {
+    const Vec3& a = shape.positions[+t[0]];
+    const Vec3 twice = (shape.positions[+t[1]] - a).cross(shape.positions[+t[2]] - a);
+    for (const VertexId vertex : t) normals[+vertex] += twice;
+  }
+  for (Vec3& normal : normals) normal.stableNormalize();
+  return normals;
+}
+
+const ParameterRow kRows[] = {
+    {"at", ParameterKind::vector, "its middle, at rest"},
+    {"reach", ParameterKind::vector, "half axes of the ellipsoid in which it lies, along x, y and z"},
+    {"height", ParameterKind::number, "along the surface's normals; negative for a dent"},
+    {"wave_length", ParameterKind::number, "from one fold to the next; default no folds", false, 1e-9, 1e12},
+    {"across", ParameterKind::vector, "direction from fold to fold", false},
+    {"mirrored", ParameterKind::integer, "1 for a second one with x negated", false, 0, 1},
+};
+
+}  // namespace
+
+void add_details(std::span<const SurfaceDetail> details, Shape& shape) {
+  if (details.empty()) return;
+  const std::vector<Vec3> normals = vertex_normals(shape);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    double height = 0;
+    for (const SurfaceDetail& detail : details) height += displacement(detail, shape.positions[v]);
+    shape.positions[v] += height * normals[v];
+  }
+}
+
+std::vector<SurfaceDetail> read_details(std::span<const Parameters> objects) {
+  std::vector<SurfaceDetail> details;
+  for (const Parameters& p : objects) {
+    check(p, kRows);
+    SurfaceDetail detail{p.vector("at"), p.vector("reach"), p.number("height"), p.number("wave_length", 0),
+                         p.vector("across", Vec3::Zero())};
+    if (!(detail.reach.minCoeff() > 0))
+      throw InputError(p.where() + ": parameter reach must be positive along x, y and z");
+    if (p.has("wave_length") != (detail.across.squaredNorm() > 0))
+      throw InputError(p.where() + ": folds need both wave_length and a direction across that is not zero");
+    if (p.has("wave_length")) detail.across.normalize();
+    details.push_back(detail);
+    if (p.integer("mirrored", 0) == 0) continue;
+    detail.at.x() *= -1;
+    detail.across.x() *= -1;
+    details.push_back(detail);
+  }
+  return details;
+}
+
+}  // namespace cscd::scenes

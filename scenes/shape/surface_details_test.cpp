@@ -1,0 +1,100 @@
+#include "scenes/shape/surface_details.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd::scenes {
+namespace {
+
+Shape tube() {
+  const test::Shape given = test::uneven_tube(24, 40, 10, [](double) { return 1.0; });
+  Shape shape;
+  shape.positions = given.positions;
+  const TriangleMesh mesh = given.mesh();
+  shape.triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
+  return shape;
+}
+
+TEST(SurfaceDetails, RaiseAndDentWithinTheirReachAlone) {
+  const Shape before = tube();
+  for (const double height : {0.3, -0.3}) {
+    Shape shape = before;
+    const SurfaceDetail detail{{5, 1, 0}, {1, 0.8, 0.8}, height, 0, Vec3::Zero()};
+    add_details(std::span(&detail, 1), shape);
+    std::size_t moved = 0;
+    for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+      const Vec3 off = before.positions[v] - detail.at, by = shape.positions[v] - before.positions[v];
+      EXPECT_EQ(by.norm() > 0, off.cwiseQuotient(detail.reach).norm() < 1);
+      EXPECT_LE(by.norm(), std::abs(height) * (1 + 1e-12));
+      if (by.norm() == 0) continue;
+      ++moved;
+      const Vec3 out = Vec3(0, before.positions[v].y(), before.positions[v].z());
+      EXPECT_GT(by.dot(out) * height, 0) << "along the outward normal, or against it";
+    }
+    EXPECT_GT(moved, 10u);
+  }
+}
+
+// Mutation: the cosine of the folds is left out.
+TEST(SurfaceDetails, FoldsRiseAndFallAcrossTheirDirection) {
+  const Shape before = tube();
+  Shape shape = before;
+  const SurfaceDetail detail{{5, 0, 0}, {4, 9, 9}, 0.1, 2, Vec3::UnitX()};
+  add_details(std::span(&detail, 1), shape);
+  for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+    const Vec3& x = before.positions[v];
+    const double off = std::abs(x.x() - 5), radius = std::hypot(x.y(), x.z());
+    if (off > 3 || radius < 0.9) continue;
+    const double rise = std::hypot(shape.positions[v].y(), shape.positions[v].z()) - radius;
+    const double phase = off - 2 * std::floor(off / 2);  // folds stand at 0 and 2, furrows at 1
+    if (phase < 0.4 || phase > 1.6) {
+      EXPECT_GT(rise, 0);
+    } else if (phase > 0.6 && phase < 1.4) {
+      EXPECT_LT(rise, 0);
+    }
+  }
+}
+
+TEST(SurfaceDetails, AreReadAndMirrored) {
+  const Parameters one("here", {{"at", std::vector<double>{1, 2, 3}},
+                                {"reach", std::vector<double>{1, 1, 2}},
+                                {"height", -0.5},
+                                {"wave_length", 4.0},
+                                {"across", std::vector<double>{2, 0, 0}},
+                                {"mirrored", 1.0}});
+  const std::vector<SurfaceDetail> details = read_details(std::span(&one, 1));
+  ASSERT_EQ(details.size(), 2u);
+  EXPECT_EQ(details[0].at, Vec3(1, 2, 3));
+  EXPECT_EQ(details[1].at, Vec3(-1, 2, 3));
+  EXPECT_EQ(details[0].across, Vec3(1, 0, 0));
+  EXPECT_EQ(details[1].across, Vec3(-1, 0, 0));
+  EXPECT_EQ(details[1].height, -0.5);
+}
+
+TEST(SurfaceDetails, RefuseWhatIsNoPlace) {
+  const auto refusal = [](const std::string& name, Parameters::Value value) -> std::string {
+    Parameters p(
+        "here",
+        {{"at", std::vector<double>{1, 2, 3}}, {"reach", std::vector<double>{1, 1, 2}}, {"height", 0.5}});
+    p = p.with(name, std::move(value));
+    try {
+      read_details(std::span(&p, 1));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("height", 1.0), "");
+  EXPECT_EQ(refusal("reach", std::vector<double>{1, 0, 1}),
+            "here: parameter reach must be positive along x, y and z");
+  EXPECT_EQ(refusal("wave_length", 2.0),
+            "here: folds need both wave_length and a direction across that is not zero");
+  EXPECT_EQ(refusal("across", std::vector<double>{1, 0, 0}),
+            "here: folds need both wave_length and a direction across that is not zero");
+}
+
+}  // namespace
+}  // namespace cscd::scenes
