@@ -99,13 +99,24 @@ ordered_json read_entry(const fs::path& path) {
   return entry;
 }
 
+// What was measured of a scene. Times of two entries form one course only where this is the same.
+ordered_json measured_of(const ordered_json& scene) {
+  ordered_json rows = ordered_json::array();
+  for (const ordered_json& row : scene.at("rows")) rows.push_back(row.at("name"));
+  return {{"digest", scene.at("digest")},
+          {"elementary", scene.at("elementary")},
+          {"timed_intervals", scene.at("timed_intervals")},
+          {"rows", std::move(rows)}};
+}
+
 void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vector<Course>& courses) {
   const auto wanted = [](const std::string& one, const std::string& name) {
     return one.empty() || one == name;
   };
   const std::string machine = machine_of(entry);
   if (!wanted(choice.machine, machine)) return;
-  for (const ordered_json& scene : entry.at("scenes"))
+  for (const ordered_json& scene : entry.at("scenes")) {
+    const ordered_json measured = measured_of(scene);
     for (const ordered_json& row : scene.at("rows"))
       for (const auto& [stage, ms] : row.at("ms").items()) {
         const std::string scene_name = scene.at("name"), row_name = row.at("name");
@@ -113,10 +124,11 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
             !wanted(choice.stage, stage))
           continue;
         auto course = std::find_if(courses.begin(), courses.end(), [&, &stage = stage](const Course& c) {
-          return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage;
+          return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage &&
+                 c.measured == measured;
         });
         if (course == courses.end()) {
-          courses.push_back({machine, scene_name, row_name, stage, {}, {}, {}, {}, {}});
+          courses.push_back({machine, scene_name, row_name, stage, measured, {}, {}, {}, {}, {}});
           course = courses.end() - 1;
         }
         course->commits.push_back(entry.at("commit"));
@@ -124,6 +136,7 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
         course->ms.push_back({ms.at("median"), ms.at("low"), ms.at("high")});
         course->answers.push_back(row.at("answers"));
       }
+  }
 }
 
 std::vector<ChangePoint> changes_of(const Course& course) {
@@ -225,6 +238,7 @@ ordered_json courses_json(const std::vector<Course>& courses) {
                    {"scene", course.scene},
                    {"row", course.row},
                    {"stage", course.stage},
+                   {"measured", course.measured},
                    {"points", std::move(points)},
                    {"changes", std::move(changes)}});
   }
@@ -234,9 +248,12 @@ ordered_json courses_json(const std::vector<Course>& courses) {
 std::string courses_text(const std::vector<Course>& courses, bool every_point) {
   std::string out;
   for (const Course& course : courses) {
-    out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ": " +
-           std::to_string(course.ms.size()) + (course.ms.size() == 1 ? " commit, " : " commits, ") +
-           std::to_string(course.changes.size()) + (course.changes.size() == 1 ? " change\n" : " changes\n");
+    out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
+           std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
+           std::to_string(course.measured.at("rows").size()) +
+           " rows in turns: " + std::to_string(course.ms.size()) +
+           (course.ms.size() == 1 ? " commit, " : " commits, ") + std::to_string(course.changes.size()) +
+           (course.changes.size() == 1 ? " change\n" : " changes\n");
     for (std::size_t i = 0; i < course.ms.size(); ++i) {
       const bool is_change = std::any_of(course.changes.begin(), course.changes.end(),
                                          [&](const ChangePoint& change) { return change.first == i; });

@@ -23,9 +23,11 @@ nlohmann::ordered_json history_entry(const Side& side, const std::string& commit
 // Where an entry belongs: FOLDER/MACHINE/DATE-COMMIT.json.
 std::filesystem::path history_file(const std::filesystem::path& folder, const nlohmann::ordered_json& entry);
 
-// One stage of one row of one scene on one machine, in order of the commits.
+// One stage of one row of one scene on one machine, in order of the commits. All its points measured the
+// same: frames, elementary test, timed intervals, and the rows that took turns and so shared the caches.
 struct Course {
   std::string machine, scene, row, stage;
+  nlohmann::ordered_json measured;  // digest, elementary, timed_intervals, rows
   std::vector<std::string> commits, dates;
   std::vector<Estimate> ms;
   std::vector<std::string> answers;  // what the digests of all intervals come to

@@ -15,10 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-ordered_json entry_of(const std::string& commit, const std::string& committed, double factor) {
+ordered_json entry_of(const std::string& commit, const std::string& committed, double factor,
+                      const std::vector<std::size_t>& timed_intervals = {0, 2}) {
   std::vector<Record> records;
   for (int i = 0; i < 3; ++i) {
     records.push_back(test::small_record(commit, i));
+    records.back().timed_intervals = timed_intervals;
     for (StrategyRecord& row : records.back().strategies)
       for (auto& [stage, repetitions] : row.ms)
         for (auto& repetition : repetitions)
@@ -66,6 +68,14 @@ TEST(History, FindsTheCommitThatChangedARow) {
   EXPECT_NE(courses_text(courses, true).find("<- 1.43 times faster"), std::string::npos)
       << courses_text(courses, true);
   EXPECT_EQ(courses_json(courses)["courses"][0]["changes"][0]["commit"], "ffffffffffffffff");
+  // Times of other intervals, as a full record has, are no point of this course.
+  std::ofstream(folder / "m" / "full.json")
+      << json_text(entry_of("iiiiiiiiiiiiiiii", "2026-11-18T10:00:00+00:00", 3, {1, 3}));
+  const std::vector<Course> both = read_courses(folder, {"", "hand", "slow", "traversal"});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].commits.size(), 8u);
+  EXPECT_EQ(both[0].changes.size(), 1u);
+  EXPECT_EQ(both[1].commits.size(), 1u);
   std::ofstream(folder / "m" / "other.json") << "{}";
   EXPECT_THROW(read_courses(folder, {}), InputError);
   fs::remove_all(folder);

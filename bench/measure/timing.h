@@ -53,10 +53,11 @@ double stream_positions(const Motion& motion);
 // Times the strategies. Each timed interval is given to all strategies in turn, in a random order drawn anew
 // every time, so that drift of the machine hits all alike. Stops at the first strategy whose contacts or
 // counters differ from the warm-up's. Before each timed query all positions are streamed; how long that took
-// is the column `streaming`. At the end of each repetition, the exact test whether the start is embedded is
-// timed too. What it took is the stage `embedding` of the strategies that promise the first contact, since
-// they promise nothing without it. The stage `start` of the row that answers from starts that are not known is
-// what its own exact test of the pairs that may cross there takes, beside its query. Throws InputError where an interval is to be timed that was not judged.
+// is the column `streaming`. After all queries, the exact test whether the start is embedded is timed as
+// often. What it took is the stage `embedding` of the strategies that promise the first contact, since they
+// promise nothing without it. The stage `start` of the row that answers from starts that are not known is
+// what its own exact test of the pairs that may cross there takes, beside its query. Throws InputError where
+// an interval is to be timed that was not judged.
 std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant> contestants,
                                              const TimingPlan& plan, const Verifier& verifier,
                                              const WarmUp& warm_up, std::vector<StrategyRecord>& records);
