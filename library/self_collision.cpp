@@ -132,10 +132,14 @@ class SelfCollision::Engine {
 
   const TriangleMesh& mesh() const { return mesh_; }
 
+  // Sessions look for numbers that are not finite in the pass in which they look whether a start is known.
   Motion motion(const Positions& start, const Positions& end) const {
-    check(start, mesh_.vertex_count(), "start positions");
-    check(end, mesh_.vertex_count(), "end positions");
+    check_size(start, mesh_.vertex_count(), "start positions");
+    check_size(end, mesh_.vertex_count(), "end positions");
     return {rows_of(start), rows_of(end)};
+  }
+  void check_finite(const Positions& positions, const std::string& which) const {
+    if (options_.check_positions) require_finite(rows_of(positions), which);
   }
 
   void move(std::size_t obstacle, const Positions& start, const Positions& end) {
@@ -143,8 +147,10 @@ class SelfCollision::Engine {
     const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
     if (obstacle >= count)
       throw InputError(name + ": there are " + std::to_string(count) + "; obstacles are counted from 0");
-    check(start, obstacles_->vertex_count(obstacle), name + ", start positions");
-    check(end, obstacles_->vertex_count(obstacle), name + ", end positions");
+    check_size(start, obstacles_->vertex_count(obstacle), name + ", start positions");
+    check_size(end, obstacles_->vertex_count(obstacle), name + ", end positions");
+    check_finite(start, name + ", start positions");
+    check_finite(end, name + ", end positions");
     obstacles_->move(obstacle, rows_of(start), rows_of(end));
   }
 
@@ -213,8 +219,10 @@ class SelfCollision::Engine {
   Session& made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
                 const cscd::Exclusions* exclusions) {
     if (wanted) return *wanted;
-    const SessionOptions options{
-        .first = first, .keep_rest_crossings = true, .ignore_starts = !options_.check_start};
+    const SessionOptions options{.first = first,
+                                 .keep_rest_crossings = true,
+                                 .ignore_starts = !options_.check_start,
+                                 .check_finite = options_.check_positions};
     return wanted.emplace("reference positions", setup(first, exclusions), strategy, kComplete, reference_,
                           options);
   }
@@ -253,11 +261,10 @@ class SelfCollision::Engine {
     });
   }
 
-  void check(const Positions& positions, std::size_t count, const std::string& which) const {
+  static void check_size(const Positions& positions, std::size_t count, const std::string& which) {
     if (static_cast<std::size_t>(positions.rows()) != count)
       throw InputError(which + ": " + std::to_string(positions.rows()) + " rows for " +
                        std::to_string(count) + " vertices; give one row a vertex");
-    if (options_.check_positions) require_finite(rows_of(positions), which);
   }
 
   static std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair) {
@@ -369,7 +376,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
                                                     double radius) {
   return checked([&] {
     Candidates out;
-    engine_->candidates(engine_->motion(start, end), radius, out);
+    const Motion motion = engine_->motion(start, end);
+    engine_->check_finite(start, "start positions");
+    engine_->check_finite(end, "end positions");
+    engine_->candidates(motion, radius, out);
     return out;
   });
 }

@@ -5,12 +5,15 @@
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "core/detect/exclusions.h"
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
 #include "core/mesh/adjacency.h"
+#include "core/session/session.h"
 #include "scenes/random/random_interval.h"
 
 #include "cscd/cscd.h"
@@ -504,6 +507,49 @@ TEST(SelfCollision, RemembersNothingThatChangesAnAnswer) {
   }
 }
 
+// Sessions on several threads over one const mesh answer as each would alone.
+TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
+  const ElementaryTest& exact = *find_elementary_test("filtered_exact");
+  const auto make = [](const cscd::Setup& setup) {
+    return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+  };
+  const Strategy complete{"drvbc_fast_complete", "", Guarantee::complete, {}, make};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Step step(seed);
+    const cscd::Setup setup{step.mesh, step.all_start, nullptr, exact};
+    const auto answers = [&] {
+      Session session("mesh", setup, complete, complete, step.all_start, {.keep_rest_crossings = true});
+      std::vector<std::string> out;
+      StepAnswer answer;
+      for (int i = 0; i < 20; ++i) {
+        session.step(i % 2 == 0 ? step.motion() : Motion(step.all_end, step.all_start), nullptr, answer);
+        out.push_back(digest(answer.found) + std::to_string(answer.start.total));
+      }
+      return out;
+    };
+    const std::vector<std::string> expected = answers();
+    std::vector<std::vector<std::string>> got(4);
+    std::vector<std::thread> threads;
+    for (auto& one : got) threads.emplace_back([&one, &answers] { one = answers(); });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& one : got) EXPECT_EQ(one, expected);
+  }
+}
+
+// Triangles are added and removed by preparing the object anew.
+TEST(SelfCollision, IsPreparedAnewForOtherTriangles) {
+  const Step step(2);
+  SelfCollision body(step.faces, step.start);
+  for (const Eigen::Index left : {step.faces.rows() - 1, step.faces.rows() / 2, step.faces.rows()}) {
+    body = SelfCollision(step.faces.topRows(left), step.start);
+    SelfCollision fresh(step.faces.topRows(left), step.start);
+    EXPECT_EQ(body.face_count(), static_cast<std::size_t>(left));
+    EXPECT_EQ(found(body.all_contacts(step.start, step.end)),
+              found(fresh.all_contacts(step.start, step.end)));
+  }
+  EXPECT_EQ(found(body.all_contacts(step.start, step.end)), truth_of(step, {}));
+}
+
 TEST(SelfCollision, SaysWhatIsWrongWithItsInput) {
   FaceRows faces(1, 3);
   faces << 0, 1, 2;
@@ -540,6 +586,19 @@ TEST(SelfCollision, SaysWhatIsWrongWithItsInput) {
   options.exclude.group = {0, 1};
   EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "2 entries for 3 vertices"));
   EXPECT_TRUE(body.is_free(triangle, triangle)) << "an object outlives wrong calls";
+  // Also from where a step ended that is known to be free, where positions are checked in another way.
+  EXPECT_TRUE(has(message([&] { body.is_free(triangle, nan); }), "end positions: vertex 1"));
+  EXPECT_TRUE(body.is_free(triangle, triangle));
+  EXPECT_TRUE(has(message([&] { body.place_obstacle(0, triangle); }), "obstacle 0: there are 0"));
+  options = {};
+  options.obstacles = {{faces, triangle.array() + 5}, {wrong, triangle}};
+  EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "obstacle 1, faces"));
+  options.obstacles.pop_back();
+  SelfCollision beside(faces, triangle, options);
+  EXPECT_TRUE(has(message([&] { beside.move_obstacle(0, triangle, nan); }), "obstacle 0, end positions"));
+  EXPECT_TRUE(has(message([&] { beside.place_obstacle(0, Rows::Zero(4, 3)); }), "4 rows for 3 vertices"));
+  EXPECT_TRUE(has(message([&] { beside.candidates(triangle, nan, 1); }), "end positions"));
+  EXPECT_TRUE(beside.is_free(triangle, triangle));
 }
 
 }  // namespace

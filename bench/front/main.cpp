@@ -1,6 +1,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cscd/cscd.h>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -11,8 +12,6 @@
 #include "bench/input/input.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
-
-#include "cscd/cscd.h"
 
 // The price of the library's front, in shares of the detector behind it:
 //   cscd_front [ROUNDS]
@@ -218,7 +217,7 @@ void obstacles(const std::string& name, const Way& way, int rounds) {
   for (const auto& [where, below] : {std::pair("far away", -100.0),
                                      {"around it", -3.0},
                                      {"close below", -1.2},
-                                     {"at its box", way.poses[0].col(1).minCoeff() - 1e-9}}) {
+                                     {"that it lies on", way.poses[0].col(1).minCoeff() - 1e-9}}) {
     SelfCollision::Options options;
     options.obstacles.push_back(terrain(224, below));
     SelfCollision body(way.faces, way.poses[0], options);

@@ -85,7 +85,7 @@ void Session::find_crossings(std::span<const Vec3> pose) {
 // from the straight way that leads here from the last known pose, if little touches on that way, or it is
 // found from nothing.
 void Session::know_start(std::span<const Vec3> start, const Rig::Interval* bones) {
-  if (!poses_.knows(start)) follow_to(start, bones);
+  if (!moved_on_ && !poses_.knows(start)) follow_to(start, bones);
   if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
 }
 
@@ -111,8 +111,12 @@ void Session::know_end(const Motion& motion, const Rig::Interval* bones, const R
   const bool embedded = poses_.crossings().total == 0;
   const bool nothing_touched = found.contacts.empty() && embedded && can_follow() &&
                                !row.strategy->own_test && row.strategy->guarantee != Guarantee::heuristic;
+  if (moved_on_ && !nothing_touched) {
+    poses_.go_back(motion.start());
+    moved_on_ = false;
+  }
   if (nothing_touched || (finds_all(row) && found.contacts.size() <= kMostFollowed)) {
-    poses_.follow(motion.end(), found);
+    if (!moved_on_) poses_.follow(motion.end(), found);
     touched_end_.clear();
     if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
   } else {
@@ -148,8 +152,18 @@ void Session::look_at_start(const Motion& motion, const Rig::Interval* bones, St
   out.start.total -= out.rest_pairs;
 }
 
+void Session::move_on(const Motion& motion) {
+  bool finite = true;
+  moved_on_ = !options_.ignore_starts && poses_.move_on(motion.start(), motion.end(), finite);
+  if (!options_.check_finite || (moved_on_ && finite)) return;
+  if (moved_on_) poses_.go_back(motion.start());
+  require_finite(motion.start(), "start positions");
+  require_finite(motion.end(), "end positions");
+}
+
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Stopwatch whole;
+  move_on(motion);
   if (!options_.ignore_starts) look_at_start(motion, bones, out);
   out.embedding_ms = whole.milliseconds();
 

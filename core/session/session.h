@@ -39,6 +39,8 @@ struct SessionOptions {
   // Says nothing of crossings at starts: `start` stays empty and `starts_embedded` true. For complete
   // strategies, whose contacts are right from any start.
   bool ignore_starts = false;
+  // Throws InputError for positions that are not finite, before anything is changed.
+  bool check_finite = false;
 };
 
 // Answers one step after another of one surface, from any start. A strategy that promises the first contact
@@ -54,8 +56,9 @@ class Session {
   Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& stand_in,
           std::span<const Vec3> rest, const SessionOptions& options);
 
-  // Answers one step. Positions have to be finite. `bones` holds the skeleton at both ends; null for a mesh
-  // without a rig. The answer is written into `out`, whose memory is used again.
+  // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
+  // holds the skeleton at both ends; null for a mesh without a rig. The answer is written into `out`, whose
+  // memory is used again.
   void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
 
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
@@ -80,6 +83,8 @@ class Session {
   bool finds_all(const Row& row) const;
   // Finds from nothing which triangles cross in a pose.
   void find_crossings(std::span<const Vec3> pose);
+  // Begins a step: takes its end for the last known pose where it starts in the last known pose.
+  void move_on(const Motion& motion);
   void look_at_start(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
   void know_start(std::span<const Vec3> start, const Rig::Interval* bones);
   void follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
@@ -99,6 +104,7 @@ class Session {
   bool searches_fast_ = false;
   Crossings rest_;
   RestCrossings left_out_;
+  bool moved_on_ = false;          // poses_ holds the end of the step that is being answered
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
   std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
   ContactSet touched_;             // on the way to a start
