@@ -31,13 +31,13 @@ TEST(SelfCollision, AllocatesNothingInAFreeStepAfterAFreeStep) {
   SelfCollision::Options plain, filter, beside;
   filter.exclude.rings = 1;
   for (const double away : {10.0, 1.4, -1.4})
-    beside.obstacles.push_back({faces.topRows(20), 0.2 * poses[0].array() + away});
+    beside.obstacles.emplace_back(faces.topRows(20), Rows(0.2 * poses[0].array() + away));
   for (const SelfCollision::Options& options : {plain, filter, beside}) {
     SelfCollision body(faces, poses[0], options);
     SelfCollision::Answer answer;
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
       if (!options.obstacles.empty())
-        body.move_obstacle(2, beside.obstacles[2].positions, 1.01 * beside.obstacles[2].positions);
+        body.move_obstacle(2, 0.2 * poses[0].array() - 1.4, 0.2 * poses[0].array() - 1.41);
       const std::size_t before = g_allocations;
       body.first_contact(poses[i], poses[i + 1], answer);
       if (i >= 2) {  // it has seen its largest steps

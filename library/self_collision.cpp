@@ -91,15 +91,16 @@ std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& ob
   std::vector<std::size_t> first_vertex;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::string name = "obstacle " + std::to_string(i);
-    const Positions rows(obstacles[i].positions);
-    const std::span<const Vec3> own = rows_of(rows);
+    std::vector<Vec3> own;
+    for (const auto& [x, y, z] : obstacles[i].positions) own.emplace_back(x, y, z);
     require_finite(own, name + ", positions");
     const auto first = static_cast<std::int32_t>(positions.size());
-    const TriangleMesh checked(triangles_of(obstacles[i].faces), own.size(), name + ", faces");
-    for (Triangle triangle : checked.triangles()) {
-      for (VertexId& v : triangle) v = VertexId{first + static_cast<std::int32_t>(v)};
-      triangles.push_back(triangle);
+    std::vector<Triangle> faces;
+    for (const auto& [a, b, c] : obstacles[i].faces) {
+      faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+      triangles.push_back({VertexId{first + a}, VertexId{first + b}, VertexId{first + c}});
     }
+    const TriangleMesh checked(std::move(faces), own.size(), name + ", faces");
     first_vertex.push_back(positions.size());
     positions.insert(positions.end(), own.begin(), own.end());
   }

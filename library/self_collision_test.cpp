@@ -591,7 +591,7 @@ TEST(SelfCollision, SaysWhatIsWrongWithItsInput) {
   EXPECT_TRUE(body.is_free(triangle, triangle));
   EXPECT_TRUE(has(message([&] { body.place_obstacle(0, triangle); }), "obstacle 0: there are 0"));
   options = {};
-  options.obstacles = {{faces, triangle.array() + 5}, {wrong, triangle}};
+  options.obstacles = {{faces, Rows(triangle.array() + 5)}, {wrong, triangle}};
   EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "obstacle 1, faces"));
   options.obstacles.pop_back();
   SelfCollision beside(faces, triangle, options);

@@ -196,19 +196,20 @@ void candidates(const std::string& name, const Way& way, int rounds) {
 
 // A terrain of so many quads a side below a mesh, at rest, in the distance or within the mesh's box.
 SelfCollision::Obstacle terrain(int quads, double below) {
-  SelfCollision::Obstacle out{FaceRows(2 * quads * quads, 3), Rows((quads + 1) * (quads + 1), 3)};
+  FaceRows faces(2 * quads * quads, 3);
+  Rows positions((quads + 1) * (quads + 1), 3);
   for (int i = 0, v = 0; i <= quads; ++i)
     for (int j = 0; j <= quads; ++j)
-      out.positions.row(v++) << 40.0 * i / quads - 20, below, 40.0 * j / quads - 20;
+      positions.row(v++) << 40.0 * i / quads - 20, below, 40.0 * j / quads - 20;
   for (int i = 0, f = 0; i < quads; ++i)
     for (int j = 0; j < quads; ++j) {
       const int v = i * (quads + 1) + j;
-      out.faces.row(f++) << v, v + 1, v + quads + 1;
-      out.faces.row(f++) << v + 1, v + quads + 2, v + quads + 1;
+      faces.row(f++) << v, v + 1, v + quads + 1;
+      faces.row(f++) << v + 1, v + quads + 2, v + quads + 1;
     }
   // One high edge of the terrain makes its box surround the mesh.
-  for (int j = 0; j <= quads; ++j) out.positions(j, 1) += 10;
-  return out;
+  for (int j = 0; j <= quads; ++j) positions(j, 1) += 10;
+  return {faces, positions};
 }
 
 void obstacles(const std::string& name, const Way& way, int rounds) {
@@ -221,7 +222,7 @@ void obstacles(const std::string& name, const Way& way, int rounds) {
     SelfCollision::Options options;
     options.obstacles.push_back(terrain(224, below));
     SelfCollision body(way.faces, way.poses[0], options);
-    compare(name + ": is_free(), then with " + std::to_string(options.obstacles[0].faces.rows()) +
+    compare(name + ": is_free(), then with " + std::to_string(options.obstacles[0].faces.size()) +
                 " triangles " + where,
             way, rounds, without, [&](const Rows& start, const Rows& end) { body.is_free(start, end); });
   }

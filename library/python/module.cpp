@@ -154,7 +154,7 @@ One object is used by one thread at a time; different objects are independent.)"
                        const SelfCollision::Exclusions& exclude, const Surfaces& obstacles) {
              SelfCollision::Options options{threads, check_positions, check_start, exclude, {}};
              for (const auto& [corners, positions] : obstacles)
-               options.obstacles.push_back({corners, positions});
+               options.obstacles.emplace_back(corners, positions);
              return std::make_unique<SelfCollision>(faces, reference, std::move(options));
            }),
            py::arg("faces"), py::arg("reference"), py::kw_only(), py::arg("threads") = 1,

@@ -52,8 +52,15 @@ class CSCD_EXPORT SelfCollision {
   // Vertices and faces of obstacles are numbered behind those of the mesh, in the order of the obstacles:
   // contacts, crossings, candidates and exclusions name them so.
   struct Obstacle {
-    Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor> faces;  // corners from 0, in its own positions
-    Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> positions;
+    std::vector<std::array<int, 3>> faces;  // corners from 0, in its own positions
+    std::vector<std::array<double, 3>> positions;
+
+    Obstacle(const Faces& corners, const Positions& where) {
+      for (Eigen::Index f = 0; f < corners.rows(); ++f)
+        faces.push_back({corners(f, 0), corners(f, 1), corners(f, 2)});
+      for (Eigen::Index v = 0; v < where.rows(); ++v)
+        positions.push_back({where(v, 0), where(v, 1), where(v, 2)});
+    }
   };
 
   // What does not count as a collision. Two features may collide if some vertex of one may collide with some
