@@ -1,6 +1,8 @@
 """Tests of the Python module; run by ctest as python_module."""
 import os
+import pathlib
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -136,15 +138,31 @@ class Read(unittest.TestCase):
         self.assertFalse(any(answer.intersects_at_start for answer in answers))
 
     def test_frames_of_a_model_file(self):
-        program = os.environ["CSCD_PROGRAM"]
         with tempfile.TemporaryDirectory() as folder:
             model = os.path.join(folder, "character.glb")
-            subprocess.run([program, "export", "urchin_contact", model], check=True, capture_output=True)
-            faces, frames = cscd.read(model, program=program)
-        scene_faces, scene = cscd.read("urchin_contact", program=program)
-        self.assertEqual(faces.shape, scene_faces.shape)
+            subprocess.run([os.environ["CSCD_PROGRAM"], "export", "urchin", model], check=True, capture_output=True)
+            faces, frames = cscd.read(model, program=os.environ["CSCD_PROGRAM"])
+        self.assertEqual(faces.shape[1], 3)
         self.assertGreater(len(frames), 1)
-        cscd.SelfCollision(faces, frames[0]).is_free(frames[0], frames[1])
+        self.assertTrue(cscd.SelfCollision(faces, frames[0]).is_free(frames[0], frames[1]))
+
+    def test_the_picture_of_contact_times(self):
+        try:
+            import h5py
+            import matplotlib  # noqa: F401
+        except ImportError:
+            self.skipTest("h5py or matplotlib is not installed")
+        faces, before = tetrahedra()
+        script = pathlib.Path(__file__).parents[2] / "examples" / "contact_times.py"
+        with tempfile.TemporaryDirectory() as folder:
+            clip, picture = os.path.join(folder, "clip.h5"), os.path.join(folder, "times.png")
+            with h5py.File(clip, "w") as file:  # one falls through the other, and back up
+                file["triangles"] = faces
+                file["positions"] = [fallen(before, by) for by in (0, 0.3, 0.6, 1.3, 1.6, 1.3, 0.6, 0.3)]
+            done = subprocess.run([sys.executable, script, clip, picture], check=True, capture_output=True, text=True)
+            self.assertIn("2 of 7 steps touch; 3 start with crossings", done.stdout)
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(4), b"\x89PNG")
 
     def test_what_cannot_be_read(self):
         with self.assertRaisesRegex(ValueError, "nothing.glb"):
