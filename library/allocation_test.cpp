@@ -24,19 +24,30 @@ TEST(SelfCollision, AllocatesNothingInAFreeStepAfterAFreeStep) {
   for (int i = 0; i < 6; ++i) {
     Rows pose(static_cast<Eigen::Index>(ball.positions.size()), 3);
     for (Eigen::Index v = 0; v < pose.rows(); ++v)
-      pose.row(v) = (1 + 0.1 * i) * ball.positions[static_cast<std::size_t>(v)];
+      pose.row(v) = (1 + 0.3 * (i % 2)) * ball.positions[static_cast<std::size_t>(v)];
     poses.push_back(pose);
+  }
+  // Alone; with a filter; beside obstacles in the distance, in reach of the ball's box, and moving.
+  SelfCollision::Options plain, filter, beside;
+  filter.exclude.rings = 1;
+  for (const double away : {10.0, 1.4, -1.4})
+    beside.obstacles.emplace_back(faces.topRows(20), Rows(0.2 * poses[0].array() + away));
+  for (const SelfCollision::Options& options : {plain, filter, beside}) {
+    SelfCollision body(faces, poses[0], options);
+    SelfCollision::Answer answer;
+    for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+      if (!options.obstacles.empty())
+        body.move_obstacle(2, 0.2 * poses[0].array() - 1.4, 0.2 * poses[0].array() - 1.41);
+      const std::size_t before = g_allocations;
+      body.first_contact(poses[i], poses[i + 1], answer);
+      if (i >= 2) {  // it has seen its largest steps
+        EXPECT_EQ(g_allocations - before, 0u) << i;
+      }
+      EXPECT_TRUE(answer.free());
+    }
   }
   SelfCollision body(faces, poses[0]);
   SelfCollision::Answer answer;
-  body.first_contact(poses[0], poses[1], answer);
-  body.first_contact(poses[1], poses[2], answer);
-  for (std::size_t i = 2; i + 1 < poses.size(); ++i) {
-    const std::size_t before = g_allocations;
-    body.first_contact(poses[i], poses[i + 1], answer);
-    EXPECT_EQ(g_allocations - before, 0u) << i;
-    EXPECT_TRUE(answer.free());
-  }
   const std::size_t before = g_allocations;
   body.all_contacts(poses[0], poses[5], answer);
   EXPECT_GT(g_allocations - before, 0u) << "allocations are counted";

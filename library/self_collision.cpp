@@ -10,6 +10,7 @@
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/session/candidates.h"
+#include "core/session/obstacles.h"
 #include "core/session/session.h"
 
 #include "cscd/cscd.h"
@@ -81,6 +82,37 @@ auto checked(const Call& call) {
   }
 }
 
+// The obstacles of the options as one mesh.
+struct Beside {
+  std::vector<Vec3> positions;
+  std::vector<std::size_t> first_vertex;
+  TriangleMesh mesh;
+};
+
+std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& obstacles) {
+  if (obstacles.empty()) return nullptr;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> positions;
+  std::vector<std::size_t> first_vertex;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const std::string name = "obstacle " + std::to_string(i);
+    std::vector<Vec3> own;
+    for (const auto& [x, y, z] : obstacles[i].positions) own.emplace_back(x, y, z);
+    require_finite(own, name + ", positions");
+    const auto first = static_cast<std::int32_t>(positions.size());
+    std::vector<Triangle> faces;
+    for (const auto& [a, b, c] : obstacles[i].faces) {
+      faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+      triangles.push_back({VertexId{first + a}, VertexId{first + b}, VertexId{first + c}});
+    }
+    const TriangleMesh checked(std::move(faces), own.size(), name + ", faces");
+    first_vertex.push_back(positions.size());
+    positions.insert(positions.end(), own.begin(), own.end());
+  }
+  TriangleMesh mesh(std::move(triangles), positions.size(), "obstacles");
+  return std::make_unique<Beside>(Beside{std::move(positions), std::move(first_vertex), std::move(mesh)});
+}
+
 }  // namespace
 
 class SelfCollision::Engine {
@@ -89,80 +121,176 @@ class SelfCollision::Engine {
       : options_(std::move(options)),
         reference_(rows_of(reference).begin(), rows_of(reference).end()),
         mesh_(triangles_of(faces), reference_.size(), "faces"),
-        exclusions_(exclusions_of(mesh_, reference_, options_.exclude)) {
+        beside_(beside_of(options_.obstacles)) {
     require_finite(reference_, "reference positions");
     if (options_.threads < 1) throw InputError("options: threads is less than 1; give at least 1");
+    options_.obstacles.clear();
+    if (beside_)
+      obstacles_.emplace(mesh_, reference_, beside_->mesh, beside_->positions, beside_->first_vertex,
+                         elementary());
+    std::vector<Vec3> all = reference_;
+    if (beside_) all.insert(all.end(), beside_->positions.begin(), beside_->positions.end());
+    exclusions_ = exclusions_of(obstacles_ ? obstacles_->together() : mesh_, all, options_.exclude);
+    if (obstacles_ && !exclusions_.empty()) obstacles_->leave_out(exclusions_);
     // Preparing here, and not in the first step, finds what is wrong with the input where it is given.
-    session(true);
+    plain(first_);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
 
+  // Sessions look for numbers that are not finite in the pass in which they look whether a start is known.
   Motion motion(const Positions& start, const Positions& end) const {
-    check(start, "start");
-    check(end, "end");
+    check_size(start, mesh_.vertex_count(), "start positions");
+    check_size(end, mesh_.vertex_count(), "end positions");
     return {rows_of(start), rows_of(end)};
   }
-
-  const StepAnswer& step(const Motion& motion, bool first) {
-    session(first).step(motion, nullptr, answer_);
-    return answer_;
+  void check_finite(const Positions& positions, const std::string& which) const {
+    if (options_.check_positions) require_finite(rows_of(positions), which);
   }
 
-  void write(const StepAnswer& from, const Motion& motion, Answer& out) const {
+  void move(std::size_t obstacle, const Positions& start, const Positions& end) {
+    const std::string name = "obstacle " + std::to_string(obstacle);
+    const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
+    if (obstacle >= count)
+      throw InputError(name + ": there are " + std::to_string(count) + "; obstacles are counted from 0");
+    check_size(start, obstacles_->vertex_count(obstacle), name + ", start positions");
+    check_size(end, obstacles_->vertex_count(obstacle), name + ", end positions");
+    check_finite(start, name + ", start positions");
+    check_finite(end, name + ", end positions");
+    obstacles_->move(obstacle, rows_of(start), rows_of(end));
+  }
+
+  // Answers one step. The answer is kept until the next.
+  void step(const Motion& motion, bool first) {
+    step_itself(first ? first_ : all_, motion);
+    if (!obstacles_) return;
+    obstacles_->step(motion, first, options_.check_start, touched_, crossed_);
+    const std::optional<double> earliest = time();
+    if (first && earliest)
+      for (std::vector<cscd::Contact>* contacts : {&answer_.found.contacts, &touched_.contacts})
+        std::erase_if(*contacts, [&](const cscd::Contact& contact) { return contact.time > *earliest; });
+  }
+
+  bool crosses() const { return answer_.start.total + crossed_.total > 0; }
+  std::optional<double> time() const {
+    const std::optional<double> own = answer_.time();
+    if (touched_.contacts.empty()) return own;
+    return std::min(own.value_or(1), touched_.contacts.front().time);
+  }
+
+  void write(const Motion& motion, Answer& out) const {
     out.start_crossings.clear();
-    for (const auto& [a, b] : from.start.pairs)
-      out.start_crossings.push_back({static_cast<int>(a), static_cast<int>(b)});
+    for (const Crossings* crossings : {&answer_.start, &crossed_})
+      for (const auto& [a, b] : crossings->pairs)
+        out.start_crossings.push_back({static_cast<int>(a), static_cast<int>(b)});
+    if (!crossed_.pairs.empty()) std::sort(out.start_crossings.begin(), out.start_crossings.end());
     out.contacts.clear();
-    for (const cscd::Contact& contact : from.found.contacts) out.contacts.push_back(written(contact, motion));
+    for (const cscd::Contact& contact : answer_.found.contacts)
+      out.contacts.push_back(written(mesh_, contact, motion));
+    const auto own = static_cast<std::ptrdiff_t>(out.contacts.size());
+    for (const cscd::Contact& contact : touched_.contacts)
+      out.contacts.push_back(written(obstacles_->together(), contact, obstacles_->motion()));
+    if (!touched_.contacts.empty())
+      std::inplace_merge(out.contacts.begin(), out.contacts.begin() + own, out.contacts.end(),
+                         [](const Contact& a, const Contact& b) { return a.time < b.time; });
   }
 
   void candidates(const Motion& motion, double radius, Candidates& out) {
     if (!(radius >= 0) || !std::isfinite(radius))
       throw InputError("candidates: radius " + std::to_string(radius) + "; give a length of at least 0");
-    if (!search_) search_.emplace(mesh_, reference_, exclusions());
+    if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
     search_->find(motion, radius, found_);
+    append(mesh_, out);
+    if (!obstacles_) return;
+    obstacles_->find_candidates(motion, radius, found_);
+    append(obstacles_->together(), out);
+  }
+
+ private:
+  // The sessions that answer one question. Each is prepared when it is asked for first. `plain` knows of no
+  // exclusions: what is excluded is dropped from its answer. Where that leaves nothing of the first contact,
+  // `filtered` finds the first of the others. So a step in which nothing excluded touches costs what it costs
+  // without exclusions, and what it proves says how the next step starts.
+  struct Question {
+    bool first;
+    std::optional<Session> plain = std::nullopt, filtered = std::nullopt;
+    int filtered_steps = 0;  // the number of steps from here on that `filtered` answers alone
+  };
+  static constexpr int kFilteredSteps = 16;  // after a step in which something excluded touched
+
+  static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
+  Setup setup(bool first, const cscd::Exclusions* exclusions) const {
+    return {mesh_, reference_, nullptr, elementary(), options_.threads, first, exclusions};
+  }
+  Session& made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
+                const cscd::Exclusions* exclusions) {
+    if (wanted) return *wanted;
+    const SessionOptions options{.first = first,
+                                 .keep_rest_crossings = true,
+                                 .ignore_starts = !options_.check_start,
+                                 .check_finite = options_.check_positions};
+    return wanted.emplace("reference positions", setup(first, exclusions), strategy, kComplete, reference_,
+                          options);
+  }
+  // Signs need a start in which nothing at all crosses. A caller who answers for the starts may let excluded
+  // pairs cross, so then only a complete strategy is right.
+  Session& plain(Question& question) {
+    const bool by_signs =
+        question.first && mesh_.closed_and_oriented() && (exclusions_.empty() || options_.check_start);
+    return made(question.plain, question.first, by_signs ? kFirst : kComplete, nullptr);
+  }
+
+  void step_itself(Question& question, const Motion& motion) {
+    if (question.filtered_steps == 0) {
+      plain(question).step(motion, nullptr, answer_);
+      if (exclusions_.empty()) return;
+      const std::size_t left_out = leave_out();
+      if (left_out > 0) question.filtered_steps = kFilteredSteps;
+      if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
+    }
+    --question.filtered_steps;
+    made(question.filtered, question.first, kComplete, &exclusions_).step(motion, nullptr, answer_);
+  }
+
+  bool excludes(const CrossingPair& pair) const {
+    return exclusions_.excludes(mesh_, TrianglePair{pair.first, pair.second});
+  }
+  // Drops what is excluded from the answer, and returns the number of contacts dropped. A feature pair is
+  // excluded by its vertices, or because every pair of triangles that carries it is excluded.
+  std::size_t leave_out() {
+    answer_.start.total -=
+        std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) { return excludes(pair); });
+    return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
+      return exclusions_.excludes(mesh_, contact.pair) ||
+             std::ranges::all_of(carriers(mesh_, contact.pair),
+                                 [&](const CrossingPair& pair) { return excludes(pair); });
+    });
+  }
+
+  static void check_size(const Positions& positions, std::size_t count, const std::string& which) {
+    if (static_cast<std::size_t>(positions.rows()) != count)
+      throw InputError(which + ": " + std::to_string(positions.rows()) + " rows for " +
+                       std::to_string(count) + " vertices; give one row a vertex");
+  }
+
+  static std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair) {
+    const auto [a, b, c, d] = vertices_of(mesh, pair);
+    return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d)};
+  }
+
+  void append(const TriangleMesh& mesh, Candidates& out) const {
     for (const FeaturePair& pair : found_)
       if (pair.kind == FeaturePair::Kind::vertex_face)
         out.vertex_face.push_back({pair.a, pair.b});
       else
-        out.edge_edge.push_back(indices_of(pair));
+        out.edge_edge.push_back(indices_of(mesh, pair));
   }
 
- private:
-  const cscd::Exclusions* exclusions() const { return exclusions_.empty() ? nullptr : &exclusions_; }
-
-  // The sessions are prepared when they are asked for first. With exclusions, contacts may leave the surface
-  // crossing itself without a word, so only a complete strategy is right.
-  Session& session(bool first) {
-    std::optional<Session>& wanted = first ? first_ : all_;
-    if (wanted) return *wanted;
-    const Setup setup{mesh_, reference_,  nullptr, *find_elementary_test("filtered_exact"), options_.threads,
-                      first, exclusions()};
-    const bool by_signs = first && mesh_.closed_and_oriented() && exclusions_.empty();
-    const SessionOptions options{
-        .first = first, .keep_rest_crossings = true, .ignore_starts = !options_.check_start};
-    return wanted.emplace("reference positions", setup, by_signs ? kFirst : kComplete, kComplete, reference_,
-                          options);
-  }
-
-  void check(const Positions& positions, const std::string& which) const {
-    if (static_cast<std::size_t>(positions.rows()) != mesh_.vertex_count())
-      throw InputError(which + " positions: " + std::to_string(positions.rows()) + " rows for " +
-                       std::to_string(mesh_.vertex_count()) + " vertices; give one row a vertex");
-    if (options_.check_positions) require_finite(rows_of(positions), which + " positions");
-  }
-
-  std::array<int, 4> indices_of(const FeaturePair& pair) const {
-    const auto [a, b, c, d] = vertices_of(mesh_, pair);
-    return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d)};
-  }
-
-  Contact written(const cscd::Contact& contact, const Motion& motion) const {
-    const ContactGeometry geometry = contact_geometry(mesh_, motion, contact.pair, contact.time);
+  static Contact written(const TriangleMesh& mesh, const cscd::Contact& contact, const Motion& motion) {
+    const ContactGeometry geometry = contact_geometry(mesh, motion, contact.pair, contact.time);
     const bool edges = contact.pair.kind == FeaturePair::Kind::edge_edge;
     return {edges,
-            indices_of(contact.pair),
+            indices_of(mesh, contact.pair),
             edges ? -1 : contact.pair.b,
             contact.time,
             geometry.point,
@@ -174,10 +302,14 @@ class SelfCollision::Engine {
   Options options_;
   std::vector<Vec3> reference_;
   TriangleMesh mesh_;
-  cscd::Exclusions exclusions_;
-  std::optional<Session> first_, all_;
+  std::unique_ptr<Beside> beside_;
+  std::optional<Obstacles> obstacles_;
+  cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
+  Question first_{.first = true}, all_{.first = false};
   std::optional<CandidateSearch> search_;
-  StepAnswer answer_;
+  StepAnswer answer_;   // about the mesh alone
+  ContactSet touched_;  // of the mesh and obstacles
+  Crossings crossed_;   // of the mesh and obstacles
   std::vector<FeaturePair> found_;
 };
 
@@ -189,17 +321,26 @@ SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
 
+void SelfCollision::place_obstacle(std::size_t obstacle, const Positions& positions) {
+  checked([&] { engine_->move(obstacle, positions, positions); });
+}
+
+void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) {
+  checked([&] { engine_->move(obstacle, start, end); });
+}
+
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
   return checked([&] {
-    const StepAnswer& answer = engine_->step(engine_->motion(start, end), true);
-    return answer.found.contacts.empty() && answer.start.total == 0;
+    engine_->step(engine_->motion(start, end), true);
+    return !engine_->crosses() && !engine_->time();
   });
 }
 
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
   checked([&] {
     const Motion motion = engine_->motion(start, end);
-    engine_->write(engine_->step(motion, true), motion, out);
+    engine_->step(motion, true);
+    engine_->write(motion, out);
   });
 }
 
@@ -212,7 +353,8 @@ SelfCollision::Answer SelfCollision::first_contact(const Positions& start, const
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
   checked([&] {
     const Motion motion = engine_->motion(start, end);
-    engine_->write(engine_->step(motion, false), motion, out);
+    engine_->step(motion, false);
+    engine_->write(motion, out);
   });
 }
 
@@ -226,9 +368,9 @@ double SelfCollision::largest_step(const Positions& start, const Positions& end,
   return checked([&] {
     if (!(safety > 0 && safety <= 1))
       throw InputError("largest_step: safety " + std::to_string(safety) + "; give a number in (0, 1]");
-    const StepAnswer& answer = engine_->step(engine_->motion(start, end), true);
-    if (answer.start.total > 0) return 0.0;
-    const std::optional<double> time = answer.time();
+    engine_->step(engine_->motion(start, end), true);
+    if (engine_->crosses()) return 0.0;
+    const std::optional<double> time = engine_->time();
     if (!time) return 1.0;
     // The time of a contact is off by at most 2^-50, and the product rounds by less than that.
     constexpr double kSlack = 0x1p-49;
@@ -240,7 +382,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
                                                     double radius) {
   return checked([&] {
     Candidates out;
-    engine_->candidates(engine_->motion(start, end), radius, out);
+    const Motion motion = engine_->motion(start, end);
+    engine_->check_finite(start, "start positions");
+    engine_->check_finite(end, "end positions");
+    engine_->candidates(motion, radius, out);
     return out;
   });
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
+#include "core/fast/trial.h"
 #include "core/hierarchy/descent.h"
 
 namespace cscd {
@@ -45,23 +47,66 @@ bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& p
   return within(box_of(motion, mesh.ends(EdgeId{pair.a})), box_of(motion, mesh.ends(EdgeId{pair.b})), radius);
 }
 
+class CandidateSink : public TrianglePairSink {
+ public:
+  CandidateSink(CandidateSet& set, const Motion& motion, std::vector<FeaturePair>& out)
+      : set_(set), motion_(motion), out_(out) {}
+
+ private:
+  void take(const std::vector<TrianglePair>& block) override {
+    for (const TrianglePair& pair : block) set_.take(motion_, 0, pair, out_);
+  }
+  CandidateSet& set_;
+  const Motion& motion_;
+  std::vector<FeaturePair>& out_;
+};
+
 }  // namespace
+
+void CandidateSet::take(const Motion& motion, double radius, const TrianglePair& pair,
+                        std::vector<FeaturePair>& out) {
+  if (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair)) return;
+  for_each_carried(mesh_, pair, [&](const FeaturePair& features) {
+    if (!within(mesh_, motion, features, radius) || !met_.insert(features)) return;
+    if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
+  });
+}
 
 void CandidateSearch::find(const Motion& motion, double radius, std::vector<FeaturePair>& out) {
   out.clear();
-  met_.start_interval();
-  bounds_.refit(motion, radius / 2);
-  const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+  set_.start_step();
+  if (radius == 0)
+    find_touching(motion, out);
+  else
+    find_near(motion, radius, out);
+}
+
+// What comes within a radius of 0 touches, and a complete culler passes on every triangle pair of which
+// features touch.
+void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePair>& out) {
+  if (!culler_) {
+    StageClock clock;
+    clock.enter(Stage::decomposition);
+    culler_ = fast::best_candidate(setup_, {.name = "candidates", .complete = true}, clock).culler;
+  }
+  CandidateSink sink(set_, motion, out);
+  culler_->refit(motion);
+  culler_->classify(motion, nullptr);
+  culler_->cull(sink);
+  sink.flush();
+}
+
+void CandidateSearch::find_near(const Motion& motion, double radius, std::vector<FeaturePair>& out) {
+  if (!tree_) {
+    tree_ = build_tree(setup_.mesh, setup_.reference);
+    bounds_.emplace(setup_.mesh, *tree_);
+  }
+  bounds_->refit(motion, radius / 2);
+  const auto is_leaf = [&](NodeIndex node) { return tree_->is_leaf(node); };
   const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
-  const auto take = [&](NodeIndex a, NodeIndex b) {
-    const TrianglePair triangles{tree_.triangle(a), tree_.triangle(b)};
-    if (exclusions_ != nullptr && exclusions_->excludes(mesh_, triangles)) return;
-    for_each_carried(mesh_, triangles, [&](const FeaturePair& pair) {
-      if (!within(mesh_, motion, pair, radius) || !met_.insert(pair)) return;
-      if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, pair)) out.push_back(pair);
-    });
-  };
-  self_descent(tree_, bounds_, 0, is_leaf, skip_none, take);
+  self_descent(*tree_, *bounds_, 0, is_leaf, skip_none, [&](NodeIndex a, NodeIndex b) {
+    set_.take(motion, radius, {tree_->triangle(a), tree_->triangle(b)}, out);
+  });
 }
 
 }  // namespace cscd

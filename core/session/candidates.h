@@ -1,32 +1,57 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_pair_set.h"
+#include "core/detect/strategy.h"
 #include "core/hierarchy/bounds.h"
 #include "core/hierarchy/tree.h"
 
 namespace cscd {
 
-// Finds the feature pairs whose features may come within a radius of each other.
-class CandidateSearch {
+// Collects the feature pairs that some triangle pairs carry and whose features may come within a radius of
+// each other. The boxes of both features' paths are then at most the radius apart along each axis.
+class CandidateSet {
  public:
-  // `reference`, [vertices], shapes the tree. `exclusions` may be null. Everything must outlive the search.
-  CandidateSearch(const TriangleMesh& mesh, std::span<const Vec3> reference, const Exclusions* exclusions)
-      : mesh_(mesh), exclusions_(exclusions), tree_(build_tree(mesh, reference)), bounds_(mesh, tree_) {}
+  // `exclusions` may be null. Everything must outlive the set.
+  CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions)
+      : mesh_(mesh), exclusions_(exclusions) {}
 
-  // Replaces the content of `out` by all feature pairs that are not excluded and for which the boxes of both
-  // features' paths are at most `radius` apart along each axis. That holds every feature pair that comes
-  // within the radius at some t. The radius is at least 0 and finite.
-  void find(const Motion& motion, double radius, std::vector<FeaturePair>& out);
+  // Forgets the triangle pairs of the last step.
+  void start_step() { met_.start_interval(); }
+  // Appends the pair's feature pairs that are near enough, are not excluded, and are new in this step.
+  void take(const Motion& motion, double radius, const TrianglePair& pair, std::vector<FeaturePair>& out);
 
  private:
   const TriangleMesh& mesh_;
   const Exclusions* exclusions_;
-  Tree tree_;
-  SweptBoxes bounds_;
   FeaturePairSet met_;
+};
+
+// Finds the feature pairs of one surface whose features may come within a radius of each other.
+class CandidateSearch {
+ public:
+  // What `setup` refers to must outlive the search. `first_only` is not looked at.
+  explicit CandidateSearch(const Setup& setup) : setup_(setup), set_(setup.mesh, setup.exclusions) {}
+
+  // Replaces the content of `out` by feature pairs that hold every one that comes within `radius` at some t
+  // and is not excluded. With a radius above 0 these are all pairs that CandidateSet takes. With radius 0
+  // they are those among them that a complete culler does not prove apart. The radius is at least 0 and
+  // finite. The first call with a radius of 0, and the first with another, each prepare what they need.
+  void find(const Motion& motion, double radius, std::vector<FeaturePair>& out);
+
+ private:
+  void find_touching(const Motion& motion, std::vector<FeaturePair>& out);
+  void find_near(const Motion& motion, double radius, std::vector<FeaturePair>& out);
+
+  Setup setup_;
+  CandidateSet set_;
+  std::unique_ptr<Culler> culler_;  // for radius 0
+  std::optional<Tree> tree_;        // for others
+  std::optional<SweptBoxes> bounds_;
 };
 
 }  // namespace cscd

@@ -70,14 +70,13 @@ bool Session::finds_all(const Row& row) const {
 // Chooses the row that answers a step, and sees to it that what crosses at the start is known, or that the
 // row finds it with its answer.
 Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones) {
-  if (options_.ignore_starts) return main_;
-  if (!poses_.knows(motion.start())) {
-    if (main_.strategy->sees_start) return main_;
-    if (!follow_to(motion.start(), bones)) {
-      if (needs_start() && stand_in_pays()) return stand_in();
-      find_crossings(motion.start(), bones);
-    }
+  start_known_ = options_.ignore_starts || moved_on_ || poses_.knows(motion.start());
+  if (options_.ignore_starts || (!start_known_ && main_.strategy->sees_start)) return main_;
+  if (!start_known_ && !follow_to(motion.start(), bones)) {
+    if (needs_start() && stand_in_pays()) return stand_in();
+    find_crossings(motion.start(), bones);
   }
+  start_known_ = true;
   return needs_start() && poses_.crossings().total > 0 ? stand_in() : main_;
 }
 
@@ -127,8 +126,12 @@ void Session::know_end(const Motion& motion, const Rig::Interval* bones, const R
   const bool embedded = poses_.crossings().total == 0;
   const bool nothing_touched = found.contacts.empty() && embedded && can_follow() &&
                                !row.strategy->own_test && row.strategy->guarantee != Guarantee::heuristic;
+  if (moved_on_ && !nothing_touched) {
+    poses_.go_back(motion.start());
+    moved_on_ = false;
+  }
   if (nothing_touched || (finds_all(row) && found.contacts.size() <= kMostFollowed)) {
-    poses_.follow(motion.end(), found);
+    if (!moved_on_) poses_.follow(motion.end(), found);
     touched_end_.clear();
     if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
   } else {
@@ -146,16 +149,15 @@ std::size_t Session::leave_out(ContactSet& found) const {
 void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Rig::Interval* const used = setup_.rig != nullptr ? bones : nullptr;
   out.strategy = row.strategy;
-  if (options_.ignore_starts) {
+  if (start_known_) {
     out.report = row.detector->detect(motion, used, out.found);
   } else {
-    if (poses_.knows(motion.start())) {
-      out.report = row.detector->detect(motion, used, out.found);
-    } else {
-      out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
-      poses_.know(motion.start(), seen_);
-      out.embedding_ms += out.report.start_ms;
-    }
+    out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
+    poses_.know(motion.start(), seen_);
+    start_known_ = true;
+    out.embedding_ms += out.report.start_ms;
+  }
+  if (!options_.ignore_starts) {
     if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
     say_start(out);
     know_end(motion, bones, row, out.found);
@@ -175,11 +177,26 @@ void Session::say_start(StepAnswer& out) const {
   out.start.total -= out.rest_pairs;
 }
 
+void Session::move_on(const Motion& motion) {
+  bool finite = true;
+  moved_on_ = !options_.ignore_starts && poses_.move_on(motion.start(), motion.end(), finite);
+  if (!options_.check_finite || (moved_on_ && finite)) return;
+  if (moved_on_) poses_.go_back(motion.start());
+  require_finite(motion.start(), "start positions");
+  require_finite(motion.end(), "end positions");
+}
+
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Stopwatch whole;
+  move_on(motion);
   Row& row = row_for(motion, bones);
   out.embedding_ms = whole.milliseconds();
-  ask(row, motion, bones, out);
+  try {
+    ask(row, motion, bones, out);
+  } catch (...) {  // nothing is known of the end then
+    if (moved_on_) poses_.go_back(motion.start());
+    throw;
+  }
   // A row that promises the first contact may miss those after it. If that first one is left out as a
   // crossing at rest, the answer has to come from a complete row.
   if (needs_start() && &row == &main_ && out.rest_contacts > 0) ask(stand_in(), motion, bones, out);

@@ -7,8 +7,8 @@
 
 #include "core/base/stopwatch.h"
 #include "core/detect/contact.h"
-#include "core/detect/start/crossings.h"
 #include "core/detect/detector.h"
+#include "core/detect/start/crossings.h"
 #include "core/detect/start/pose_crossings.h"
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
@@ -39,6 +39,8 @@ struct SessionOptions {
   // Says nothing of crossings at starts: `start` stays empty and `starts_embedded` true. For complete
   // strategies, whose contacts are right from any start.
   bool ignore_starts = false;
+  // Throws InputError for positions that are not finite, before anything is changed.
+  bool check_finite = false;
 };
 
 // Answers one step after another of one surface, from any start. A strategy that promises the first contact
@@ -54,8 +56,9 @@ class Session {
   Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& stand_in,
           std::span<const Vec3> rest, const SessionOptions& options);
 
-  // Answers one step. Positions have to be finite. `bones` holds the skeleton at both ends; null for a mesh
-  // without a rig. The answer is written into `out`, whose memory is used again.
+  // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
+  // holds the skeleton at both ends; null for a mesh without a rig. The answer is written into `out`, whose
+  // memory is used again.
   void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
 
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
@@ -83,6 +86,8 @@ class Session {
   bool needs_start() const {
     return main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
   }
+  // Begins a step: takes its end for the last known pose where it starts in the last known pose.
+  void move_on(const Motion& motion);
   Row& row_for(const Motion& motion, const Rig::Interval* bones);
   bool stand_in_pays() const;
   // Finds from nothing which triangles cross in a pose. `bones` holds the skeleton in it, at its start.
@@ -104,6 +109,8 @@ class Session {
   double rest_ms_ = 0;      // that it took for the pose at rest
   Crossings rest_;
   RestCrossings left_out_;
+  bool moved_on_ = false;          // poses_ holds the end of the step that is being answered
+  bool start_known_ = false;       // what crosses at the start of the step that is being answered is known
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
   std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
   ContactSet touched_;             // on the way to a start

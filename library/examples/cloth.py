@@ -1,10 +1,5 @@
 #!/usr/bin/python3
-"""A strip of cloth is rolled up onto itself; every step stops short of its first contact.
-
-With a name for a picture, draws when in each step the strip first touches itself (needs matplotlib).
-"""
-import sys
-
+"""A strip of cloth is rolled up onto itself; every step stops short of its first contact."""
 import cscd
 import numpy as np
 
@@ -33,14 +28,3 @@ for turns in np.linspace(0, 1.5, 60)[1:]:
     times.append(1 if answer.time is None else answer.time)
     x = x + cloth.largest_step(x, wanted) * (wanted - x)
 print(sum(t < 1 for t in times), "of", len(times), "steps had contacts; no step started with crossings")
-
-if len(sys.argv) > 1:
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    plt.figure(figsize=(6, 2.5))
-    plt.step(range(len(times)), times, where="mid", color="#0072b2")
-    plt.xlabel("step")
-    plt.ylabel("t of first contact")
-    plt.tight_layout()
-    plt.savefig(sys.argv[1])

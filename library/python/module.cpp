@@ -39,6 +39,10 @@ py::array_t<int> table_of(const std::vector<std::array<int, kWidth>>& rows) {
   return out;
 }
 
+// Obstacles: faces and positions of each.
+using Surfaces = std::vector<std::pair<Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>,
+                                       Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>>;
+
 constexpr auto kWithoutLock = py::call_guard<py::gil_scoped_release>();
 
 }  // namespace
@@ -61,7 +65,7 @@ Two features may collide if some vertex of one may collide with some vertex of t
            py::arg("vertex_pairs") = std::vector<std::pair<int, int>>(),
            py::arg("face_pairs") = std::vector<std::pair<int, int>>(), py::arg("rings") = 0,
            py::arg("rest_distance") = 0.0,
-           R"(obstacle: [vertices] bool; vertices of obstacles never collide with each other.
+           R"(obstacle: [vertices] bool; vertices that never collide with each other.
 group: [vertices] int from 0, and pairs of groups that do not collide with each other.
 vertex_pairs, face_pairs: pairs of indices that do not collide.
 rings: vertices that are joined by at most so many edges do not collide.
@@ -139,25 +143,35 @@ rest_distance: nor do vertices nearer than this in the reference positions.)");
 
 faces: [faces, 3] int, corners counter-clockwise seen from outside.
 reference: [vertices, 3] float, a pose without crossings, such as the pose at rest.
+obstacles: list of (faces, positions) of surfaces that the mesh collides with, and that never collide with each
+other; each rests until place_obstacle() or move_obstacle(). Their vertices and faces are numbered behind the
+mesh's, in contacts and in `exclude`.
 A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
 the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
 One object is used by one thread at a time; different objects are independent.)")
       .def(py::init([](const SelfCollision::Faces& faces, const SelfCollision::Positions& reference,
                        int threads, bool check_positions, bool check_start,
-                       const SelfCollision::Exclusions& exclude) {
-             return std::make_unique<SelfCollision>(
-                 faces, reference, SelfCollision::Options{threads, check_positions, check_start, exclude});
+                       const SelfCollision::Exclusions& exclude, const Surfaces& obstacles) {
+             SelfCollision::Options options{threads, check_positions, check_start, exclude, {}};
+             for (const auto& [corners, positions] : obstacles)
+               options.obstacles.emplace_back(corners, positions);
+             return std::make_unique<SelfCollision>(faces, reference, std::move(options));
            }),
            py::arg("faces"), py::arg("reference"), py::kw_only(), py::arg("threads") = 1,
            py::arg("check_positions") = true, py::arg("check_start") = true,
-           py::arg("exclude") = SelfCollision::Exclusions(), kWithoutLock)
+           py::arg("exclude") = SelfCollision::Exclusions(), py::arg("obstacles") = Surfaces(), kWithoutLock)
+      .def("place_obstacle", &SelfCollision::place_obstacle, py::arg("obstacle"), py::arg("positions"),
+           kWithoutLock, "Places an obstacle, counted from 0, where it rests in the steps from then on.")
+      .def("move_obstacle", &SelfCollision::move_obstacle, py::arg("obstacle"), py::arg("start"),
+           py::arg("end"), kWithoutLock,
+           "Moves an obstacle from start to end in every step, until it is placed or moved again.")
       .def("is_free", &SelfCollision::is_free, py::arg("start"), py::arg("end"), kWithoutLock,
            "Returns whether the step is free of contacts, and starts without crossings.")
       .def("first_contact",
            py::overload_cast<const SelfCollision::Positions&, const SelfCollision::Positions&>(
                &SelfCollision::first_contact),
            py::arg("start"), py::arg("end"), kWithoutLock,
-           "Returns an Answer with the contacts of the earliest time.")
+           "Returns an Answer with contacts of the earliest time, at least one where anything touches.")
       .def("all_contacts",
            py::overload_cast<const SelfCollision::Positions&, const SelfCollision::Positions&>(
                &SelfCollision::all_contacts),

@@ -1,6 +1,8 @@
 #include "core/detect/start/pose_crossings.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 #include "core/elementary/exact/triangles_meet.h"
@@ -10,6 +12,30 @@ namespace cscd {
 bool PoseCrossings::knows(std::span<const Vec3> positions) const {
   return positions.size() == positions_.size() && !positions.empty() &&
          std::memcmp(positions.data(), positions_.data(), positions.size_bytes()) == 0;
+}
+
+bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite) {
+  if (start.size() != positions_.size() || positions_.empty()) return false;
+  constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cache
+  constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000, kLowest = 0x0010'0000'0000'0000;
+  const double *const from = start[0].data(), *const to = end[0].data();
+  double* const kept = positions_[0].data();
+  const std::size_t count = 3 * positions_.size();
+  std::uint64_t all = 0;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t last = std::min(first + kBlock, count);
+    if (std::memcmp(from + first, kept + first, (last - first) * sizeof(double)) != 0) {
+      std::copy(from, from + first, kept);  // what has been written over was the same
+      return false;
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      // The sum reaches the sign where all bits of the exponent are set.
+      all |= (std::bit_cast<std::uint64_t>(to[i]) & kExponent) + kLowest;
+      kept[i] = to[i];
+    }
+  }
+  finite = all >> 63 == 0;
+  return true;
 }
 
 const Crossings& PoseCrossings::find(std::span<const Vec3> positions) {

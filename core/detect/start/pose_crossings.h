@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,6 +26,16 @@ class PoseCrossings {
   // Returns whether `positions` are those last asked for, bit for bit, so that
   // their crossings are known already.
   bool knows(std::span<const Vec3> positions) const;
+
+  // Moves on to the end of a step before it is known what touches on the way: where `start` are the positions
+  // last asked for, bit for bit, puts `end` in their place, and returns true. Otherwise changes nothing and
+  // returns false. `finite` says whether the positions are, of `end` where this returns true. One pass
+  // compares, copies and looks for what is not finite, which takes a third of the time of three passes. The
+  // crossings stay those of `start`. They are right of `end` too if nothing touches; if something does, the
+  // caller has to go back.
+  bool move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite);
+  // Puts the start of the step in the place of its end again.
+  void go_back(std::span<const Vec3> start) { std::ranges::copy(start, positions_.begin()); }
 
   // The positions last asked for, and the crossings in them.
   std::span<const Vec3> positions() const { return positions_; }

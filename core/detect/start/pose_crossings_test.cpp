@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 #include "core/elementary/catalogue.h"
@@ -128,6 +130,38 @@ TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
   ASSERT_EQ(both.size(), 4u);
   for (const CrossingPair& p : both) EXPECT_EQ(p.second, TriangleId{12});
   EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
+}
+
+// Mutations: a difference behind the first block is passed over; what was written over is not put back; only
+// the last number counts as not finite.
+TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
+  const test::Shape shape = test::icosphere(3);
+  const TriangleMesh mesh = shape.mesh();
+  PoseCrossings crossings({mesh, shape.positions}, kAll);
+  std::vector<Vec3> end = shape.positions;
+  for (Vec3& p : end) p *= 1.5;
+  bool finite = false;
+  EXPECT_FALSE(crossings.move_on(shape.positions, end, finite)) << "nothing is known yet";
+  crossings.find(shape.positions);
+  for (const std::size_t v : {std::size_t{0}, shape.positions.size() / 2, shape.positions.size() - 1}) {
+    std::vector<Vec3> start = shape.positions;
+    start[v].z() = -start[v].z();
+    start[v].x() += 1e-12;
+    EXPECT_FALSE(crossings.move_on(start, end, finite)) << v;
+    EXPECT_TRUE(crossings.knows(shape.positions)) << v;
+    for (const double wrong : {std::numeric_limits<double>::infinity(), std::nan("")}) {
+      std::vector<Vec3> nowhere = end;
+      nowhere[v].y() = wrong;
+      EXPECT_TRUE(crossings.move_on(shape.positions, nowhere, finite));
+      EXPECT_FALSE(finite) << v;
+      crossings.go_back(shape.positions);
+      EXPECT_TRUE(crossings.knows(shape.positions));
+    }
+  }
+  end[7].y() = -std::numeric_limits<double>::max();
+  EXPECT_TRUE(crossings.move_on(shape.positions, end, finite));
+  EXPECT_TRUE(finite);
+  EXPECT_TRUE(crossings.knows(end));
 }
 
 }  // namespace

@@ -47,10 +47,28 @@ class CSCD_EXPORT SelfCollision {
   // Corners of triangles, one row a triangle, counter-clockwise seen from outside.
   using Faces = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>;
 
+  // A surface that the mesh collides with. Obstacles never collide with each other or with themselves. Their
+  // positions are no part of a step: an obstacle rests where it is until it is placed elsewhere or moved.
+  // Vertices and faces of obstacles are numbered behind those of the mesh, in the order of the obstacles:
+  // contacts, crossings, candidates and exclusions name them so.
+  struct Obstacle {
+    std::vector<std::array<int, 3>> faces;  // corners from 0, in its own positions
+    std::vector<std::array<double, 3>> positions;
+
+    Obstacle(const Faces& corners, const Positions& where) {
+      for (Eigen::Index f = 0; f < corners.rows(); ++f)
+        faces.push_back({corners(f, 0), corners(f, 1), corners(f, 2)});
+      for (Eigen::Index v = 0; v < where.rows(); ++v)
+        positions.push_back({where(v, 0), where(v, 1), where(v, 2)});
+    }
+  };
+
   // What does not count as a collision. Two features may collide if some vertex of one may collide with some
-  // vertex of the other. Contacts, crossings at the start and candidates all keep to this.
+  // vertex of the other. Contacts, crossings at the start and candidates all keep to this. Where there are
+  // obstacles, "a vertex" is a vertex of the mesh or of an obstacle.
   struct Exclusions {
-    // Vertices of obstacles, which never collide with each other; empty, or one entry a vertex.
+    // Vertices that never collide with each other, such as a part of the mesh that the caller moves as one
+    // body; empty, or one entry a vertex.
     std::vector<bool> obstacle;
     // The group of each vertex, from 0, and pairs of groups that do not collide; a group may be paired with
     // itself. Empty, or one entry a vertex.
@@ -71,6 +89,7 @@ class CSCD_EXPORT SelfCollision {
     // to be asked from starts in which nothing crosses.
     bool check_start = true;
     Exclusions exclude;
+    std::vector<Obstacle> obstacles;
   };
 
   struct Contact {
@@ -117,11 +136,18 @@ class CSCD_EXPORT SelfCollision {
   SelfCollision(SelfCollision&&) noexcept;
   SelfCollision& operator=(SelfCollision&&) noexcept;
 
+  // Places an obstacle, counted from 0, where it rests in the steps from then on. Moves it: from then on, it
+  // moves from `start` to `end` in every step, as the mesh does, until it is placed or moved again. Both cost
+  // a pass over all obstacles in the next step; obstacles that rest cost nothing of the kind.
+  void place_obstacle(std::size_t obstacle, const Positions& positions);
+  void move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end);
+
   // Returns whether the step is free of contacts, and starts without crossings.
   bool is_free(const Positions& start, const Positions& end);
 
-  // Returns the contacts of the earliest time. The second form uses the memory of `out` again: after the
-  // largest step so far, a step that starts where a free step ended allocates nothing.
+  // Returns contacts of the earliest time, at least one where anything touches. The second form uses the
+  // memory of `out` again: after the largest step so far, a step that starts where a free step ended
+  // allocates nothing.
   Answer first_contact(const Positions& start, const Positions& end);
   void first_contact(const Positions& start, const Positions& end, Answer& out);
 
@@ -134,11 +160,12 @@ class CSCD_EXPORT SelfCollision {
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`
-  // of each other at some t in [0, 1]. Some that do not come that near are among them: all are returned whose
-  // boxes come within the radius along each axis. For a solver that runs a narrow phase of its own.
+  // of each other at some t in [0, 1]. Some that do not come that near are among them: with a radius above 0,
+  // all are returned whose boxes come within the radius along each axis; with radius 0, those among them that
+  // are not proven apart. For a solver that runs a narrow phase of its own.
   Candidates candidates(const Positions& start, const Positions& end, double radius);
 
-  std::size_t vertex_count() const;
+  std::size_t vertex_count() const;  // of the mesh, without obstacles
   std::size_t face_count() const;
   bool closed() const;  // closed, manifold and consistently oriented
 

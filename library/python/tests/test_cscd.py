@@ -1,5 +1,9 @@
 """Tests of the Python module; run by ctest as python_module."""
 import os
+import pathlib
+import subprocess
+import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -67,6 +71,29 @@ class SelfCollision(unittest.TestCase):
         body = cscd.SelfCollision(self.faces, self.before, exclude=apart)
         self.assertTrue(body.is_free(self.before, fallen(self.before, 2)))
 
+    def test_obstacles(self):
+        body = cscd.SelfCollision(self.faces[4:] - 4, self.before[4:], obstacles=[(self.faces[:4], self.before[:4])])
+        start = self.before[4:]
+        answer = body.all_contacts(start, start - [0, 0, 2])
+        self.assertEqual(answer.time, 0.5)
+        self.assertIn(4 + 3, answer.vertices[0])  # the tip of the obstacle, whose vertices are behind the mesh's
+        body.move_obstacle(0, self.before[:4], self.before[:4] - [0, 0, 2])
+        self.assertTrue(body.is_free(start, start - [0, 0, 2]))
+        body.place_obstacle(0, self.before[:4] + [0, 0, 0.5])
+        self.assertEqual(body.first_contact(start, start - [0, 0, 2]).time, 0.25)
+        with self.assertRaisesRegex(ValueError, "obstacle 1: there are 1"):
+            body.place_obstacle(1, start)
+
+    def test_a_call_takes_little_time(self):
+        """A bound that only a call which does something else would miss."""
+        after = fallen(self.before, 0.5)
+        times = []
+        for _ in range(200):
+            begin = time.process_time()
+            self.body.is_free(self.before, after)
+            times.append(time.process_time() - begin)
+        self.assertLess(sorted(times)[100], 1e-3)
+
     def test_candidates(self):
         vertex_face, edge_edge = self.body.candidates(self.before, self.before, 1.1)
         self.assertIn([3, 4], vertex_face.tolist())
@@ -109,6 +136,33 @@ class Read(unittest.TestCase):
         answers = [body.first_contact(a, b) for a, b in zip(frames[:-1], frames[1:])]
         self.assertLess((time.perf_counter() - begin) / len(answers), 0.5)
         self.assertFalse(any(answer.intersects_at_start for answer in answers))
+
+    def test_frames_of_a_model_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            model = os.path.join(folder, "character.glb")
+            subprocess.run([os.environ["CSCD_PROGRAM"], "export", "urchin", model], check=True, capture_output=True)
+            faces, frames = cscd.read(model, program=os.environ["CSCD_PROGRAM"])
+        self.assertEqual(faces.shape[1], 3)
+        self.assertGreater(len(frames), 1)
+        self.assertTrue(cscd.SelfCollision(faces, frames[0]).is_free(frames[0], frames[1]))
+
+    def test_the_picture_of_contact_times(self):
+        try:
+            import h5py
+            import matplotlib  # noqa: F401
+        except ImportError:
+            self.skipTest("h5py or matplotlib is not installed")
+        faces, before = tetrahedra()
+        script = pathlib.Path(__file__).parents[2] / "examples" / "contact_times.py"
+        with tempfile.TemporaryDirectory() as folder:
+            clip, picture = os.path.join(folder, "clip.h5"), os.path.join(folder, "times.png")
+            with h5py.File(clip, "w") as file:  # one falls through the other, and back up
+                file["triangles"] = faces
+                file["positions"] = [fallen(before, by) for by in (0, 0.3, 0.6, 1.3, 1.6, 1.3, 0.6, 0.3)]
+            done = subprocess.run([sys.executable, script, clip, picture], check=True, capture_output=True, text=True)
+            self.assertIn("2 of 7 steps touch; 3 start with crossings", done.stdout)
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(4), b"\x89PNG")
 
     def test_what_cannot_be_read(self):
         with self.assertRaisesRegex(ValueError, "nothing.glb"):
