@@ -53,7 +53,7 @@ try {
   require(different(first, await look()) === 0, "one view gives two pictures");
 
   // The slider and the keys change the frame.
-  const moments = await page.evaluate(() => window.cscd.momentsOf(window.cscd.active).length);
+  const moments = await page.evaluate(() => window.cscd.moments.length);
   const before = await clock();
   await page.click("#whole");
   await settle();
@@ -116,7 +116,7 @@ try {
     if (await one.count()) {
       await one.click();
       await settle();
-      const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.timeOf(window.cscd.active, window.cscd.chosen)]);
+      const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.recording.strategies[window.cscd.strategy].contact_time[window.cscd.chosen.contact] / 65535]);
       require(pinned[0] === pinned[1], "the surface is not shown at the contact's time");
     }
     await picture("contact");
