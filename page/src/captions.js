@@ -67,7 +67,7 @@ export class Captions {
     }
     if (observers && strategy.observers?.length > 0) {
       const { offset } = strategy.observers[Math.min(cover, strategy.observers.length - 1)];
-      rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}: points, and segments with two ends`));
+      rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}${strategy.has_patches ? "" : ": points, or bones as segments"}`));
     }
     if (chosen && chosen.contact !== undefined) rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     byId("legend").replaceChildren(...rows);

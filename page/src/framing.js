@@ -45,7 +45,7 @@ export class Framing {
     for (let c = contactOffset[interval]; c < contactOffset[interval + 1]; ++c) take(marker.contactPoint(strategy, interval, c));
     for (let i = crossingOffset[interval]; i < crossingOffset[interval + 1]; ++i) take(marker.pointOf(strategy, { interval, pair: i }));
     // Close enough to see single triangles there, and far enough to see what they belong to.
-    const radius = Math.min(0.36 * whole.radius, Math.max(0.11 * whole.radius, 2 * spread, 8 * this.edgeNear(point, 0.1 * whole.radius)));
+    const radius = Math.min(0.36 * whole.radius, Math.max(0.11 * whole.radius, 1.6 * spread, 8 * this.edgeNear(point, 0.1 * whole.radius)));
     if (!this.opened) {
       stage.controls.target.copy(whole.center);
       stage.camera.position.copy(this.broadSide()).multiplyScalar(3).add(whole.center);

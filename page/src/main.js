@@ -262,6 +262,7 @@ function fail(error) {
   byId("verdict").textContent = "This page cannot be shown.";
   byId("details").textContent = error instanceof RangeError
     ? "The recording is larger than this browser can hold; write it again with fewer frames: cscd view INPUT --frames A:B"
+    : error instanceof SyntaxError ? "The page is damaged. Write it again with cscd view."
     : String(error.message || error);
   console.warn(error);
 }

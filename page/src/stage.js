@@ -103,6 +103,7 @@ export class Marks {
   setChosen(numbers) { setDots(this.chosen, numbers, numbers.length ? [1] : []); }
   setLines(name, numbers) { setLines(this[name], numbers); }
   setObservers(points, pointColours, segments, segmentColours) {
+    this.observers.material.uniforms.size.value = points.length > 180 ? 8 : 12;  // more than 60 points would cover each other
     setDots(this.observers, points, new Array(points.length / 3).fill(0.8), pointColours);
     setLines(this.observerEdges, segments);
     setLines(this.observerSegments, segments, segmentColours);
