@@ -159,8 +159,8 @@ try {
   await page.click("#theme");
   await picture("other-theme");
   await page.setViewportSize({ width: 390, height: 844 });
-  await page.waitForTimeout(100);
-  require(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "the page is wider than a phone");
+  await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth, null, { timeout: 10000 })
+    .catch(() => { throw new Error("the page is wider than a phone"); });
   await picture("phone");
 
   require(complaints.length === 0, `the browser complains: ${complaints[0]}`);

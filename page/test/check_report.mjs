@@ -62,8 +62,8 @@ try {
   await page.click("#theme");
   if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-dark.png") });
   await page.setViewportSize({ width: 390, height: 844 });
-  await page.waitForTimeout(150);
-  require(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "the page is wider than a phone");
+  await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth, null, { timeout: 10000 })
+    .catch(() => { throw new Error("the page is wider than a phone"); });
   require(complaints.length === 0, `the browser complains: ${complaints[0]}`);
   require(requests.length === (views > 0 ? 2 : 1), `the page asks for ${requests.at(-1)}`);
   const painted = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0].startTime);
