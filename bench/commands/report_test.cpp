@@ -62,6 +62,20 @@ TEST_F(ReportPage, ADamagedPageSaysSoInOneLine) {
   EXPECT_NE(ran.out.find("The page is damaged"), std::string::npos) << ran.out;
 }
 
+TEST_F(ReportPage, HostileNamesAreText) {
+  ASSERT_EQ(run("sed 's/\"name\": \"small\"/\"name\": \"<img src=x onerror=alert(1)>\"/' small.json > "
+                "hostile.json; "
+                "cscd report hostile.json -o site")
+                .status,
+            0);
+  EXPECT_EQ(text("site/index.html").find("<img"), std::string::npos);
+  EXPECT_NE(text("site/index.html").find("\\u003cimg"), std::string::npos);
+  const Ran ran =
+      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' site/index.html");
+  if (ran.status == 77) GTEST_SKIP() << ran.out;
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
+}
+
 // Everything at once: records of all kinds, a history and replays.
 TEST_F(ReportPage, ABrowserShowsIt) {
   ASSERT_EQ(

@@ -58,6 +58,7 @@ try {
     require((await page.evaluate(() => window.report.interval)) !== before, "arrow keys do not move along the chart");
     require((await page.textContent("#interval-link")).startsWith("interval "), "no link leads to the replay");
   }
+  require((await page.locator("img, object, embed, link").count()) === 0, "a name became an element");
   if (picture) await page.screenshot({ path: picture, fullPage: true });
   await page.click("#theme");
   if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-dark.png") });
