@@ -36,10 +36,11 @@ class RvbcCuller : public Culler {
 
   bool classify(const Motion& motion, const Rig::Interval* bones) override {
     table_.update(motion);
+    observers_.clear();
     for (std::size_t c = 0; c < kinds_.size(); ++c) {
       const std::size_t bone = +clusters_.clusters[c].bone;
-      table_.classify(c, radial::observer(kinds_[c], bones->start[bone], bones->end[bone]),
-                      hierarchy_.classes(c));
+      observers_.push_back(radial::observer(kinds_[c], bones->start[bone], bones->end[bone]));
+      table_.classify(c, observers_.back(), hierarchy_.classes(c));
     }
     radial_ = hierarchy_.finish_classes();
     radial_.clusters = kinds_.size();
@@ -52,7 +53,7 @@ class RvbcCuller : public Culler {
     return counts;
   }
 
-  RadialView radial_view() const override { return hierarchy_.view(unmerged_); }
+  RadialView radial_view() const override { return hierarchy_.view(unmerged_, observers_); }
 
  private:
   radial::AtomicClusters clusters_;
@@ -60,6 +61,7 @@ class RvbcCuller : public Culler {
   radial::ClusterHierarchy hierarchy_;
   radial::OrientationTable table_;
   std::vector<std::int32_t> unmerged_;
+  std::vector<radial::Observer> observers_;  // [clusters]
   RadialCounts radial_;
 };
 

@@ -32,11 +32,15 @@ const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("ba
 const version = (name) => JSON.parse(readFileSync(join(packages, "node_modules", name, "package.json"), "utf8"));
 const licence = (name) => `${name} ${version(name).version} (${version(name).license} licence)`;
 
-async function pageOf(name, entry, library) {
+// `frames` says which pages the page may show in frames; nothing otherwise.
+async function pageOf(name, entry, library, frames = "") {
   const script = (await bundle(entry)).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
   const style = await bundle(`${name}.css`);
-  const policy = `default-src 'none'; script-src ${digest(script)}; style-src ${digest(style)}; base-uri 'none'; form-action 'none'`;
-  return readFileSync(join(here, "src", `${name}.html`), "utf8")
+  const policy = `default-src 'none'; script-src ${digest(script)}; style-src ${digest(style)}; ${frames}base-uri 'none'; form-action 'none'`;
+  const part = (file) => readFileSync(join(here, "src", file), "utf8");
+  return part(`${name}.html`)
+    .replace("{{head}}", () => part("head.html").trim())
+    .replace("{{name}}", () => name)
     .replace("{{policy}}", () => policy)
     .replace("{{licences}}", () => licence(library))
     .replace("{{style}}", () => style)
@@ -63,7 +67,7 @@ writeFileSync(
 #include "bench/view/viewer_page.h"
 namespace cscd::bench {
 ${functionOf("viewer_page", await pageOf("view", "main.js", "three"))}
-${functionOf("report_page", await pageOf("report", "report.js", "uplot"))}
+${functionOf("report_page", await pageOf("report", "report.js", "uplot", "frame-src 'self'; "))}
 }  // namespace cscd::bench
 `,
 );

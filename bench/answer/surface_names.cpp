@@ -80,8 +80,7 @@ SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
 std::string SurfaceNames::bone_of(VertexId vertex) const {
   if (bone_.empty() || bone_[+vertex] < 0) return {};
   const auto bone = static_cast<std::size_t>(bone_[+vertex]);
-  if (input_.import && bone < input_.import->bones.size() && !input_.import->bones[bone].empty())
-    return input_.import->bones[bone];
+  if (bone < input_.bone_names.size() && !input_.bone_names[bone].empty()) return input_.bone_names[bone];
   return "bone " + std::to_string(bone);
 }
 

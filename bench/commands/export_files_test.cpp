@@ -129,6 +129,8 @@ print(json.dumps(rows)))");
     EXPECT_EQ(rows[2 * i][3], query["import"]["chosen_triangles"]);
     EXPECT_NEAR(rows[2 * i][1].get<double>(), intervals[i]["seconds"].get<double>(), 1e-6);
     touched += rows[2 * i][4]["touches"].get<double>();
+    for (const char* array : {"cluster", "positive", "second_cover", "third_cover", "patch"})
+      EXPECT_TRUE(rows[2 * i][4].contains(array)) << array;
   }
   EXPECT_GT(touched, 0);
 }

@@ -2,13 +2,21 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <sstream>
 #include <vector>
 
 #include "bench/commands/command.h"
+#include "bench/commands/view_page.h"
+#include "bench/history/history.h"
+#include "bench/output/gzip.h"
 #include "bench/output/output.h"
+#include "bench/output/schema.h"
 #include "bench/statistics/statistics.h"
+#include "bench/studies/report_figures.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/paper_tables.h"
 #include "bench/tables/record_inputs.h"
@@ -21,11 +29,48 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kMostRecordBytes = std::size_t{1} << 30;  // of a record, unpacked
+
 struct ReportOptions {
   std::vector<std::string> records;
-  std::string folder;
-  bool force = false;
+  std::string folder, history;
+  bool views = false, force = false;
 };
+
+// The files that were named, by what they hold.
+struct Sources {
+  std::vector<std::string> runs, accuracy, scale;
+};
+
+// Reads a record of any kind whole. Throws InputError for a file that cannot be read or is no JSON object.
+json read_document(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf()))
+    throw InputError("record " + path + ": cannot be read; name a file that cscd wrote");
+  json document = json::parse(without_gzip(text.str(), "record " + path, kMostRecordBytes), nullptr, false);
+  if (!document.is_object())
+    throw InputError("record " + path + ": is no record; name what cscd run, accuracy or scale wrote");
+  return document;
+}
+
+Sources sorted_by_kind(const std::vector<std::string>& paths) {
+  Sources sources;
+  for (const std::string& path : paths) {
+    const json document = read_document(path);
+    const json schema = document.value("schema", json());
+    (schema == "cscd.accuracy/1" ? sources.accuracy
+     : schema == "cscd.scale/1"  ? sources.scale
+                                 : sources.runs)
+        .push_back(path);
+  }
+  if (sources.runs.empty())
+    throw InputError("none of these is a record of cscd run, which a report is about; name at least one");
+  if (sources.accuracy.size() > 1 || sources.scale.size() > 1)
+    throw InputError("record " + (sources.accuracy.size() > 1 ? sources.accuracy : sources.scale)[1] +
+                     ": a second record of this study; give one");
+  return sources;
+}
 
 // The mean over the timed intervals, and of the repetitions the median.
 double typical(const std::vector<std::vector<double>>& repetitions) {
@@ -53,9 +98,41 @@ json strategy_of(const StrategyRecord& strategy) {
   return {{"name", strategy.name}, {"guarantee", strategy.guarantee}, {"counts", counts}, {"stages", stages}};
 }
 
+// What the page says of the record of a study, where there is one: its environment, the command that made
+// it, and its points.
+json study_json(const std::vector<std::string>& paths, const char* schema_file,
+                json (*points)(const json& record), const std::function<std::string(std::string)>& link) {
+  if (paths.empty()) return nullptr;
+  const json record = read_document(paths[0]);
+  if (const std::string violation = schema_violation(record, schema_file); !violation.empty())
+    throw InputError("record " + paths[0] + ": does not follow its schema at " + violation);
+  return {{"file", link(paths[0])},
+          {"command", record.at("command")},
+          {"environment", record.at("environment")},
+          {"data", points(record)}};
+}
+
+// Writes a page of the viewer beside the report for every scene of the records. Returns the pages by scene.
+json write_views(const std::vector<Record>& records, const std::filesystem::path& folder, bool force) {
+  json views = json::object();
+  for (const Record& record : records) {
+    if (!record.scene.path.empty() || views.contains(record.scene.name)) continue;
+    const std::string file = record.scene.name + ".html";
+    OutputFile output(folder / file, force, ".html");
+    ViewRequest request;
+    request.input = record.scene.name;
+    for (const char* strategy : {"drvbc_fast", "drvbc"})
+      if (record.strategy(strategy) != nullptr) request.strategies.emplace_back(strategy);
+    output.commit(view_page(request));
+    views[record.scene.name] = file;
+  }
+  return views;
+}
+
 void report(const ReportOptions& options) {
   require_viewer();
-  const std::vector<Record> records = read_records(options.records);
+  const Sources sources = sorted_by_kind(options.records);
+  const std::vector<Record> records = read_records(sources.runs);
   const std::filesystem::path folder(options.folder), page = folder / "index.html";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -64,26 +141,43 @@ void report(const ReportOptions& options) {
                      "); choose another place");
   OutputFile output(page, options.force, ".html");
 
+  // The page links to the record from where it lies.
+  const auto link = [&](const std::string& path) {
+    const std::filesystem::path file = std::filesystem::relative(path, folder, error);
+    return error ? path : file.generic_string();
+  };
   json rows = json::array();
   std::string command = "cscd report";
+  for (const std::string& path : options.records)
+    command += " " + std::filesystem::path(path).filename().string();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     json strategies = json::array();
     for (const StrategyRecord& strategy : record.strategies) strategies.push_back(strategy_of(strategy));
-    // The page links to the record from where it lies.
-    const std::filesystem::path file = std::filesystem::relative(options.records[r], folder, error);
+    // A record made with the paper's code around every method says so.
     rows.push_back({{"scene", record.scene.name},
-                    {"file", error ? options.records[r] : file.generic_string()},
+                    {"pipeline", read_document(sources.runs[r]).value("pipeline", "today")},
+                    {"file", link(sources.runs[r])},
                     {"counted_intervals", record.counted_intervals},
                     {"strategies", std::move(strategies)}});
-    command += " " + std::filesystem::path(options.records[r]).filename().string();
   }
-  const json tables = tables_json(paper_tables(records), judge_claims(records), records);
-  const std::string text = report_with({{"schema", "cscd.report/1"},
-                                        {"base", ""},
-                                        {"command", command + " -o " + folder.filename().string()},
-                                        {"records", std::move(rows)},
-                                        {"tables", tables}});
+  json history;
+  if (!options.history.empty()) {
+    command += " --history " + std::filesystem::path(options.history).lexically_normal().filename().string();
+    history = courses_json(read_courses(options.history, {"", "", "", "total"}));
+    history["folder"] = link(options.history);
+  }
+  if (options.views) command += " --view";
+  const std::string text =
+      report_with({{"schema", "cscd.report/1"},
+                   {"base", ""},
+                   {"command", command + " -o " + folder.filename().string()},
+                   {"records", std::move(rows)},
+                   {"tables", tables_json(paper_tables(records), judge_claims(records), records)},
+                   {"accuracy", study_json(sources.accuracy, "accuracy.schema.json", accuracy_points, link)},
+                   {"growth", study_json(sources.scale, "scale.schema.json", growth_points, link)},
+                   {"history", std::move(history)},
+                   {"views", options.views ? write_views(records, folder, options.force) : json::object()}});
   output.commit(text);
   std::printf("%s: %.1f MB of %zu records; open it in a browser\n", page.c_str(),
               static_cast<double>(text.size()) / 1e6, records.size());
@@ -97,10 +191,19 @@ void add_report(CLI::App& app) {
       "report",
       "Write one HTML page of the numbers in records: speed, work per interval, stage times, the paper's "
       "tables\n"
-      "published beside measured, and its claims.\n\n"
-      "  cscd report results/FOLDER/{rope,hand}*.json.gz -o site\n\n"
+      "published beside measured, its claims, accuracy against time, growth and history.\n\n"
+      "  cscd report results/FOLDER/{rope,hand}*.json.gz --view -o site\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
-  command->add_option("records", options->records, "what cscd run wrote, at most one a scene")->required();
+  command
+      ->add_option("records", options->records,
+                   "what cscd run wrote, at most one a scene; and what cscd accuracy and cscd scale wrote")
+      ->required();
+  command->add_option("--history", options->history,
+                      "a folder of entries of cscd history, such as results/history, to show too");
+  command->add_flag(
+      "--view", options->views,
+      "write a page of cscd view for every scene too: the interval under the pointer is shown in "
+      "it");
   command->add_option("-o,--out", options->folder, "the folder for the page; made where it is missing")
       ->required();
   command->add_flag("--force", options->force, "replace the page if it exists");

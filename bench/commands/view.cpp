@@ -11,6 +11,7 @@
 #include "bench/command_line/version.h"
 #include "bench/commands/answer_options.h"
 #include "bench/commands/command.h"
+#include "bench/commands/view_page.h"
 #include "bench/input/input.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
@@ -27,13 +28,12 @@ using nlohmann::json;
 
 constexpr std::size_t kMostStrategies = 6;  // side by side; more could not be told apart
 
-struct ViewOptions : AnswerRequest {
-  std::vector<std::string> strategies;
+struct ViewOptions : ViewRequest {
   std::string output;
   bool force = false;
 };
 
-std::vector<const Strategy*> chosen_strategies(const ViewOptions& options, const Input& input) {
+std::vector<const Strategy*> chosen_strategies(const ViewRequest& options, const Input& input) {
   if (options.strategies.empty()) return {&default_strategy(input)};
   std::vector<const Strategy*> chosen;
   for (const std::string& name : options.strategies) chosen.push_back(&strategy_named(name));
@@ -56,14 +56,15 @@ struct Contestant {
   StrategyRecording recording;
 };
 
-void view(const ViewOptions& options) {
+}  // namespace
+
+std::string view_page(const ViewRequest& options) {
   require_viewer();
   require_sound(options);
   for (const std::string& name : options.strategies) strategy_named(name);
   if (options.strategies.size() > kMostStrategies)
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");
-  OutputFile output(options.output, options.force, ".html");
 
   Input input = open_input(options.input, options.model);
   input.threads = options.threads;
@@ -85,8 +86,9 @@ void view(const ViewOptions& options) {
   std::vector<std::unique_ptr<Contestant>> contestants;
   for (const Strategy* strategy : strategies) {
     watchdog.restart();
-    contestants.emplace_back(new Contestant{Answerer(input, *strategy, elementary, options.answers),
-                                            StrategyRecording(input, names, *strategy, elementary)});
+    contestants.emplace_back(
+        new Contestant{Answerer(input, *strategy, elementary, options.answers),
+                       StrategyRecording(input, names, *strategy, elementary, clip.grid())});
   }
   {
     Progress progress("view " + options.input, range.last - range.first);
@@ -129,7 +131,14 @@ void view(const ViewOptions& options) {
                  {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
-  const std::string page = viewer_with(header, sections);
+  return viewer_with(header, sections);
+}
+
+namespace {
+
+void view(const ViewOptions& options) {
+  OutputFile output(options.output, options.force, ".html");
+  const std::string page = view_page(options);
   output.commit(page);
   if (!is_standard_output(options.output))
     std::printf("%s: %.1f MB; open it in a browser\n", options.output.c_str(),

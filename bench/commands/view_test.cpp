@@ -78,6 +78,31 @@ TEST_F(View, GivesTheAnswersOfAQuery) {
   EXPECT_EQ(header_of(text("part.html"))["clip"]["frames"], 5);
 }
 
+TEST_F(View, HoldsCoversPatchesAndObservers) {
+  ASSERT_EQ(run("cscd view small --strategy drvbc_fast --strategy drvbc --strategy base -o page.html").status,
+            0);
+  const json header = header_of(text("page.html"));
+  const auto bytes_of = [&](const std::string& name) {
+    for (const json& section : header["sections"])
+      if (section["name"] == name) return section["raw"].get<int>();
+    return -1;
+  };
+  EXPECT_TRUE(header["strategies"][0]["has_patches"]);
+  EXPECT_FALSE(header["strategies"][1]["has_patches"]);
+  EXPECT_GT(header["strategies"][0]["covers"], 0);
+  EXPECT_EQ(header["strategies"][2]["covers"], 0);
+  EXPECT_EQ(bytes_of("s0.patch"), 4 * header["clip"]["triangles"].get<int>());
+  EXPECT_EQ(bytes_of("s0.cover0.observer_count"), bytes_of("s0.clusters"));
+  for (const char* cover : {"s0.cover0", "s1.cover0"}) {
+    const std::string prefix = std::string(cover) + ".observer_";
+    EXPECT_GT(bytes_of(prefix + "cluster"), 0);
+    EXPECT_EQ(bytes_of(prefix + "place"), 12 * bytes_of(prefix + "cluster"));
+  }
+  EXPECT_EQ(bytes_of("s2.cover0.observer_count"), -1);
+  // A scene's bones have the names of its file, or of its shape.
+  EXPECT_NE(header["texts"].dump().find("bone_1"), std::string::npos) << header["texts"];
+}
+
 TEST_F(View, RefusesWhatItCannotShow) {
   expect_refused(run("cscd view small --strategy drvbc-fast"), "did you mean drvbc_fast?");
   expect_refused(run("cscd view small -o page.txt"), "page.txt");
@@ -108,14 +133,16 @@ TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {
 
 TEST_F(View, ADamagedPageSaysSoInOneLine) {
   ASSERT_EQ(run("cscd view small -o page.html").status, 0);
-  std::string page = text("page.html");
-  const std::size_t arrays = page.find("id=\"arrays\">") + 200;
-  page.replace(arrays, 40, std::string(40, 'A'));
-  put("page.html", page);
-  const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check.mjs' '" CSCD_PAGE_PACKAGES "' page.html");
-  if (ran.status == 77) GTEST_SKIP() << ran.out;
-  EXPECT_EQ(ran.status, 1);
-  EXPECT_NE(ran.out.find("is damaged"), std::string::npos) << ran.out;
+  const std::string whole = text("page.html");
+  for (const auto& [element, filler] : {std::pair("arrays", 'A'), {"header", '{'}}) {
+    std::string page = whole;
+    page.replace(page.find("id=\"" + std::string(element) + "\">") + 200, 40, std::string(40, filler));
+    put("page.html", page);
+    const Ran ran = run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check.mjs' '" CSCD_PAGE_PACKAGES "' page.html");
+    if (ran.status == 77) GTEST_SKIP() << ran.out;
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_NE(ran.out.find("is damaged"), std::string::npos) << ran.out;
+  }
 }
 
 }  // namespace

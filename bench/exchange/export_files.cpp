@@ -96,7 +96,9 @@ void export_mesh_cache(Input& input, const fs::path& output, const std::string& 
 
 // What is known about the triangles in one interval. [triangles] each, and [contacts].
 struct IntervalMarks {
-  std::vector<float> touches, crosses, cluster, positive;  // the last two are empty without observers
+  std::vector<float> touches, crosses;
+  // Empty without observers. The clusters are those of the covers of drvbc_fast; -1 where there is none.
+  std::vector<float> cluster, positive, second_cover, third_cover, patch;
   std::vector<Vec3> points;
   std::vector<float> time, kind, normal;  // kind: 0 vertex and face, 1 two edges
 };
@@ -139,6 +141,13 @@ class Marker {
     const RadialView view = observer_.detector->radial_view();
     marks.cluster.assign(view.cluster.begin(), view.cluster.end());
     marks.positive.assign(view.positive.begin(), view.positive.end());
+    marks.patch.assign(view.patch.begin(), view.patch.end());
+    std::vector<float>* const covers[] = {&marks.second_cover, &marks.third_cover};
+    for (std::size_t c = 0; c < std::size(covers); ++c)
+      if (c < view.further_covers.size())
+        covers[c]->assign(view.further_covers[c].cluster.begin(), view.further_covers[c].cluster.end());
+      else
+        covers[c]->assign(triangles, -1.0F);
     return marks;
   }
 
@@ -178,6 +187,9 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     cells("crosses_at_start", marks.crosses);
     cells("cluster", marks.cluster);
     cells("positive", marks.positive);
+    cells("second_cover", marks.second_cover);
+    cells("third_cover", marks.third_cover);
+    cells("patch", marks.patch);
     scenes::VtkSurface points(marks.points, {});
     points.add("time_in_interval", marks.time);
     points.add("two_edges", marks.kind);

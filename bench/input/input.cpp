@@ -11,12 +11,12 @@
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"
+#include "scenes/shape/rows.h"
 
 namespace cscd::bench {
 namespace {
 
-std::unique_ptr<scenes::ClipSource> open_scene_named(const std::string& name) {
-  const scenes::Scene scene = scenes::load_scene(name);
+std::unique_ptr<scenes::ClipSource> clip_of(const scenes::Scene& scene, const std::string& name) {
   if (!scene.expected.digest)
     std::fprintf(stderr,
                  "note: %s promises no digest, so its frames may be any; cscd scene accept FILE writes it\n",
@@ -60,24 +60,30 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::unique_ptr<scenes::ClipSource> clip;
   std::optional<scenes::ImportReport> import;
   std::optional<scenes::SourceMap> sources;
+  std::vector<std::string> bone_names;
   if (model) {
     ImportedModel imported = import_model(name, options);
     scenes::limit_memory(options.answer_memory_mib << 20);
     clip = std::move(imported.clip);
     import = std::move(imported.report);
+    bone_names = import->bones;
     sources = std::move(imported.sources);
   } else if (is_point_cache(name)) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
   } else {
-    clip = open_scene_named(name);
+    const scenes::Scene scene = scenes::load_scene(name);
+    clip = clip_of(scene, name);
+    bone_names = scenes::make_shape(scene.shape, scene.shape_parameters).bone_names;
   }
   const scenes::ClipHeader& header = clip->header();
   TriangleMesh mesh(header.triangles, header.vertex_count, name);
   std::optional<Rig> rig = scenes::rig_of(*clip);
   const scenes::FrameView first = clip->load_frame(0);
   std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-  return {name,           std::move(clip),   std::move(mesh),   std::move(reference),
-          std::move(rig), std::move(import), std::move(sources)};
+  Input input{name,           std::move(clip),   std::move(mesh),   std::move(reference),
+              std::move(rig), std::move(import), std::move(sources)};
+  input.bone_names = std::move(bone_names);
+  return input;
 }
 
 void say_what_was_read(const Input& input, std::FILE* to) {

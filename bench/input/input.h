@@ -27,6 +27,7 @@ struct Input {
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
   int threads = 1;                                            // for whatever can use them
   bool use_bones = true;                                      // for strategies that can do without
+  std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
   std::span<const Vec3> rest() const {

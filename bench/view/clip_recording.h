@@ -18,6 +18,8 @@ class ClipRecording {
   // frames would be too large for a browser.
   ClipRecording(Input& input, const IntervalRange& range);
 
+  const ViewGrid& grid() const { return grid_; }
+
   // Adds frames, in order: range.first to range.last.
   void add_frame(const scenes::FrameView& frame);
   // Adds the predicted end of the interval that begins at the frame added last.

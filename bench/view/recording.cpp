@@ -48,9 +48,31 @@ void ViewBits::append(const std::vector<bool>& bits) {
   last_ = std::move(packed);
 }
 
+void ObserverRecording::add(const std::vector<RadialView::Observer>& observers, const ViewGrid& grid,
+                            const std::function<std::uint16_t(std::int32_t)>& label) {
+  count_.push_back(count(observers.size()));
+  for (const RadialView::Observer& observer : observers) {
+    cluster_.push_back(label(observer.cluster));
+    for (const Vec3& x : {observer.head.start, observer.head.end, observer.tail.start, observer.tail.end})
+      for (int axis = 0; axis < 3; ++axis)
+        place_.push_back(static_cast<std::int16_t>(
+            std::clamp((x[axis] - grid.origin()[axis]) / (4 * grid.step()), -32767.0, 32767.0)));
+  }
+}
+
+void ObserverRecording::write(Sections& sections, const std::string& prefix) const {
+  bench::add(sections, prefix + "observer_count", count_);
+  bench::add(sections, prefix + "observer_cluster", cluster_);
+  bench::add(sections, prefix + "observer_place", place_);
+}
+
 StrategyRecording::StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
-                                     const ElementaryTest& elementary)
-    : input_(input), names_(names), strategy_(strategy), prepared_(strategy.make(input.setup(elementary))) {
+                                     const ElementaryTest& elementary, const ViewGrid& grid)
+    : input_(input),
+      names_(names),
+      strategy_(strategy),
+      prepared_(strategy.make(input.setup(elementary))),
+      grid_(grid) {
   if (prepared_.preparation.atomic_clusters > std::numeric_limits<std::uint16_t>::max())
     throw InputError("strategy " + std::string(strategy.name) +
                      ": made more than 65535 clusters, more than a page shows; choose a --component");
@@ -134,6 +156,15 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   }
   for (std::size_t a = 0; a < label.size(); ++a)
     cluster_of_atomic_.push_back(first.try_emplace(label[a], static_cast<std::uint16_t>(a)).first->second);
+
+  observers_.resize(1 + view.further_covers.size());
+  observers_[0].add(view.observers, grid_, [&](std::int32_t cluster) { return first.at(cluster); });
+  for (std::size_t c = 0; c < view.further_covers.size(); ++c)
+    observers_[c + 1].add(view.further_covers[c].observers, grid_,
+                          [](std::int32_t cluster) { return static_cast<std::uint16_t>(cluster); });
+  if (!further_covers_.empty() || !patch_.empty()) return;
+  for (const RadialView::Cover& cover : view.further_covers) further_covers_.push_back(cover.cluster);
+  patch_ = view.patch;
 }
 
 json StrategyRecording::write(Sections& sections, const std::string& prefix, const Crossings& rest,
@@ -165,6 +196,11 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
     put("cluster_of_atomic", cluster_of_atomic_);
     put("positive", positive_.bytes());
     put("clusters", clusters_);
+    for (std::size_t c = 0; c < observers_.size(); ++c)
+      observers_[c].write(sections, prefix + "cover" + std::to_string(c) + ".");
+    for (std::size_t c = 0; c < further_covers_.size(); ++c)
+      put(("cover" + std::to_string(c + 1) + ".cluster").c_str(), further_covers_[c]);
+    put("patch", patch_);
   }
   return {{"name", strategy_.name},
           {"guarantee", to_string(strategy_.guarantee)},
@@ -172,6 +208,8 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
           {"answered_by", answered_by_},
           {"atomic_clusters", prepared_.preparation.atomic_clusters},
           {"has_clusters", has_clusters()},
+          {"covers", observers_.size()},
+          {"has_patches", !patch_.empty()},
           {"summary", summary_json(input_, summary_)},
           {"text", summary_text(input_, names_, summary_, rest, left_out)}};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,7 +11,9 @@
 #include "bench/answer/answer_summary.h"
 #include "bench/answer/surface_names.h"
 #include "bench/input/input.h"
+#include "bench/view/position_coder.h"
 #include "bench/view/sections.h"
+#include "core/detect/radial_view.h"
 
 namespace cscd::bench {
 
@@ -35,6 +38,26 @@ class ViewBits {
   std::vector<std::uint8_t> bytes_, last_;
 };
 
+// Collects where the observers of one cover stood, interval by interval, as places on a grid.
+class ObserverRecording {
+ public:
+  // Adds the observers of one interval. `label` gives the number by which the page knows an observer's
+  // cluster.
+  void add(const std::vector<RadialView::Observer>& observers, const ViewGrid& grid,
+           const std::function<std::uint16_t(std::int32_t)>& label);
+  void write(Sections& sections, const std::string& prefix) const;
+
+  const std::vector<std::uint16_t>& clusters() const { return cluster_; }
+  const std::vector<std::int16_t>& places() const { return place_; }
+
+ private:
+  std::vector<std::uint32_t> count_;    // [intervals]
+  std::vector<std::uint16_t> cluster_;  // [observers]
+  // [observers][x, y, z]: head at the start and at the end of the interval, and so the tail. A unit is a
+  // step of the grid times 4, counted from the grid's origin; what lies outside is moved to the border.
+  std::vector<std::int16_t> place_;
+};
+
 // Collects what a page shows of one strategy: its answer to each interval, and how its observers saw the
 // surface. All arrays are in the order of the intervals that were added.
 class StrategyRecording {
@@ -44,8 +67,9 @@ class StrategyRecording {
   static constexpr std::size_t kMostContacts = 2000, kMostStartPairs = 4000;
 
   // Prepares the strategy once more, to ask its observers: an Answerer may have another strategy answer.
+  // Observers are placed on `grid`, which must outlive the recording.
   StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
-                    const ElementaryTest& elementary);
+                    const ElementaryTest& elementary, const ViewGrid& grid);
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
   // Tells how long the preparation of what answers took.
@@ -64,6 +88,7 @@ class StrategyRecording {
   const SurfaceNames& names_;
   const Strategy& strategy_;
   Prepared prepared_;
+  const ViewGrid& grid_;
   AnswerSummary summary_;
   std::vector<std::string> answered_by_;
 
@@ -82,6 +107,10 @@ class StrategyRecording {
   std::vector<std::int32_t> crossing_;            // [crossing pairs][2]: triangles
   ViewBits touched_, positive_;                   // [intervals][triangles]
   std::vector<std::uint16_t> cluster_of_atomic_;  // [intervals][atomic clusters]
+  std::vector<ObserverRecording> observers_;      // [covers in use]
+  // The same in every interval: clusters of the covers behind the first, and patches.
+  std::vector<std::vector<std::int32_t>> further_covers_;
+  std::vector<std::int32_t> patch_;
 };
 
 }  // namespace cscd::bench

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "bench/view/clip_recording.h"
 #include "bench/view/html.h"
 #include "bench/view/position_coder.h"
 #include "bench/view/recording.h"
 #include "bench/view/sections.h"
 #include "bench/view/viewer_page.h"
 #include "core/base/error.h"
+#include "core/mesh/test_shapes.h"
 
 // What the page is made of: arrays, places on a grid, and text that cannot leave its element.
 namespace cscd::bench {
@@ -102,11 +104,40 @@ TEST(PositionCoder, TakesASurfaceOfOnePoint) {
   EXPECT_EQ(decoded(coder.bytes(), 1, 12)[0], std::vector<std::uint16_t>(12, 0));
 }
 
+TEST(ClipRecording, RefusesMoreThanABrowserOpens) {
+  const test::Shape shape = test::octahedron();
+  Input input{"long", nullptr, shape.mesh(), shape.positions, {}};
+  try {
+    const ClipRecording recording(input, {0, 100'000'000});
+    FAIL() << "a page of 100 million frames";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("--frames A:B"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ViewBits, AreDifferencesFromTheRowBefore) {
   ViewBits bits;
   bits.append({true, false, false, false, false, false, false, false, true});
   bits.append({true, true, false, false, false, false, false, false, true});
   EXPECT_EQ(bits.bytes(), (std::vector<std::uint8_t>{1, 1, 2, 0}));
+}
+
+TEST(ObserverRecording, KeepsWhereObserversStood) {
+  ViewGrid grid;
+  grid.include(std::vector<Vec3>{Vec3(-1, -1, -1), Vec3(3, 0, 0)});
+  ObserverRecording recording;
+  const Vec3 head(1, 0.5, -2), tail(2.5, 0, 7);
+  const RadialView::Observer far{0, {Vec3::Constant(1e9), head}, {head, head}};
+  recording.add({{3, {head, tail}, {tail, head}}, far}, grid,
+                [](std::int32_t cluster) { return static_cast<std::uint16_t>(10 * cluster); });
+  EXPECT_EQ(recording.clusters(), (std::vector<std::uint16_t>{30, 0}));
+  const std::vector<std::int16_t>& places = recording.places();
+  ASSERT_EQ(places.size(), 24u);
+  const Vec3 expected[] = {head, tail, tail, head};
+  for (int i = 0; i < 12; ++i)
+    EXPECT_NEAR(grid.origin()[i % 3] + 4 * grid.step() * places[static_cast<std::size_t>(i)],
+                expected[i / 3][i % 3], 4.001 * grid.step());
+  EXPECT_EQ(places[12], 32767);  // far outside the box: moved to the border
 }
 
 TEST(Html, NoTextLeavesItsElement) {

@@ -51,7 +51,7 @@ class DrvbcCuller : public Culler {
     return counts;
   }
 
-  RadialView radial_view() const override { return hierarchy_.view(mega_.labels()); }
+  RadialView radial_view() const override { return hierarchy_.view(mega_.labels(), mega_.observers()); }
 
  private:
   radial::AtomicClusters clusters_;

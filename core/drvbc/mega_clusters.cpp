@@ -28,6 +28,7 @@ MegaClusters::MegaClusters(const radial::AtomicClusters& atomic, const Rig& rig,
       label_(seeds_.size()),
       suspects_(seeds_.size()),
       refused_by_(seeds_.size()) {
+  observers_.reserve(seeds_.size());
   std::iota(seeds_.begin(), seeds_.end(), std::size_t{0});
   std::mt19937 random(kPreparationSeed);
   shuffle(seeds_, random);
@@ -37,15 +38,17 @@ void MegaClusters::regrow(const OrientationTable& table, const Rig::Interval& bo
                           ClusterHierarchy& hierarchy) {
   std::fill(label_.begin(), label_.end(), kUnassigned);
   std::fill(refused_by_.begin(), refused_by_.end(), kUnassigned);
-  count_ = 0;
+  observers_.clear();
   for (const std::size_t seed : seeds_) {
     if (label_[seed] != kUnassigned) continue;
-    const auto mega = static_cast<std::int32_t>(count_++);
+    const auto mega = static_cast<std::int32_t>(count());
     label_[seed] = mega;
     members_.assign(1, seed);
     const std::size_t bone = +atomic_.clusters[seed].bone;
     Observer observer = radial::observer(kinds_[seed], bones.start[bone], bones.end[bone]);
-    if (!merge_first_neighbour(seed, observer, table, bones, hierarchy)) {
+    const bool merged = merge_first_neighbour(seed, observer, table, bones, hierarchy);
+    observers_.push_back(observer);
+    if (!merged) {
       table.classify(seed, observer, hierarchy.classes(seed));
       continue;
     }

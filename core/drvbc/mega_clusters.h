@@ -36,7 +36,9 @@ class MegaClusters {
 
   // [atomic clusters]: the mega cluster of each.
   std::span<const std::int32_t> labels() const { return label_; }
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return observers_.size(); }
+  // [mega clusters]: where the observer of each stood in the last interval.
+  std::span<const radial::Observer> observers() const { return observers_; }
 
  private:
   bool fits(std::size_t cluster, const radial::Observer& observer, const radial::OrientationTable& table,
@@ -53,7 +55,7 @@ class MegaClusters {
   bool cache_;
   std::vector<std::size_t> seeds_;   // all atomic clusters, in the order in which they become seeds
   std::vector<std::int32_t> label_;  // [atomic clusters]
-  std::size_t count_ = 0;
+  std::vector<radial::Observer> observers_;
   // The paper's cache. Members that were not positive in the last interval are looked at first, because they
   // will probably decide against a merge. The cache saves work and never changes a decision (rule
   // fresh-detector).

@@ -172,6 +172,9 @@ TEST(MegaClusters, EveryMemberIsClassifiedTowardsTheOneObserverAndBelowGamma) {
           std::vector<std::size_t> members;
           for (std::size_t c = 0; c < result.labels.size(); ++c)
             if (result.labels[c] == label) members.push_back(c);
+          const radial::Observer& told = machine.mega.observers()[static_cast<std::size_t>(label)];
+          for (const std::size_t c : members)
+            EXPECT_EQ(result.classes[c], machine.expected(c, told, interval));
           if (members.size() == 1) {
             ++alone;
             const std::size_t c = members[0], bone = +body.clusters.clusters[c].bone;

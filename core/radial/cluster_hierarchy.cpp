@@ -76,7 +76,8 @@ CullCounts ClusterHierarchy::cull(std::span<const std::int32_t> merged, Triangle
   return counts;
 }
 
-RadialView ClusterHierarchy::view(std::span<const std::int32_t> merged) const {
+RadialView ClusterHierarchy::view(std::span<const std::int32_t> merged,
+                                  std::span<const Observer> observers) const {
   RadialView view{std::vector<std::int32_t>(mesh_.triangle_count()),
                   std::vector<bool>(mesh_.triangle_count())};
   for (std::size_t c = 0; c < groups_.size(); ++c)
@@ -85,6 +86,9 @@ RadialView ClusterHierarchy::view(std::span<const std::int32_t> merged) const {
       view.cluster[triangle] = merged[c];
       view.positive[triangle] = class_of_leaf_[first_leaf_[c] + i] == Orientation::positive;
     }
+  for (const Observer& observer : observers)
+    view.observers.push_back(
+        {static_cast<std::int32_t>(view.observers.size()), observer.head, observer.tail});
   return view;
 }
 

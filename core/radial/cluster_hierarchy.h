@@ -47,8 +47,8 @@ class ClusterHierarchy {
   // Passes on the pairs of triangles that have to be tested when atomic clusters with the same label act as
   // one cluster. Returns the number of overlap tests.
   CullCounts cull(std::span<const std::int32_t> merged, TrianglePairSink& sink) const;
-  // How these clusters see the surface, triangle by triangle.
-  RadialView view(std::span<const std::int32_t> merged) const;
+  // How these clusters see the surface, triangle by triangle. `observers` holds the observer of each label.
+  RadialView view(std::span<const std::int32_t> merged, std::span<const Observer> observers) const;
 
  private:
   const TriangleMesh& mesh_;

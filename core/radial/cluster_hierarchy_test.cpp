@@ -110,7 +110,15 @@ TEST(ClusterHierarchy, ShowsTheClassAndTheLabelOfEveryTriangle) {
   Scene scene(test::torus(), 2, 5);
   scene.set_classes(30, 20);
   const std::vector<std::int32_t> merged = scene.random_labels(3);
-  const RadialView view = scene.hierarchy.view(merged);
+  const Observer observers[] = {
+      Observer::point({Vec3(1, 2, 3), Vec3(4, 5, 6)}),
+      Observer::segment({Vec3::Zero(), Vec3::Ones()}, {Vec3::Ones(), Vec3::Zero()})};
+  const RadialView view = scene.hierarchy.view(merged, observers);
+  ASSERT_EQ(view.observers.size(), 2u);
+  EXPECT_EQ(view.observers[0].cluster, 0);
+  EXPECT_EQ(view.observers[0].tail.end, Vec3(4, 5, 6));
+  EXPECT_EQ(view.observers[1].cluster, 1);
+  EXPECT_EQ(view.observers[1].tail.end, Vec3(0, 0, 0));
   ASSERT_EQ(view.cluster.size(), scene.mesh.triangle_count());
   for (std::size_t t = 0; t < view.cluster.size(); ++t) {
     EXPECT_EQ(view.cluster[t], merged[static_cast<std::size_t>(scene.clusters.of_triangle[t])]);

@@ -1,7 +1,7 @@
 // Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one.
 
 const TYPES = {
-  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i32: Int32Array, f32: Float32Array,
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array, f32: Float32Array,
 };
 
 function fromBase64(text) {
@@ -57,6 +57,12 @@ function strategyOf(row, arrays, prefix, triangles) {
   const rowBytes = Math.ceil(triangles / 8);
   undoDifferences(strategy.touched, rowBytes);
   if (row.has_clusters) undoDifferences(strategy.positive, rowBytes);
+  // Of each cover: the observers of interval i are numbers offset[i] to offset[i + 1]. `place` holds twelve numbers of each.
+  strategy.observers = Array.from({ length: row.covers || 0 }, (_, c) => ({
+    offset: offsets(strategy[`cover${c}.observer_count`]),
+    cluster: strategy[`cover${c}.observer_cluster`],
+    place: strategy[`cover${c}.observer_place`],
+  }));
   return strategy;
 }
 
@@ -105,6 +111,8 @@ export async function loadRecording() {
     part: arrays.part,
     bones: arrays.bones,
     strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
+    // A unit of observers' places is four steps of the grid.
+    observerToView: (place, axis) => (4 * place) / 65535 - middle[axis],
     toView: (x, axis) => (x - clip.grid.origin[axis]) / side - middle[axis],
   };
 }

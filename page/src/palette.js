@@ -1,6 +1,6 @@
 // Colours that colour-blind readers can tell apart: Okabe and Ito's, as in scripts/lib/charts.py.
 export const ORANGE = "#E69F00", BLUE = "#0072B2", GREEN = "#009E73", PINK = "#CC79A7", RED = "#D55E00", SKY = "#56B4E9",
-  YELLOW = "#F0E442", SKIN = "#C9D3DB", GREY = "#AEB6BD";
+  YELLOW = "#F0E442", CROSSED = "#F3B493", SKIN = "#C9D3DB", GREY = "#AEB6BD";
 export const CLUSTERS = [BLUE, ORANGE, SKY, RED, GREEN, YELLOW, PINK];
 
 export const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
@@ -33,12 +33,12 @@ export function edgeNeighbours(corners, vertices) {
   return pairs;
 }
 
-// The groups that touch each group, for groups numbered from 0.
+// The groups that touch each group, for groups numbered from 0; negative numbers are no group.
 export function groupNeighbours(pairs, groupOf, groups) {
   const neighbours = Array.from({ length: groups }, () => new Set());
   for (let i = 0; i < pairs.length; i += 2) {
     const a = groupOf(pairs[i]), b = groupOf(pairs[i + 1]);
-    if (a !== b) {
+    if (a !== b && a >= 0 && b >= 0) {
       neighbours[a].add(b);
       neighbours[b].add(a);
     }

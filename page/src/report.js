@@ -1,54 +1,56 @@
-import uPlot from "uplot";
-import { BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY } from "./palette.js";
+// The report: the numbers of records in one page. Charts are in charts.js; accuracy, growth and history in studies.js.
+import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, short } from "./charts.js";
+import { byId, element, isDark, prefersDark, radios, setDark } from "./dom.js";
+import { BLUE, ORANGE, SKY } from "./palette.js";
+import { showAccuracy, showGrowth, showHistory } from "./studies.js";
+import { tableOf } from "./tables.js";
 
-const byId = (id) => document.getElementById(id);
-// One look of a strategy everywhere, as in scripts/lib/charts.py: a family has one colour, and dashes tell its members apart.
-const LOOKS = [["base", "#000000"], ["aabb", SKY], ["mcd", ORANGE], ["selfccd", GREEN], ["embree", SKY], ["cgal_boxes", SKY], ["fcl", GREY], ["rvbc", PINK], ["drvbc", BLUE], ["drvbc_fast", RED]];
 const FIRST_SHOWN = new Set(["base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast", "drvbc_fast_complete"]);
 const STAGES = [["refit", "#999999"], ["rv_update", SKY], ["traversal", ORANGE], ["elementary", BLUE]];
 const COMPLETE_BASELINES = ["base", "aabb", "mcd", "selfccd", "embree", "cgal_boxes"];
 const COUNTERS = [["bvot", "overlap tests of bounding volumes (Figure 11)"], ["pctp", "triangle pairs left by culling (Figure 12)"], ["elementary_tests", "elementary tests"], ["not_positive", "triangles that are not positive"]];
 
-function element(tag, text, className) {
-  const made = document.createElement(tag);
-  if (text !== undefined) made.textContent = text;
-  if (className) made.className = className;
-  return made;
-}
-const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 const withInterval = (cell) => short(cell.measured) + (cell.interval ? ` [${short(cell.interval[0])}, ${short(cell.interval[1])}]` : "");
-const dark = () => document.documentElement.classList.contains("dark");
-function colourOf(name) {
-  const row = LOOKS.filter(([known]) => name === known || name.startsWith(`${known}_`)).at(-1);
-  const colour = row ? row[1] : GREY;
-  return colour === "#000000" && dark() ? "#ffffff" : colour;
-}
-const dashOf = (name, index) => (LOOKS.some(([known]) => known === name) && !["embree", "cgal_boxes"].includes(name) ? [] : [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]][index % 4]);
 
 class Report {
   constructor(data) {
     this.data = data;
     for (const claim of data.tables.claims) claim.verdict = claim.verdict.replaceAll(" ", "_");
+    // Cells by table, scene and key. Where records of both pipelines are given, the headline is about this project's.
     this.cells = new Map();
     for (const table of data.tables.tables)
       for (const row of table.rows)
-        for (const cell of row.cells) this.cells.set(`${table.id} ${row.scene} ${cell.key}`, cell);
+        for (const cell of row.cells) if (cell.pipeline !== "published") this.cells.set(`${table.id} ${row.scene} ${cell.key}`, cell);
+    this.scenes = [...new Set(data.records.map((record) => record.scene))];
+    this.bothPipelines = new Set(data.records.map((record) => record.pipeline)).size > 1;
     this.counter = "pctp";
-    this.scene = data.records[0].scene;
-    document.documentElement.classList.toggle("dark", window.matchMedia("(prefers-color-scheme: dark)").matches);
+    this.record = data.records[0];
+    setDark(prefersDark());
     byId("theme").addEventListener("click", () => {
-      document.documentElement.classList.toggle("dark");
-      this.drawCurves();
+      setDark(!isDark());
+      redrawCharts();
     });
     this.say();
     this.speed();
-    this.makeCurves();
+    this.curves();
+    this.replay();
+  }
+
+  // What lies below the first view.
+  finish() {
+    const { data } = this;
     this.stages();
     this.tables();
     this.claims();
+    this.study("accuracy", data.accuracy, showAccuracy);
+    this.study("growth", data.growth, showGrowth);
+    this.study("history", data.history, showHistory);
     this.records();
-    new ResizeObserver(() => this.plot && this.plot.setSize({ width: byId("chart").clientWidth, height: 380 })).observe(byId("chart"));
+    this.openForPrint();
+    this.whole = true;
   }
+
+  nameOf(record) { return this.bothPipelines ? `${record.scene}, pipeline ${record.pipeline}` : record.scene; }
 
   cell(table, scene, key) {
     const cell = this.cells.get(`${table} ${scene} ${key}`);
@@ -62,7 +64,7 @@ class Report {
   }
 
   say() {
-    const scenes = this.data.records.map((record) => record.scene);
+    const { scenes } = this;
     const times = scenes.map((scene) => this.cell("engine", scene, "fast.median")).filter(Boolean).map((cell) => cell.measured);
     const gains = scenes.map((scene) => this.bestBaseline(scene)).filter(Boolean).map((row) => row.cell.measured);
     const range = (values) => (Math.min(...values) === Math.max(...values) ? short(values[0]) : `${short(Math.min(...values))} to ${short(Math.max(...values))}`);
@@ -89,7 +91,7 @@ class Report {
   }
 
   speed() {
-    const scenes = this.data.records.map((record) => record.scene);
+    const { scenes } = this;
     const rows = [
       ["one query of drvbc_fast, ms (median)", (scene) => this.cell("engine", scene, "fast.median")],
       ["times faster than the best complete baseline", (scene) => this.bestBaseline(scene)?.cell, (scene) => this.bestBaseline(scene)?.name],
@@ -99,7 +101,7 @@ class Report {
         return published === null || published === undefined ? "" : `published ${short(published)}`;
       }],
     ];
-    byId("speed-table").append(this.table(["", ...scenes], rows.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
+    byId("speed-table").append(tableOf(["", ...scenes], rows.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
       const found = cell(scene), td = element("td", found ? withInterval(found) : "not in a table of these records", found ? "" : "none");
       if (note && note(scene)) td.append(element("small", note(scene)));
       return td;
@@ -107,60 +109,105 @@ class Report {
     this.source("speed-source", "Brackets hold 95 % intervals.");
   }
 
-  table(head, rows) {
-    const table = element("table"), top = element("tr");
-    for (const name of head) top.append(element("th", name));
-    table.append(top);
-    for (const row of rows) {
-      const tr = element("tr");
-      for (const cell of row) tr.append(cell instanceof Node ? cell : element("td", cell));
-      table.append(tr);
-    }
-    return table;
-  }
-
-  makeCurves() {
+  curves() {
     const select = byId("scene");
-    for (const { scene } of this.data.records) select.append(new Option(scene, scene));
+    this.data.records.forEach((record, i) => select.append(new Option(this.nameOf(record), String(i))));
+    const choose = () => {
+      byId("counters").update(this.counter);
+      this.chart.draw();
+      this.showReplay();
+    };
     select.addEventListener("change", () => {
-      this.scene = select.value;
-      this.drawCurves();
+      this.record = this.data.records[Number(select.value)];
+      choose();
     });
-    const box = byId("counters");
-    for (const [key, title] of COUNTERS) {
-      const button = element("button", title);
-      button.setAttribute("role", "radio");
-      button.value = key;
-      button.addEventListener("click", () => {
-        this.counter = key;
-        this.drawCurves();
-      });
-      box.append(button);
-    }
-    this.drawCurves();
+    radios(byId("counters"), COUNTERS, (counter) => {
+      this.counter = counter;
+      choose();
+    });
+    byId("counters").update(this.counter);
+    this.chart = new Chart(byId("chart"), 380, () => {
+      const rows = this.record.strategies.filter((strategy) => strategy.counts[this.counter]);
+      return {
+        data: [this.record.counted_intervals, ...rows.map((strategy) => strategy.counts[this.counter].map((value) => (value > 0 ? value : null)))],
+        series: rows.map((strategy, i) => ({
+          label: strategy.name, stroke: colourOf(strategy.name), dash: dashOf(strategy.name, i), show: FIRST_SHOWN.has(strategy.name),
+          value: (_, value) => (value === null || value === undefined ? "" : value.toLocaleString("en")),
+        })),
+        x: { label: "interval", scale: LINEAR },
+        y: { label: "an interval", scale: LOG },
+        hooks: { setCursor: [(plot) => this.point(plot.cursor.idx)] },
+      };
+    });
     this.source("work-source", "Counted, not timed: the numbers are the same on every machine.");
   }
 
-  drawCurves() {
-    for (const button of byId("counters").children) button.setAttribute("aria-checked", String(button.value === this.counter));
-    const record = this.data.records.find((row) => row.scene === this.scene);
-    const rows = record.strategies.filter((strategy) => strategy.counts[this.counter]);
-    const style = getComputedStyle(document.documentElement), text = style.getPropertyValue("--soft"), line = style.getPropertyValue("--line");
-    const axis = { stroke: text, grid: { stroke: line, width: 1 }, ticks: { stroke: line } };
-    const isDecade = (tick) => Math.abs(Math.log10(tick) - Math.round(Math.log10(tick))) < 1e-9;
-    const decades = (_, ticks) => ticks.map((tick) => (isDecade(tick) ? tick : null));
-    const series = rows.map((strategy, i) => ({
-      label: strategy.name, stroke: colourOf(strategy.name), width: 1.6, dash: dashOf(strategy.name, i), show: FIRST_SHOWN.has(strategy.name), points: { show: false },
-      value: (_, value) => (value === null || value === undefined ? "" : value.toLocaleString("en")),
-    }));
-    const data = [record.counted_intervals, ...rows.map((strategy) => strategy.counts[this.counter].map((value) => (value > 0 ? value : null)))];
-    if (this.plot) this.plot.destroy();
-    this.plot = new uPlot({
-      width: byId("chart").clientWidth || 900, height: 380, scales: { x: { time: false }, y: { distr: 3 } },
-      axes: [{ ...axis, label: "interval", labelSize: 18 }, { ...axis, grid: { ...axis.grid, filter: decades }, ticks: { ...axis.ticks, filter: decades }, filter: decades, size: 95, values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : tick.toLocaleString("en"))) }],
-      series: [{ label: "interval" }, ...series],
-    }, data, byId("chart"));
-    this.points = data[0].length;
+  get plot() { return this.chart.plot; }
+
+  // --- The replay --------------------------------------------------------------------------------------------------------
+
+  replay() {
+    const frame = byId("replay");
+    byId("show-replay").addEventListener("click", () => {
+      this.replayShown = !this.replayShown;
+      byId("show-replay").setAttribute("aria-pressed", String(this.replayShown));
+      this.showReplay();
+    });
+    frame.addEventListener("load", () => this.point(this.interval === undefined ? null : this.record.counted_intervals.indexOf(this.interval)));
+    this.replayShown = false;
+    this.showReplay();
+  }
+
+  // Shows the replay of the chosen scene where it was asked for and was written.
+  showReplay() {
+    const page = this.data.views[this.record.scene], frame = byId("replay"), shown = Boolean(page && this.replayShown);
+    byId("show-replay").hidden = !page;
+    byId("replay-missing").hidden = Boolean(page);
+    frame.hidden = !shown;
+    if (shown && frame.getAttribute("src") !== page) frame.setAttribute("src", page);
+    this.sayInterval();
+  }
+
+  // The interval under the pointer, as the place in the list of counted intervals: the replay shows it.
+  point(index) {
+    if (index === null || index === undefined || index < 0) return;
+    this.interval = this.record.counted_intervals[index];
+    if (!byId("replay").hidden) byId("replay").contentWindow.postMessage({ interval: this.interval }, "*");
+    this.sayInterval();
+  }
+
+  sayInterval() {
+    const page = this.data.views[this.record.scene], place = byId("interval-link");
+    place.replaceChildren();
+    if (!page || this.interval === undefined) return;
+    const link = element("a", `interval ${this.interval} of ${this.record.scene} in 3D`);
+    link.href = `${encodeURI(page)}#interval=${this.interval}`;
+    place.append(link);
+  }
+
+  // --- Other parts -------------------------------------------------------------------------------------------------------
+
+  // A part about a study of its own, which is hidden where no record of it was given.
+  study(name, data, show) {
+    byId(name).hidden = !data;
+    document.querySelector(`nav a[href="#${name}"]`).hidden = !data;
+    if (!data) return;
+    show(data);
+    const place = byId(`${name}-source`), link = element("a", (data.file || data.folder).split("/").at(-1));
+    link.href = encodeURI(this.data.base + (data.file || data.folder));
+    place.append("From ", link);
+    if (data.environment) place.append(`, measured on ${data.environment.cpu}, ${data.environment.date.slice(0, 10)}, commit ${data.environment.commit.slice(0, 12)}`);
+    place.append("; made by ", element("code", data.command ? data.command.join(" ") : "cscd history --json"), ".");
+  }
+
+  // Print shows what is folded away on the screen.
+  openForPrint() {
+    let closed = [];
+    window.addEventListener("beforeprint", () => {
+      closed = [...document.querySelectorAll("details:not([open])")];
+      for (const one of closed) one.open = true;
+    });
+    window.addEventListener("afterprint", () => { for (const one of closed) one.open = false; });
   }
 
   stages() {
@@ -178,7 +225,7 @@ class Report {
       if (rows.length === 0) return;
       const details = element("details"), bars = element("div", undefined, "bars");
       details.open = n === 0;
-      details.append(element("summary", record.scene), bars);
+      details.append(element("summary", this.nameOf(record)), bars);
       const total = (strategy) => STAGES.reduce((sum, [stage]) => sum + (strategy.stages[stage] || 0), 0);
       const most = Math.max(...rows.map(total));
       for (const strategy of rows) {
@@ -203,9 +250,9 @@ class Report {
       if (table.rows.length === 0) return;
       const details = element("details"), wide = element("div", undefined, "wide");
       details.open = n < 3;
-      const titles = table.rows[0].cells.map((cell) => [cell.key, cell.title + (cell.unit ? `, ${cell.unit}` : "")]);
-      wide.append(this.table(["", ...table.rows.map((row) => row.scene)], titles.map(([key, title]) => [title, ...table.rows.map((row) => {
-        const cell = row.cells.find((one) => one.key === key);
+      const titles = table.rows[0].cells.map((cell) => [cell, cell.title + (cell.unit ? `, ${cell.unit}` : "") + (this.bothPipelines && cell.pipeline ? `, ${cell.pipeline === "both" ? "both pipelines" : `pipeline ${cell.pipeline}`}` : "")]);
+      wide.append(tableOf(["", ...table.rows.map((row) => row.scene)], titles.map(([{ key, pipeline }, title]) => [title, ...table.rows.map((row) => {
+        const cell = row.cells.find((one) => one.key === key && one.pipeline === pipeline);
         if (!cell) return element("td", "", "none");
         const td = cell.measured === null ? element("td", cell.reason, "none") : element("td", withInterval(cell));
         if (cell.published !== null) td.append(element("small", `published ${short(cell.published)}`));
@@ -231,7 +278,7 @@ class Report {
       }
       return [quote, verdict, element("td", claim.expectation, "text"), evidence];
     });
-    byId("claim-list").append(this.table(["claim", "verdict", "holds where", "evidence"], rows));
+    byId("claim-list").append(tableOf(["claim", "verdict", "holds where", "evidence"], rows));
     this.source("claims-source", "");
   }
 
@@ -242,16 +289,27 @@ class Report {
       cell.append(link);
       const command = element("td", undefined, "text");
       command.append(element("code", record.command.join(" ")));
-      return [record.scene, cell, `${record.environment.date.slice(0, 10)}`, record.environment.commit.slice(0, 12), command];
+      return [this.nameOf(this.data.records[i]), cell, `${record.environment.date.slice(0, 10)}`, record.environment.commit.slice(0, 12), command];
     });
-    byId("record-list").append(this.table(["scene", "record", "date", "commit", "made by"], rows));
+    byId("record-list").append(tableOf(["scene", "record", "date", "commit", "made by"], rows));
   }
 }
 
-try {
+attempt(() => {
   window.report = new Report(JSON.parse(byId("header").textContent));
-} catch (error) {
+  requestAnimationFrame(() => setTimeout(() => attempt(() => window.report.finish())));  // when the first view is painted
+});
+
+function attempt(work) {
+  try {
+    work();
+  } catch (error) {
+    fail(error);
+  }
+}
+
+function fail(error) {
   byId("headline").textContent = "This report cannot be shown.";
-  byId("summary").textContent = String(error.message || error);
+  byId("summary").textContent = error instanceof SyntaxError ? "The page is damaged. Write it again with cscd report." : String(error.message || error);
   console.warn(error);
 }

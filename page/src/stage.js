@@ -13,16 +13,19 @@ THREE.ColorManagement.enabled = false;  // colours are given as the screen shows
 const DOT_VERTEX = /* glsl */ `
   uniform float size;
   in float weight;
+  in vec3 tint;
   out float vWeight;
+  out vec3 vTint;
   void main() {
     vWeight = weight;
+    vTint = tint;
     gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
     gl_PointSize = size * (0.35 + 0.65 * weight);
   }`;
 const DOT_FRAGMENT = /* glsl */ `
   precision highp float;
-  uniform vec3 colour;
   in float vWeight;
+  in vec3 vTint;
   out vec4 outColour;
   void main() {
     float r = 2.0 * length(gl_PointCoord - 0.5);
@@ -30,16 +33,17 @@ const DOT_FRAGMENT = /* glsl */ `
     float alpha = 1.0 - smoothstep(1.0 - edge, 1.0, r);
     if (alpha <= 0.0) discard;
     float inside = 1.0 - smoothstep(0.66 - edge, 0.66, r);
-    outColour = vec4(mix(vec3(1.0), colour, inside), alpha * (0.55 + 0.45 * vWeight));
+    outColour = vec4(mix(vec3(1.0), vTint, inside), alpha * (0.55 + 0.45 * vWeight));
   }`;
 
 // Round dots of a size in pixels, which the surface does not hide.
 function dots(colour, size) {
   const material = new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader: DOT_VERTEX, fragmentShader: DOT_FRAGMENT, transparent: true, depthTest: false,
-    uniforms: { size: { value: size }, colour: { value: new THREE.Color(colour) } },
+    uniforms: { size: { value: size } },
   });
   const points = new THREE.Points(new THREE.BufferGeometry(), material);
+  points.colour = new THREE.Color(colour);
   points.frustumCulled = false;
   points.renderOrder = 5;
   points.visible = false;
@@ -56,20 +60,25 @@ function lines(colour, width, opacity = 1) {
   return made;
 }
 
-function setLines(object, numbers) {
+// `colours` gives red, green and blue of every end, where the lines do not have one colour.
+function setLines(object, numbers, colours) {
   object.visible = numbers.length > 0;
   if (!object.visible) return;
   object.geometry.dispose();
   object.geometry = new LineSegmentsGeometry();
   object.geometry.setPositions(numbers);
+  if (colours) object.geometry.setColors(colours);
 }
 
-function setDots(object, numbers, weights) {
+// `colours` gives red, green and blue of every dot, where the dots do not have one colour.
+function setDots(object, numbers, weights, colours) {
   object.visible = numbers.length > 0;
   object.geometry.dispose();
   object.geometry = new THREE.BufferGeometry();
   object.geometry.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(numbers), 3));
   object.geometry.setAttribute("weight", new THREE.BufferAttribute(Float32Array.from(weights), 1));
+  const tints = colours || weights.flatMap(() => object.colour.toArray());
+  object.geometry.setAttribute("tint", new THREE.BufferAttribute(Float32Array.from(tints), 3));
 }
 
 // The marks of one strategy in the shown interval.
@@ -82,13 +91,23 @@ export class Marks {
     this.normals = lines(BLUE, 2);
     this.first = lines(BLUE, 4);
     this.second = lines(PINK, 4);
-    this.crossings = lines(RED, 3);
-    this.crossingGlow = lines("#7a1f00", 5, 0.35);
-    this.group.add(this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
+    this.crossings = lines(RED, 4);
+    this.crossingGlow = lines("#5a1400", 7, 0.55);
+    this.observers = dots(BLUE, 12);
+    this.observerEdges = lines("#ffffff", 7, 0.8);
+    this.observerSegments = lines("#ffffff", 3.5);
+    this.observerSegments.material.vertexColors = true;
+    this.group.add(this.observerEdges, this.observerSegments, this.observers, this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
   }
   setContacts(numbers, weights) { setDots(this.contacts, numbers, weights); }
   setChosen(numbers) { setDots(this.chosen, numbers, numbers.length ? [1] : []); }
   setLines(name, numbers) { setLines(this[name], numbers); }
+  setObservers(points, pointColours, segments, segmentColours) {
+    this.observers.material.uniforms.size.value = points.length > 180 ? 8 : 12;  // more than 60 points would cover each other
+    setDots(this.observers, points, new Array(points.length / 3).fill(0.8), pointColours);
+    setLines(this.observerEdges, segments);
+    setLines(this.observerSegments, segments, segmentColours);
+  }
 }
 
 const easing = (t) => (t < 0.5 ? 4 * t * t * t : 1 - (2 - 2 * t) ** 3 / 2);

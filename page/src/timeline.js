@@ -1,5 +1,6 @@
 // The bar under the slider: one column for each interval, as high as there are contacts, with the worst moments marked.
 import { ORANGE, RED, YELLOW } from "./palette.js";
+import { momentOf } from "./words.js";
 
 export class Timeline {
   constructor(canvas, recording, seek) {
@@ -29,11 +30,15 @@ export class Timeline {
     return chosen;
   }
 
-  show(strategy, position, label) {
+  show(strategy, position) {
     this.strategy = strategy;
     this.position = position;
-    this.label = label;
     this.draw();
+  }
+
+  labelOf(position) {
+    const { frame, seconds } = momentOf(this.recording, position);
+    return seconds === null ? String(Math.round(frame)) : `${Math.round(frame)} · ${seconds.toFixed(2)} s`;
   }
 
   draw() {
@@ -76,7 +81,7 @@ export class Timeline {
     let free = 0;  // where the next label may begin
     for (let f = 0; f <= n; f += step) {
       context.fillRect(Math.min(width - 1, x(f)), bottom, 1, 4);
-      const text = this.label(f), long = context.measureText(text).width;
+      const text = this.labelOf(f), long = context.measureText(text).width;
       const left = Math.min(width - long, Math.max(0, x(f) - long / 2));
       if (left < free) continue;
       context.fillText(text, left, height - 2);

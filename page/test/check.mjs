@@ -53,7 +53,7 @@ try {
   require(different(first, await look()) === 0, "one view gives two pictures");
 
   // The slider and the keys change the frame.
-  const moments = await page.evaluate(() => window.cscd.momentsOf(window.cscd.active).length);
+  const moments = await page.evaluate(() => window.cscd.moments.length);
   const before = await clock();
   await page.click("#whole");
   await settle();
@@ -92,8 +92,24 @@ try {
     await picture(`colour-${await mode.getAttribute("value")}`);
   }
   const values = await Promise.all(modes.map((mode) => mode.getAttribute("value")));
-  for (const name of ["atomic", "place"])
-    if (values.includes(name)) require(different(pictures[0], pictures[values.indexOf(name)]) > 50, `colour by ${name} changes nothing`);
+  const seen = await page.evaluate(() => { const { active } = window.cscd; return { patch: active.has_patches, cover1: active.covers > 1, atomic: active.has_clusters, place: true }; });
+  for (const name of ["atomic", "place", "patch", "cover1"])
+    if (seen[name] && values.includes(name)) require(different(pictures[0], pictures[values.indexOf(name)]) > 50, `colour by ${name} changes nothing`);
+
+  // Observers are points and segments of the interval's clusters.
+  if (await page.evaluate(() => window.cscd.active.observers.length > 0)) {
+    await page.evaluate(() => window.cscd.setMode("cluster"));
+    const without = await look();
+    await page.click("#show-observers");
+    const shown = await page.evaluate(() => {
+      const { active, stage } = window.cscd, { offset } = active.observers[0], interval = window.cscd.interval();
+      return { points: stage.looks[0].marks.observers.geometry.getAttribute("position").count, least: offset[interval + 1] - offset[interval] };
+    });
+    require(shown.least > 0 && shown.points >= shown.least, `${shown.points} points are shown of ${shown.least} observers`);
+    require(different(without, await look()) > 0, "observers change nothing");
+    await picture("observers");
+    await page.click("#show-observers");
+  }
 
   // A contact in the list moves the camera to it, at its own time.
   if (moments > 0) {
@@ -116,7 +132,7 @@ try {
     if (await one.count()) {
       await one.click();
       await settle();
-      const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.timeOf(window.cscd.active, window.cscd.chosen)]);
+      const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.recording.strategies[window.cscd.strategy].contact_time[window.cscd.chosen.contact] / 65535]);
       require(pinned[0] === pinned[1], "the surface is not shown at the contact's time");
     }
     await picture("contact");
@@ -143,8 +159,8 @@ try {
   await page.click("#theme");
   await picture("other-theme");
   await page.setViewportSize({ width: 390, height: 844 });
-  await page.waitForTimeout(100);
-  require(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "the page is wider than a phone");
+  await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth, null, { timeout: 10000 })
+    .catch(() => { throw new Error("the page is wider than a phone"); });
   await picture("phone");
 
   require(complaints.length === 0, `the browser complains: ${complaints[0]}`);

@@ -10,7 +10,7 @@ const { browser, page, complaints, requests } = await openBrowser(packages, { wi
 try {
   const opened = Date.now();
   await page.goto(pathToFileURL(resolve(file)).href);
-  await page.waitForFunction(() => window.report || document.getElementById("headline").textContent.startsWith("This report cannot"));
+  await page.waitForFunction(() => window.report?.whole || document.getElementById("headline").textContent.startsWith("This report cannot"));
   require(await page.evaluate(() => window.report !== undefined), await page.textContent("#summary"));
   const openedIn = Date.now() - opened;
   const counts = await page.evaluate(() => ({
@@ -28,15 +28,47 @@ try {
   await page.click('#counters button[value="elementary_tests"]');
   require(JSON.stringify(before) !== JSON.stringify(await page.evaluate(() => window.report.plot.data.slice(1))), "another counter changes no curve");
   await page.click('#counters button[value="pctp"]');
+
+  // The other studies, where the report has records of them.
+  const studies = await page.evaluate(() => ["accuracy", "growth", "history"].filter((name) => window.report.data[name]));
+  for (const name of ["accuracy", "growth", "history"])
+    require((await page.locator(`#${name}`).isVisible()) === studies.includes(name), `${name} is shown without a record, or hidden with one`);
+  for (const name of studies) {
+    require((await page.locator(`#${name}-chart canvas`).count()) === 1, `${name} has no chart`);
+    require((await page.textContent(`#${name}-source`)).includes("made by cscd"), `${name} does not say what made it`);
+  }
+  if (studies.includes("accuracy")) {
+    const rows = await page.evaluate(() => window.report.data.accuracy.data.filter((point) => point.ns && point.group === "hard").length);
+    await page.click('#accuracy-groups button[value="hard"]');
+    require((await page.locator("#accuracy-list tr").count()) === rows + 1, "the list of tests does not hold every test");
+  }
+
+  // The replay shows the interval under the pointer, and the one that arrow keys move to.
+  const views = await page.evaluate(() => Object.keys(window.report.data.views).length);
+  if (views > 0) {
+    await page.click("#show-replay");
+    const replay = await page.waitForSelector("#replay").then((frame) => frame.contentFrame());
+    await replay.waitForFunction(() => window.cscd);
+    await page.locator("#chart .u-over").hover({ position: { x: 200, y: 100 } });
+    await replay.waitForFunction((interval) => window.cscd.interval() === interval, await page.evaluate(() => window.report.interval));
+    await page.mouse.move(5, 5);
+    await page.focus("#chart");
+    const before = await page.evaluate(() => window.report.interval);
+    await page.keyboard.press("ArrowRight");
+    require((await page.evaluate(() => window.report.interval)) !== before, "arrow keys do not move along the chart");
+    require((await page.textContent("#interval-link")).startsWith("interval "), "no link leads to the replay");
+  }
+  require((await page.locator("img, object, embed, link").count()) === 0, "a name became an element");
   if (picture) await page.screenshot({ path: picture, fullPage: true });
   await page.click("#theme");
   if (picture) await page.screenshot({ path: picture.replace(/\.png$/, "-dark.png") });
   await page.setViewportSize({ width: 390, height: 844 });
-  await page.waitForTimeout(150);
-  require(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth), "the page is wider than a phone");
+  await page.waitForFunction(() => document.documentElement.scrollWidth <= window.innerWidth, null, { timeout: 10000 })
+    .catch(() => { throw new Error("the page is wider than a phone"); });
   require(complaints.length === 0, `the browser complains: ${complaints[0]}`);
-  require(requests.length === 1, `the page asks for ${requests[1]}`);
-  console.log(JSON.stringify({ page: file, opened_ms: openedIn, ...counts }));
+  require(requests.length === (views > 0 ? 2 : 1), `the page asks for ${requests.at(-1)}`);
+  const painted = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0].startTime);
+  console.log(JSON.stringify({ page: file, first_view_ms: Math.round(painted), opened_ms: openedIn, ...counts }));
 } catch (error) {
   console.log(`${file}: ${error.message}`);
   process.exitCode = 1;

@@ -29,6 +29,7 @@ LocalPositions::LocalPositions(std::span<const Vec3> reference) : scale_(1), rec
 
 void LocalPositions::update(const Motion& motion, const Team& team) {
   const std::size_t count = records_.size();
+  origin_ = motion.start()[0];
   largest_.resize(team.ranges_of(count, kRange));
   team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
     largest_[part] = convert(motion, first, last);
@@ -41,7 +42,7 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
 // Converts a range of vertices and returns the bits of the largest coordinate's size. Bits are ordered as the
 // sizes are, with anything that is not a number above all of them, and their maximum takes one cycle.
 std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
-  const Vec3 o = motion.start()[0];
+  const Vec3& o = origin_;
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
   Int8 most = {};

@@ -28,6 +28,8 @@ class LocalPositions {
   void update(const Motion& motion, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
+  // Returns where a point of local coordinates lies in the scene.
+  Vec3 in_scene(const float (&at)[3]) const { return origin_ + Vec3(at[0], at[1], at[2]) / scale_; }
   // A bound on the error of every coordinate, in local units.
   float error() const { return error_; }
   // False where the motion leaves the range in which errors are known. Nothing may be concluded from the
@@ -38,6 +40,7 @@ class LocalPositions {
   std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last);
 
   double scale_;
+  Vec3 origin_ = Vec3::Zero();  // the first vertex at the start of the interval
   std::vector<Record> records_;
   std::vector<std::int32_t> largest_;  // [ranges of vertices]: the bits of the largest coordinate
   float error_ = 0;

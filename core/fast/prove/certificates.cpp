@@ -234,11 +234,26 @@ void Certificates::label_nodes() {
 }
 
 RadialView Certificates::view() const {
-  RadialView view{covers_[0].cluster_of, std::vector<bool>(covers_[0].cluster_of.size())};
-  for (std::size_t p = 0; p < certified_.size(); ++p)
+  const std::size_t triangles = covers_[0].cluster_of.size();
+  RadialView view{covers_[0].cluster_of, std::vector<bool>(triangles), observers(0)};
+  for (std::size_t c = 1; c < covers_used_; ++c)
+    view.further_covers.push_back({covers_[c].cluster_of, observers(c)});
+  view.patch.resize(triangles);
+  for (std::size_t p = 0; p < certified_.size(); ++p) {
+    for (const TriangleId t : tree_.triangles_of(p)) view.patch[+t] = static_cast<std::int32_t>(p);
     for_each_lane(certified_[p][0].positive,
                   [&](std::size_t lane) { view.positive[+tree_.triangles[p][lane]] = true; });
+  }
   return view;
+}
+
+std::vector<RadialView::Observer> Certificates::observers(std::size_t cover) const {
+  std::vector<RadialView::Observer> observers;
+  for (const Viewpoint& viewpoint : viewpoint_[cover]) {
+    const MovingPoint at{positions_->in_scene(viewpoint.at[0]), positions_->in_scene(viewpoint.at[1])};
+    observers.push_back({static_cast<std::int32_t>(observers.size()), at, at});
+  }
+  return observers;
 }
 
 }  // namespace cscd::fast

@@ -76,7 +76,7 @@ class Certificates {
   }
   // The numbers of triangles that the first cover certifies, and of those that no cover certifies.
   const RadialCounts& counts() const { return counts_; }
-  // How the first cover saw the surface.
+  // How the covers in use saw the surface; who is positive is said of the first cover alone.
   RadialView view() const;
 
  private:
@@ -85,6 +85,7 @@ class Certificates {
   using Halves = std::int64_t __attribute__((vector_size(16)));
   static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
 
+  std::vector<RadialView::Observer> observers(std::size_t cover) const;
   void place_viewpoints(std::span<const LocalPositions::Record> records);
   void forget();
   void make_usual(std::size_t patch);

@@ -1,5 +1,6 @@
 #include "core/fast/prove/certificates.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "core/fast/cut/cut_surface.h"
@@ -330,6 +331,35 @@ TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
   }
   EXPECT_EQ(*std::min_element(both.positive.begin(), both.positive.end()), 0u);
   EXPECT_EQ(*std::max_element(both.positive.begin(), both.positive.end()), scene.mesh.triangle_count());
+}
+
+// A picture shows what the certificates say: signs of the first cover, clusters of all covers, patches, and
+// observers where they stand in the scene.
+TEST(Certificates, AreShownAsTheyAre) {
+  Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
+  for (const std::size_t covers : {kCovers, std::size_t{1}}) {
+    scene.certificates.use_covers(covers);
+    scene.certify();
+    const RadialView view = scene.certificates.view();
+    ASSERT_EQ(view.further_covers.size(), covers - 1);
+    for (std::size_t t = 0; t < scene.mesh.triangle_count(); ++t) {
+      EXPECT_EQ(view.positive[t], scene.own[t][0] == Orientation::positive);
+      EXPECT_EQ(view.cluster[t], scene.cluster(0, t));
+      for (std::size_t c = 1; c < covers; ++c)
+        EXPECT_EQ(view.further_covers[c - 1].cluster[t], scene.cluster(c, t));
+      const auto members = scene.tree.triangles_of(static_cast<std::size_t>(view.patch[t]));
+      EXPECT_NE(std::ranges::find(members, TriangleId{static_cast<std::int32_t>(t)}), members.end());
+    }
+    for (std::size_t c = 0; c < covers; ++c) {
+      const auto& shown = c == 0 ? view.observers : view.further_covers[c - 1].observers;
+      ASSERT_EQ(shown.size(), scene.covers[c].observers.size());
+      for (std::size_t i = 0; i < shown.size(); ++i) {
+        EXPECT_EQ(shown[i].cluster, static_cast<std::int32_t>(i));
+        EXPECT_LT((shown[i].head.start - scene.covers[c].observers[i].at(scene.start)).norm(), 1e-3);
+        EXPECT_LT((shown[i].tail.end - scene.covers[c].observers[i].at(scene.end)).norm(), 1e-3);
+      }
+    }
+  }
 }
 
 TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {

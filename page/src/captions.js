@@ -1,0 +1,110 @@
+// What the page says in words beside the list: the verdict, the legend, the numbers of the interval, the names of the panes.
+import { bitOf } from "./data.js";
+import { byId, element } from "./dom.js";
+import { momentsOf, namesOf, timeOf } from "./moments.js";
+import { coverOf } from "./painter.js";
+import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, YELLOW } from "./palette.js";
+import { detailSentence, many, VERDICTS, verdictSentence } from "./words.js";
+
+export class Captions {
+  constructor(recording) { this.recording = recording; }
+
+  sayVerdict(strategy) {
+    const first = momentsOf(strategy)[0], { undecided } = strategy.summary;
+    let described = null;
+    if (first) {
+      const [a, b] = namesOf(this.recording, strategy, first);
+      described = { position: first.interval + timeOf(strategy, first), crossing: first.pair !== undefined, a, b };
+    }
+    const verdict = byId("verdict");
+    verdict.className = first ? "bad" : undecided > 0 ? "" : "good";
+    verdict.replaceChildren(element("span", first ? "\u2716 " : undecided > 0 ? "? " : "\u2714 ", "mark"),
+      document.createTextNode(verdictSentence(this.recording, strategy, described)));
+    byId("details").textContent = detailSentence(this.recording, strategy);
+    document.title = `${this.recording.header.name}: cscd view`;
+  }
+
+  sayInterval(strategy, interval, predicted) {
+    const contacts = strategy.contacts[interval], pairs = strategy.start_pairs[interval], text = [];
+    if (pairs > 0) text.push(`${many(pairs, "pair")} of triangles cross at this start`);
+    if (contacts > 0) text.push(`${many(contacts, "contact")} in this interval`);
+    if (predicted) text.push("in the simulator's step, before it resolves them");
+    byId("moment").textContent = text.join(" · ");
+    const facts = [["interval", String(interval + this.recording.clip.first_interval)], ["verdict", VERDICTS[strategy.verdict[interval]]],
+      ["answered by", strategy.answered_by[strategy.answerer[interval]] + (strategy.proven[interval] ? ", proven" : ", not proven")],
+      ["triangle pairs left by culling", strategy.pairs[interval].toLocaleString("en")],
+      ["elementary tests", strategy.tests[interval].toLocaleString("en")]];
+    if (strategy.has_clusters)
+      facts.push(["clusters in force", strategy.clusters[interval].toLocaleString("en")],
+        ["positive", `${this.positiveShare(strategy, interval)} % of triangles`]);
+    facts.push(["time of this answer here", `${Number(strategy.milliseconds[interval].toPrecision(3))} ms, one try`]);
+    byId("facts").replaceChildren(...facts.flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
+  }
+
+  sayLegend(strategy, interval, mode, chosen, observers) {
+    const item = (colour, what) => {
+      const span = element("span"), swatch = element("i");
+      swatch.style.background = colour;
+      span.append(swatch, what);
+      return span;
+    };
+    const rows = [], cover = coverOf(mode);
+    if (mode === "verdict") {
+      if (strategy.contacts[interval] > 0) rows.push(item(ORANGE, "touches"));
+      if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
+      if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
+    } else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
+    else if (mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
+    else if (mode === "place" || mode === "part") rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[mode]));
+    else if (mode === "patch") rows.push(element("b", strategy.has_patches ? "patches of up to 16 triangles, the unit of work" : `${strategy.name} has no patches`));
+    else if (cover > 0) {
+      if (strategy.covers > cover) rows.push(element("b", `one colour for each cluster of ${cover === 1 ? "the second cover, which lie at seams of the first" : "the third cover, where seams of both meet"}`), item(GREY, "in no cluster of it"));
+      else rows.push(element("b", `${strategy.name} does not look from this cover here`));
+    } else {
+      const cluster = `one colour for each cluster${strategy.has_patches ? " of the first cover" : ""}`;
+      rows.push(element("b", !strategy.has_clusters ? `${strategy.name} has no clusters`
+        : mode === "atomic" ? `${cluster}, as made in advance` : `${cluster} that has one observer in this interval`));
+    }
+    if (observers && strategy.observers?.length > 0) {
+      const { offset } = strategy.observers[Math.min(cover, strategy.observers.length - 1)];
+      rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}${strategy.has_patches ? "" : ": points, or bones as segments"}`));
+    }
+    if (chosen && chosen.contact !== undefined) rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
+    byId("legend").replaceChildren(...rows);
+  }
+
+  // Draws a frame with a name round each pane of the stage, if there are several.
+  namePanes(panes, strategies) {
+    byId("panes").replaceChildren(...(strategies.length < 2 ? [] : panes.map((pane, i) => {
+      const box = element("div", undefined, "pane"), name = element("p", strategies[i].name, "pane-name");
+      Object.assign(box.style, {
+        left: `${pane.x}px`, top: `${pane.y}px`, width: `${pane.w}px`, height: `${pane.h}px`,
+        borderLeftWidth: pane.x > 1 ? "1px" : "0", borderTopWidth: pane.y > 1 ? "1px" : "0",
+      });
+      name.append(element("small", ""));
+      box.append(name);
+      return box;
+    })));
+  }
+
+  sayPanes(strategies, interval) {
+    strategies.forEach((strategy, i) => {
+      const small = byId("panes").children[i]?.querySelector("small");
+      if (!small) return;
+      const parts = [`${many(strategy.pairs[interval], "pair")} left by culling`];
+      if (strategy.has_clusters) parts.push(many(strategy.clusters[interval], "cluster"), `${this.positiveShare(strategy, interval)} % positive`);
+      small.textContent = parts.join(" · ");
+    });
+  }
+
+  positiveShare(strategy, interval) {
+    const { triangles } = this.recording.clip;
+    strategy.shares ??= new Map();
+    if (!strategy.shares.has(interval)) {
+      let count = 0;
+      for (let t = 0; t < triangles; ++t) count += bitOf(strategy.positive, triangles, interval, t);
+      strategy.shares.set(interval, ((100 * count) / triangles).toFixed(1));
+    }
+    return strategy.shares.get(interval);
+  }
+}

@@ -1,0 +1,86 @@
+// Line and point charts of the report (uPlot), in colours of the page, redrawn when the page turns dark or changes its width.
+import uPlot from "uplot";
+import { isDark } from "./dom.js";
+import { BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY } from "./palette.js";
+
+// One look of a strategy everywhere, as in scripts/lib/charts.py: a family has one colour, and dashes tell its members apart.
+const LOOKS = [["base", "#000000"], ["aabb", SKY], ["mcd", ORANGE], ["selfccd", GREEN], ["embree", SKY], ["cgal_boxes", SKY], ["fcl", GREY], ["rvbc", PINK], ["drvbc", BLUE], ["drvbc_fast", RED],
+  ["newton", ORANGE], ["filtered_exact", RED], ["exact", "#000000"], ["cubic", BLUE], ["inclusion", GREEN], ["additive", PINK]];
+const DASHES = [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
+
+export const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
+
+// Black becomes white on a dark page.
+export const seen = (colour) => (colour === "#000000" && isDark() ? "#ffffff" : colour);
+
+export function colourOf(name) {
+  const row = LOOKS.filter(([known]) => name === known || name.startsWith(`${known}_`) || name.startsWith(`${known}@`)).at(-1);
+  return seen(row ? row[1] : GREY);
+}
+
+export const dashOf = (name, index) => (LOOKS.some(([known]) => known === name) && !["embree", "cgal_boxes"].includes(name) ? [] : DASHES[index % DASHES.length]);
+
+const charts = [];
+export const redrawCharts = () => charts.forEach((chart) => chart.draw());
+
+export const LOG = 3, LINEAR = 1;  // what uPlot calls the distributions of a scale
+
+// A chart in a box. `describe` returns what to draw: {data, series, x, y, points, hooks}; x and y are {label, scale, values}.
+// Arrow keys move along the chart while it has the focus.
+export class Chart {
+  constructor(box, height, describe) {
+    this.box = box;
+    this.height = height;
+    this.describe = describe;
+    box.tabIndex = 0;
+    box.addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => {
+      if (this.plot && this.plot.width !== box.clientWidth) this.plot.setSize({ width: box.clientWidth, height });
+    }).observe(box);
+    charts.push(this);
+    this.draw();
+  }
+
+  draw() {
+    const { data, series, x, y, hooks } = this.describe();
+    const style = getComputedStyle(document.documentElement), line = style.getPropertyValue("--line");
+    const axis = ({ label, scale, values }) => {
+      const isDecade = (tick) => Math.abs(Math.log10(tick) - Math.round(Math.log10(tick))) < 1e-9;
+      const decades = (_, ticks) => {
+        const some = ticks.filter(isDecade).length > 1;  // a scale within one decade names all that it marks
+        return ticks.map((tick) => (!some || isDecade(tick) ? tick : null));
+      };
+      const filter = scale === LOG ? { filter: decades } : {};
+      return {
+        label, labelSize: 18, stroke: style.getPropertyValue("--soft"), grid: { stroke: line, width: 1, ...filter }, ticks: { stroke: line, ...filter },
+        ...filter, values: values || ((_, ticks) => ticks.map((tick) => (tick === null || tick === undefined ? "" : short(tick)))),
+      };
+    };
+    if (this.plot) this.plot.destroy();
+    this.plot = new uPlot({
+      width: this.box.clientWidth || 900, height: this.height, hooks,
+      scales: { x: { time: false, distr: x.scale, range: x.range }, y: { distr: y.scale, range: y.range } },
+      axes: [axis(x), { ...axis(y), size: 78 }],
+      series: [{ label: x.label, value: (_, value) => (value === null || value === undefined ? "" : x.name ? x.name(value) : short(value)) }, ...series.map((one) => ({
+        width: 1.6, points: { show: false }, value: (_, value) => (value === null || value === undefined ? "" : short(value)), ...one,
+      }))],
+    }, data, this.box);
+  }
+
+  key(event) {
+    const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key], { plot } = this;
+    if (!way || !plot) return;
+    event.preventDefault();
+    const xs = plot.data[0], at = Math.min(xs.length - 1, Math.max(0, (plot.cursor.idx ?? -way) + way));
+    plot.setCursor({ left: plot.valToPos(xs[at], "x"), top: plot.over.clientHeight / 2 });
+  }
+}
+
+// Data of uPlot from points {x, y} of several series: one list of all x, and the y of each series there, or null.
+export function aligned(series) {
+  const xs = [...new Set(series.flatMap((points) => points.map(({ x }) => x)))].sort((a, b) => a - b);
+  return [xs, ...series.map((points) => {
+    const at = new Map(points.map(({ x, y }) => [x, y]));
+    return xs.map((x) => at.get(x) ?? null);
+  })];
+}

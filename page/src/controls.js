@@ -1,0 +1,76 @@
+// Buttons, slider and keys: each calls one method of the viewer (main.js).
+import { byId, element, isDark, radios } from "./dom.js";
+
+const AXES = ["x", "y", "z", "-x", "-y", "-z"];
+
+export function makeControls(viewer) {
+  const { recording, modes } = viewer, { strategies, clip } = recording;
+  radios(byId("strategies"), strategies.map((s, i) => [String(i), s.name]), (value) => viewer.setStrategy(Number(value)));
+  byId("together-label").hidden = strategies.length < 2;
+  byId("together").addEventListener("change", (event) => viewer.setTogether(event.target.checked));
+  radios(byId("modes"), modes, (value) => viewer.setMode(value));
+  makeToggle(viewer, "normals", "normalsShown");
+  if (clip.bones > 0) makeToggle(viewer, "bones", "bonesShown");
+  if (strategies.some((s) => s.observers?.length > 0)) makeToggle(viewer, "observers", "observersShown");
+  makeUp(viewer);
+
+  const slider = byId("slider"), onClick = (id, act) => byId(id).addEventListener("click", act);
+  slider.max = String(recording.intervals);
+  slider.addEventListener("input", () => viewer.seek(Number(slider.value)));
+  onClick("play", () => viewer.setPlaying(!viewer.playing));
+  onClick("previous", () => viewer.stepMoment(-1));
+  onClick("next", () => viewer.stepMoment(1));
+  onClick("whole", () => viewer.showWhole(true));
+  onClick("inset", () => viewer.showWhole(true));
+  onClick("closer", () => viewer.showChosen(true));
+  onClick("theme", () => viewer.setTheme(!isDark()));
+  document.addEventListener("keydown", (event) => onKey(viewer, event));
+}
+
+function makeToggle(viewer, name, property) {
+  const button = element("button", name);
+  button.id = `show-${name}`;
+  button.setAttribute("aria-pressed", String(viewer[property]));
+  button.addEventListener("click", () => {
+    viewer[property] = !viewer[property];
+    button.setAttribute("aria-pressed", String(viewer[property]));
+    viewer.refresh();
+  });
+  byId("toggles").append(button);
+}
+
+function makeUp(viewer) {
+  const button = element("button", `up: ${viewer.upName}`);
+  button.id = "up";
+  button.addEventListener("click", () => {
+    viewer.setUp(AXES[(AXES.indexOf(viewer.upName) + 1) % AXES.length]);
+    button.textContent = `up: ${viewer.upName}`;
+  });
+  byId("toggles").append(button);
+}
+
+function onKey(viewer, event) {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  if (event.target.matches("select, input[type=checkbox]") || (event.target.matches("button") && event.key === " ")) return;
+  const large = event.shiftKey ? 10 : 1, press = (id) => () => byId(id)?.click();
+  const actions = {
+    " ": () => viewer.setPlaying(!viewer.playing),
+    ArrowRight: () => viewer.seek(Math.floor(viewer.position + 1e-6) + large),
+    ArrowLeft: () => viewer.seek(Math.ceil(viewer.position - 1e-6) - large),
+    Home: () => viewer.seek(0),
+    End: () => viewer.seek(viewer.recording.intervals),
+    n: () => viewer.stepMoment(1),
+    p: () => viewer.stepMoment(-1),
+    c: () => viewer.showChosen(true),
+    w: () => viewer.showWhole(true),
+    s: () => viewer.setStrategy((viewer.strategy + 1) % viewer.recording.strategies.length),
+    o: press("show-observers"),
+    d: press("theme"),
+  };
+  const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key], digit = Number(event.key);
+  if (digit >= 1 && digit <= viewer.modes.length) viewer.setMode(viewer.modes[digit - 1][0]);
+  else if (action) {
+    event.preventDefault();
+    action();
+  }
+}

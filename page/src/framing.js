@@ -1,0 +1,104 @@
+// Where the camera goes: round the whole surface, or close to what was chosen.
+import * as THREE from "three";
+
+export class Framing {
+  constructor(recording, stage, marker) {
+    this.recording = recording;
+    this.stage = stage;
+    this.marker = marker;
+    this.anchor = null;  // the vertex that the camera follows, or null for the middle of the surface
+    this.opened = false;
+  }
+
+  follow() { this.stage.follow(this.anchorPoint()); }
+
+  anchorPoint() {
+    return this.anchor === null ? this.stage.whole.center : this.stage.surface.point(this.anchor, new THREE.Vector3());
+  }
+
+  setAnchor(vertex) {
+    this.anchor = vertex;
+    this.stage.follow(null);
+    this.follow();
+  }
+
+  // `room` is how much larger than the surface the view is.
+  showWhole(smooth, room) {
+    this.setAnchor(null);
+    const direction = this.broadSide(), { center, distance } = this.stage.fit(direction, room);
+    this.stage.look(center, distance, direction, smooth);
+  }
+
+  // Looks at a moment that has a place, from where least hides it.
+  showMoment(strategy, moment, point, smooth) {
+    const { stage, marker } = this, { contact, pair, interval } = moment;
+    this.setAnchor(contact !== undefined ? strategy.contact_vertex[4 * contact] : this.recording.corners[3 * strategy.crossing[2 * pair]]);
+    const whole = stage.surface.bounds(), points = [point];
+    let spread = 0;  // of what lies near the moment's point
+    const take = (other) => {
+      const distance = other.distanceTo(point);
+      if (distance > 0.2 * whole.radius) return;
+      spread = Math.max(spread, distance);
+      if (points.length < 4 && distance > 0.002 * whole.radius) points.push(other);
+    };
+    const { contactOffset, crossingOffset } = strategy;
+    for (let c = contactOffset[interval]; c < contactOffset[interval + 1]; ++c) take(marker.contactPoint(strategy, interval, c));
+    for (let i = crossingOffset[interval]; i < crossingOffset[interval + 1]; ++i) take(marker.pointOf(strategy, { interval, pair: i }));
+    // Close enough to see single triangles there, and far enough to see what they belong to.
+    const radius = Math.min(0.36 * whole.radius, Math.max(0.11 * whole.radius, 1.6 * spread, 8 * this.edgeNear(point, 0.1 * whole.radius)));
+    if (!this.opened) {
+      stage.controls.target.copy(whole.center);
+      stage.camera.position.copy(this.broadSide()).multiplyScalar(3).add(whole.center);
+      this.opened = true;
+    }
+    stage.look(point, stage.distanceFor(radius), stage.clearestDirection(points, whole.radius), smooth);
+  }
+
+  // The mean length of the edges of triangles that have a corner near a point; 0 where none has.
+  edgeNear(point, distance) {
+    const { surface } = this.stage, { corners } = this.recording, a = new THREE.Vector3(), b = new THREE.Vector3();
+    let sum = 0, count = 0;
+    for (let i = 0; i < corners.length; i += 3) {
+      if (surface.point(corners[i], a).distanceTo(point) > distance) continue;
+      sum += a.distanceTo(surface.point(corners[i + 1], b));
+      ++count;
+    }
+    return count > 0 ? sum / count : 0;
+  }
+
+  // A direction from which the shown pose looks wide: a little above and beside the level one across its longest direction.
+  broadSide() {
+    const { surface, up } = this.stage, side = new THREE.Vector3(up.y, up.z, up.x), front = new THREE.Vector3().crossVectors(side, up);
+    let xx = 0, xy = 0, yy = 0;
+    const center = surface.bounds().center, point = new THREE.Vector3();
+    for (let v = 0; v < this.recording.clip.vertices; v += 3) {
+      surface.point(v, point).sub(center);
+      const x = point.dot(side), y = point.dot(front);
+      xx += x * x;
+      xy += x * y;
+      yy += y * y;
+    }
+    const angle = 0.5 * Math.atan2(2 * xy, xx - yy) + Math.PI / 2;  // across the longest level direction
+    const direction = new THREE.Vector3().addScaledVector(side, Math.cos(angle)).addScaledVector(front, Math.sin(angle));
+    if (direction.dot(new THREE.Vector3(0.2, 0.1, 1)) < 0) direction.negate();
+    return direction.applyAxisAngle(up, 0.4).addScaledVector(up, 0.28).normalize();
+  }
+}
+
+// The axis that points up. Models say y, and so do most caches. A scene stands along the longest side of its box, with the
+// side up that holds more of the surface.
+export function upAxis({ header, clip, places }) {
+  if (header.kind !== "scene") return "y";
+  const sides = [0, 1, 2].map((axis) => {
+    let low = 65535, high = 0, sum = 0;
+    for (let v = 0; v < clip.vertices; ++v) {
+      const x = places[axis * clip.vertices + v];
+      low = Math.min(low, x);
+      high = Math.max(high, x);
+      sum += x;
+    }
+    return { length: high - low, heavier: sum / clip.vertices > (low + high) / 2 };
+  });
+  const order = [1, 0, 2].sort((a, b) => sides[b].length - sides[a].length);
+  return (sides[order[0]].heavier ? "" : "-") + "xyz"[order[0]];
+}

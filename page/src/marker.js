@@ -1,0 +1,115 @@
+// Marks in the scene: points, features and normals of contacts, lines where triangles cross, and observers.
+import * as THREE from "three";
+import { crossingSegment } from "./crossing.js";
+import { coverOf } from "./painter.js";
+
+const MOST_NORMALS = 40;  // beside that of the chosen contact
+const MOST_LINES = 400;  // contacts whose features are outlined beside the chosen one
+const OBSERVER = "#20303c";  // an observer's colour where the surface is not coloured by its cluster
+
+export class Marker {
+  constructor(recording, stage, painter) {
+    this.recording = recording;
+    this.stage = stage;
+    this.painter = painter;
+  }
+
+  // The point of a contact, on its first feature at its own time, whatever moment is shown.
+  contactPoint(strategy, interval, c) {
+    const { surface } = this.stage, t = strategy.contact_time[c] / 65535;
+    const at = (v) => surface.pointAt(v, interval, t, true);
+    const v = strategy.contact_vertex.subarray(4 * c, 4 * c + 2);
+    return strategy.contact_kind[c] === 0 ? at(v[0]) : at(v[0]).lerp(at(v[1]), strategy.contact_along[c] / 65535);
+  }
+
+  // The place of a moment (moments.js), or null where there is none.
+  pointOf(strategy, moment) {
+    if (!moment) return null;
+    if (moment.contact !== undefined) return this.contactPoint(strategy, moment.interval, moment.contact);
+    if (moment.pair === undefined) return null;
+    const { corners } = this.recording, sum = new THREE.Vector3(), point = new THREE.Vector3();
+    for (let i = 0; i < 2; ++i)
+      for (let k = 0; k < 3; ++k) sum.add(this.stage.surface.point(corners[3 * strategy.crossing[2 * moment.pair + i] + k], point));
+    return sum.divideScalar(6);
+  }
+
+  // Marks what strategy number `index` says of an interval; `chosen` is the chosen moment of it, or null.
+  mark(marks, index, interval, chosen, normals) {
+    const strategy = this.recording.strategies[index], { surface } = this.stage;
+    const from = strategy.contactOffset[interval], to = strategy.contactOffset[interval + 1];
+    const place = new THREE.Vector3();
+    const edge = (out, a, b) => {
+      surface.point(a, place).toArray(out, out.length);
+      surface.point(b, place).toArray(out, out.length);
+    };
+    const feature = (out, c, second) => {
+      const v = strategy.contact_vertex.subarray(4 * c, 4 * c + 4);
+      if (strategy.contact_kind[c] === 1) edge(out, ...(second ? [v[2], v[3]] : [v[0], v[1]]));
+      else if (second) for (const [a, b] of [[1, 2], [2, 3], [3, 1]]) edge(out, v[a], v[b]);
+    };
+    const points = [], weights = [], others = [], first = [], second = [], normal = [], at = [];
+    const addNormal = (c, share) => {
+      const p = this.contactPoint(strategy, interval, c), n = strategy.contact_normal.subarray(3 * c, 3 * c + 3);
+      const length = (share * this.stage.whole.radius) / 127;
+      normal.push(p.x, p.y, p.z, p.x + length * n[0], p.y + length * n[1], p.z + length * n[2]);
+    };
+    for (let c = from; c < to; ++c) {
+      this.contactPoint(strategy, interval, c).toArray(points, points.length);
+      weights.push(c === from ? 0.6 : to - from > 60 ? 0.15 : 0.3);
+      if (c - from < MOST_LINES && !(chosen && chosen.contact === c)) {
+        feature(others, c, false);
+        feature(others, c, true);
+      }
+    }
+    if (chosen && chosen.contact !== undefined) {
+      feature(first, chosen.contact, false);
+      feature(second, chosen.contact, true);
+      this.contactPoint(strategy, interval, chosen.contact).toArray(at, 0);
+      if (normals) addNormal(chosen.contact, 0.05);
+    }
+    if (normals) for (let c = from; c < to; c += Math.ceil((to - from) / MOST_NORMALS)) addNormal(c, 0.02);
+    marks.setContacts(points, weights);
+    marks.setChosen(at);
+    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal })) marks.setLines(name, numbers);
+    const crossings = this.crossings(strategy, interval);
+    marks.setLines("crossings", crossings);
+    marks.setLines("crossingGlow", crossings);
+  }
+
+  // The segments in which triangles cross at the start of an interval.
+  crossings(strategy, interval) {
+    const { corners } = this.recording, segments = [];
+    for (let i = strategy.crossingOffset[interval]; i < strategy.crossingOffset[interval + 1]; ++i) {
+      const [a, b] = [0, 1].map((side) => {
+        const t = strategy.crossing[2 * i + side];
+        return corners.subarray(3 * t, 3 * t + 3);
+      });
+      const segment = crossingSegment(this.stage.surface.positions, a, b);
+      if (segment) segments.push(...segment);
+    }
+    return segments;
+  }
+
+  // Draws the observers of the cover that the colours are about, at the share t of an interval.
+  markObservers(marks, index, mode, interval, t, shown) {
+    const strategy = this.recording.strategies[index], points = [], pointColours = [], segments = [], segmentColours = [];
+    const cover = strategy.covers > coverOf(mode) ? coverOf(mode) : 0;
+    if (shown && strategy.observers?.[cover]) {
+      const { offset, cluster, place } = strategy.observers[cover], colourOf = this.painter.observerColour(index, mode, interval);
+      const colour = new THREE.Color();
+      for (let o = offset[interval]; o < offset[interval + 1]; ++o) {
+        const at = (end) => [0, 1, 2].map((axis) => this.recording.observerToView((1 - t) * place[12 * o + 6 * end + axis] + t * place[12 * o + 6 * end + 3 + axis], axis));
+        const head = at(0), tail = at(1), long = Math.hypot(...head.map((x, axis) => x - tail[axis])) > 1e-6;
+        colour.set(colourOf ? colourOf(cluster[o]) : OBSERVER);
+        for (const end of long ? [head, tail] : [head]) {
+          points.push(...end);
+          pointColours.push(colour.r, colour.g, colour.b);
+        }
+        if (!long) continue;
+        segments.push(...head, ...tail);
+        for (let k = 0; k < 2; ++k) segmentColours.push(colour.r, colour.g, colour.b);
+      }
+    }
+    marks.setObservers(points, pointColours, segments, segmentColours);
+  }
+}

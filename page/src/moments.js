@@ -1,0 +1,29 @@
+// What happens when: the intervals of a strategy's answers in which something touches or crosses.
+
+// The first thing of an interval: a crossing at its start, or else its earliest contact.
+function firstOf(strategy, interval) {
+  const pair = strategy.crossingOffset[interval], contact = strategy.contactOffset[interval];
+  if (strategy.crossingOffset[interval + 1] > pair) return { interval, pair };
+  return { interval, contact: strategy.contactOffset[interval + 1] > contact ? contact : undefined };
+}
+
+// One moment for each interval with contacts or crossings, in order: {interval, contact} or {interval, pair}.
+export function momentsOf(strategy) {
+  if (!strategy.moments) {
+    strategy.moments = [];
+    for (let i = 0; i < strategy.verdict.length; ++i)
+      if (strategy.contacts[i] > 0 || strategy.start_pairs[i] > 0) strategy.moments.push(firstOf(strategy, i));
+  }
+  return strategy.moments;
+}
+
+// The names of both places that meet.
+export function namesOf({ texts, place }, strategy, moment) {
+  if (moment.pair !== undefined)
+    return [0, 1].map((side) => texts[place[strategy.crossing[2 * moment.pair + side]]]);
+  if (moment.contact === undefined) return ["the surface", "the surface"];
+  return [0, 1].map((side) => texts[strategy.contact_place[2 * moment.contact + side]]);
+}
+
+// When a moment is, in its interval.
+export const timeOf = (strategy, moment) => (moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);

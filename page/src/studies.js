@@ -1,0 +1,134 @@
+// The parts of the report about studies of their own: accuracy against time, growth, and history.
+import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, short } from "./charts.js";
+import { byId, element, radios } from "./dom.js";
+import { GREY } from "./palette.js";
+import { tableOf } from "./tables.js";
+
+const GROUPS = { scenes: "pairs of the scenes", open: "open query set", hard: "hard suite", random: "random families" };
+const STUDIES = { size: "triangles", step: "step, in steps of a frame", bones: "bones", threads: "threads" };
+const distinct = (values) => [...new Set(values)];
+
+// Joins points that lie between gaps of other series.
+const SPAN = { spanGaps: true };
+
+export function showAccuracy(study) {
+  const points = study.data.filter((point) => point.ns), groups = Object.keys(GROUPS).filter((name) => points.some((point) => point.group === name));
+  let group = groups[0];
+  const wrong = (point) => (point.lost + point.invented + point.undecided) / point.queries;
+  const rows = () => points.filter((point) => point.group === group);
+  // A share of nothing is drawn on a line of its own, below all others.
+  const floor = () => Math.min(...rows().map((point) => wrong(point) || 1 / point.queries)) / 5;
+  const beaten = (point) => rows().some((other) => (other.ns < point.ns && wrong(other) <= wrong(point)) || (other.ns <= point.ns && wrong(other) < wrong(point)));
+  const chart = new Chart(byId("accuracy-chart"), 360, () => {
+    const place = (point) => ({ x: point.ns, y: Math.max(wrong(point), floor()) }), families = distinct(rows().map((point) => point.row.split("@")[0]));
+    const kinds = families.flatMap((name) => [false, true].map((loses) => ({
+      name, loses, points: rows().filter((point) => point.row.split("@")[0] === name && point.lost > 0 === loses),
+    }))).filter((kind) => kind.points.length > 0);
+    const front = rows().filter((point) => !beaten(point)).sort((a, b) => a.ns - b.ns);
+    return {
+      data: aligned([front.map(place), ...kinds.map((kind) => kind.points.map(place))]),
+      series: [{ label: "no other is faster and more often right", stroke: GREY, width: 5, ...SPAN }, ...kinds.map(({ name, loses }) => ({
+        label: loses ? `${name}, loses contacts` : name, stroke: colourOf(name), width: 0, paths: () => null,
+        points: { show: true, size: 10, width: 2, stroke: colourOf(name), fill: loses ? getComputedStyle(document.documentElement).getPropertyValue("--panel") : colourOf(name) },
+      }))],
+      x: { label: "nanoseconds a query", scale: LOG },
+      y: { label: "share wrong or undecided", scale: LOG, values: (_, ticks) => ticks.map((tick) => (tick === null || tick === undefined ? "" : tick < 1.5 * floor() ? "none" : tick.toExponential(0))) },
+    };
+  });
+  const list = () => byId("accuracy-list").replaceChildren(tableOf(["test", "ns a query", "queries", "contacts lost", "invented", "undecided"],
+    rows().sort((a, b) => wrong(a) - wrong(b) || a.ns - b.ns).map((point) => [point.row, short(point.ns), ...[point.queries, point.lost, point.invented, point.undecided].map((n) => n.toLocaleString("en"))])));
+  radios(byId("accuracy-groups"), groups.map((name) => [name, GROUPS[name]]), (name) => {
+    group = name;
+    choose();
+  });
+  const choose = () => {
+    byId("accuracy-groups").update(group);
+    chart.draw();
+    list();
+  };
+  choose();
+}
+
+export function showGrowth(study) {
+  const { points, fits } = study.data, studies = Object.keys(STUDIES).filter((name) => distinct(points.filter((point) => point.study === name).map((point) => point.size)).length > 1);
+  let name = studies[0], scene = null;
+  const select = byId("growth-scene");
+  const rows = () => points.filter((point) => point.study === name && point.scene === scene);
+  const chart = new Chart(byId("growth-chart"), 360, () => {
+    const strategies = distinct(rows().map((point) => point.strategy));
+    return {
+      data: aligned(strategies.map((strategy) => rows().filter((point) => point.strategy === strategy).map((point) => ({ x: point.size, y: point.ms })))),
+      series: strategies.map((strategy, i) => {
+        const fit = fits.find((one) => one.study === name && one.scene === scene && one.strategy === strategy);
+        return { label: fit ? `${strategy} (grows as the power ${fit.exponent.toFixed(2)})` : strategy, stroke: colourOf(strategy), dash: dashOf(strategy, i), points: { show: true, size: 6 }, ...SPAN };
+      }),
+      x: { label: STUDIES[name], scale: LOG },
+      y: { label: "ms a query", scale: LOG },
+    };
+  });
+  const choose = () => {
+    const scenes = distinct(points.filter((point) => point.study === name).map((point) => point.scene));
+    if (!scenes.includes(scene)) [scene] = scenes;
+    select.replaceChildren(...scenes.map((one) => new Option(one, one, false, one === scene)));
+    byId("growth-studies").update(name);
+    chart.draw();
+  };
+  radios(byId("growth-studies"), studies.map((one) => [one, STUDIES[one].split(",")[0]]), (chosen) => {
+    name = chosen;
+    choose();
+  });
+  select.addEventListener("change", () => {
+    scene = select.value;
+    choose();
+  });
+  choose();
+}
+
+export function showHistory(history) {
+  const places = distinct(history.courses.map((course) => `${course.scene} on ${course.machine}`)), select = byId("history-scene");
+  select.append(...places.map((place) => new Option(place, place)));
+  const courses = () => history.courses.filter((course) => `${course.scene} on ${course.machine}` === select.value);
+  const commits = () => {
+    const dates = new Map(courses().flatMap((course) => course.points.map((point) => [point.commit, point.committed])));
+    return [...dates.keys()].sort((a, b) => new Date(dates.get(a)) - new Date(dates.get(b)));
+  };
+  const percent = (ratio) => `${ratio > 1 ? "+" : ""}${(100 * (ratio - 1)).toFixed(0)} %`;
+  const chart = new Chart(byId("history-chart"), 320, () => {
+    const order = commits(), shown = courses(), nameOf = (i) => (order[i] ? order[i].slice(0, 7) : "");
+    return {
+      data: aligned(shown.map((course) => course.points.map((point) => ({ x: order.indexOf(point.commit), y: point.median })))),
+      series: shown.map((course, i) => ({ label: course.row, stroke: colourOf(course.row), dash: dashOf(course.row, i), points: { show: true, size: 6 }, ...SPAN })),
+      x: { label: "commit", scale: LINEAR, range: [-0.4, order.length - 0.6], name: nameOf, values: (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? nameOf(tick) : "")) },
+      y: { label: "ms an interval", scale: LOG },
+      hooks: { draw: [(plot) => shown.forEach((course) => course.changes.forEach((change) => markChange(plot, order.indexOf(change.commit), course.points[change.first].median, percent(change.ratio), colourOf(course.row))))] },
+    };
+  });
+  const list = () => {
+    const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), short(course.points[change.first - 1].median), short(course.points[change.first].median), percent(change.ratio)]));
+    byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "ms before", "ms at it", "level"], rows) : element("p", "No change of level was found."));
+  };
+  select.addEventListener("change", () => {
+    chart.draw();
+    list();
+  });
+  list();
+}
+
+// An arrow and the change of level at the first commit of a new level.
+function markChange(plot, x, y, text, colour) {
+  const left = plot.valToPos(x, "x", true), top = plot.valToPos(y, "y", true), { ctx } = plot, unit = devicePixelRatio;
+  ctx.save();
+  ctx.fillStyle = ctx.strokeStyle = colour;
+  ctx.lineWidth = 1.5 * unit;
+  ctx.font = `${11 * unit}px system-ui, sans-serif`;
+  ctx.textAlign = "center";
+  ctx.beginPath();
+  ctx.moveTo(left, top - 22 * unit);
+  ctx.lineTo(left, top - 7 * unit);
+  ctx.moveTo(left - 4 * unit, top - 12 * unit);
+  ctx.lineTo(left, top - 6 * unit);
+  ctx.lineTo(left + 4 * unit, top - 12 * unit);
+  ctx.stroke();
+  ctx.fillText(text, left, top - 26 * unit);
+  ctx.restore();
+}
