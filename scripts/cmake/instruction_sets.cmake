@@ -44,13 +44,15 @@ function(cscd_copies out entry source)
       target_precompile_headers(${name} PRIVATE ${CSCD_PARSED})
     endif()
     set(object ${PROJECT_BINARY_DIR}/${name}.o)
+    # CMake counts headers that are parsed once among the objects.
+    set(objects $<FILTER:$<TARGET_OBJECTS:${name}>,EXCLUDE,cmake_pch>)
     # A constructor of a static object would run whatever set is chosen: the last command refuses them.
     add_custom_command(OUTPUT ${object}
-      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object}.whole $<TARGET_OBJECTS:${name}>
+      COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object}.whole "${objects}"
       COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${name} ${object}.whole ${object}
       COMMAND ${CMAKE_COMMAND} -D OBJDUMP=${CMAKE_OBJDUMP} -D OBJECT=${object} -D ENTRY=${name}
               -P ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
-      DEPENDS $<TARGET_OBJECTS:${name}> ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
+      DEPENDS "${objects}" ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
       COMMAND_EXPAND_LISTS VERBATIM COMMENT "Linking the copy for ${isa}")
     set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
     list(APPEND made ${object})
