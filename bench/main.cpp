@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -11,6 +12,7 @@
 #include "bench/commands/command.h"
 #include "bench/output/output.h"
 #include "core/base/error.h"
+#include "core/base/instruction_set.h"
 #include "core/base/temporaries.h"
 
 namespace {
@@ -61,6 +63,8 @@ int run(int argc, char** argv) {
   cscd::bench::add_help(app);
 
   try {
+    // The program has kernels for one instruction set, and refuses to be asked for another.
+    cscd::chosen_among(std::array{cscd::kCompiledFor});
     cscd::bench::require_text(argc, argv);
     app.parse(argc, argv);
     return 0;

@@ -314,7 +314,10 @@ class SelfCollision::Engine {
 };
 
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
-    : engine_(checked([&] { return std::make_unique<Engine>(faces, reference, std::move(options)); })) {}
+    : engine_(checked([&] {
+        instruction_set();  // throws if it cannot be what the environment asks for
+        return std::make_unique<Engine>(faces, reference, std::move(options));
+      })) {}
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference)
     : SelfCollision(faces, reference, Options()) {}
 SelfCollision::~SelfCollision() = default;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bench/record/environment.h"
+#include "core/base/instruction_set.h"
 
 #include "build_info.h"
 
@@ -18,7 +19,8 @@ std::string version_text() {
   std::string out = "cscd " + version_number() + "\n";
   out += "commit: " + get("commit") + (build.at("dirty").get<bool>() ? " with changes" : "") + "\n";
   out += "compiler: " + get("compiler") + ", " + get("build_type") + ", flags " + get("flags") + "\n";
-  out += "instruction set: " + get("instruction_set") + ", built for and used; none is chosen at run time\n";
+  out += "instruction set: " + get("instruction_set") +
+         ", the one that the program is built for (CSCD_ISA=" + std::string(to_string(kCompiledFor)) + ")\n";
   out += "libraries:";
   for (const auto& [name, number] : build.at("libraries").items())
     out += " " + name + " " + number.get<std::string>() + ",";

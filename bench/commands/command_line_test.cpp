@@ -54,6 +54,11 @@ TEST_F(CommandLine, RefusesWordsThatAreNoText) {
   expect_refused(run("cscd query $'p\\xe4th.h5' --json -"), "is not UTF-8");
 }
 
+TEST_F(CommandLine, RefusesAnInstructionSetThatItIsNotBuiltFor) {
+  expect_refused(run("CSCD_ISA=sse cscd list"), "CSCD_ISA=sse: no such instruction set; give one of avx512");
+  EXPECT_EQ(run("CSCD_ISA= cscd list").status, 0);
+}
+
 TEST_F(CommandLine, SaysWhatItWasBuiltOf) {
   const Ran ran = run("cscd --version");
   EXPECT_EQ(ran.status, 0) << ran.errors;

@@ -197,4 +197,9 @@ One object is used by one thread at a time; different objects are independent.)"
       .def_property_readonly("vertex_count", &SelfCollision::vertex_count)
       .def_property_readonly("face_count", &SelfCollision::face_count)
       .def_property_readonly("closed", &SelfCollision::closed);
+
+  module.def("instruction_set", &cscd::instruction_set,
+             "Returns the instruction set that the engine uses: avx512, avx2 or baseline. CSCD_ISA in the "
+             "environment "
+             "chooses another.");
 }

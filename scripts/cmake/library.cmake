@@ -2,6 +2,8 @@
 #
 #   cscd_install_library(ROOM)   the room that holds the public header's functions
 #
+# With CSCD_ALL_ISAS the library holds a copy of these objects for each instruction set (instruction_sets.cmake).
+#
 # Targets cscd::cscd_static and cscd::cscd_shared; cscd::cscd is the static one, or with BUILD_SHARED_LIBS the shared
 # one. Installed as component `library`: both, the header, a package for find_package(cscd CONFIG), and cscd.pc.
 include(GNUInstallDirs)
@@ -29,12 +31,24 @@ endfunction()
 function(cscd_install_library room)
   cscd_rooms_below(${room} rooms)
   set(objects "")
-  foreach(one IN LISTS rooms)
-    get_target_property(type ${one} TYPE)
-    if(type STREQUAL STATIC_LIBRARY)
-      list(APPEND objects $<TARGET_OBJECTS:${one}>)
+  if(CSCD_ALL_ISAS)
+    set(dispatch ${PROJECT_SOURCE_DIR}/library/dispatch)
+    cscd_copies(objects cscd_copy ${dispatch}/copy.cpp ${rooms})
+    add_library(cscd_dispatch OBJECT ${dispatch}/front.cpp ${PROJECT_SOURCE_DIR}/core/base/instruction_set.cpp)
+    target_include_directories(cscd_dispatch PRIVATE $<TARGET_PROPERTY:${room},INTERFACE_INCLUDE_DIRECTORIES>)
+    target_link_libraries(cscd_dispatch PRIVATE Eigen3::Eigen cscd_flags)
+    list(APPEND objects $<TARGET_OBJECTS:cscd_dispatch>)
+    if(CSCD_LIBRARY_ONLY AND NOT CSCD_CORE_TESTS)
+      set_target_properties(${rooms} PROPERTIES EXCLUDE_FROM_ALL ON)  # the copies take their place
     endif()
-  endforeach()
+  else()
+    foreach(one IN LISTS rooms)
+      get_target_property(type ${one} TYPE)
+      if(type STREQUAL STATIC_LIBRARY)
+        list(APPEND objects $<TARGET_OBJECTS:${one}>)
+      endif()
+    endforeach()
+  endif()
   foreach(kind static shared)
     string(TOUPPER ${kind} type)
     add_library(cscd_${kind} ${type} ${objects})
@@ -87,6 +101,12 @@ endfunction()
 
 # The examples, a consumer outside the tree, and the pages of the interface, as tests.
 function(cscd_test_library path)
+  # A build for all instruction sets takes long. That its front compiles is seen in every build.
+  add_library(cscd_dispatch_compiles OBJECT ${PROJECT_SOURCE_DIR}/${path}/dispatch/front.cpp
+                                            ${PROJECT_SOURCE_DIR}/${path}/dispatch/copy.cpp)
+  target_compile_definitions(cscd_dispatch_compiles PRIVATE CSCD_COPY=cscd_copy_baseline)
+  target_include_directories(cscd_dispatch_compiles PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(cscd_dispatch_compiles PRIVATE cscd::cscd cscd_flags)
   file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/examples/*.cpp)
   foreach(example IN LISTS examples)
     get_filename_component(name ${example} NAME_WE)

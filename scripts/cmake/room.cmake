@@ -3,13 +3,13 @@
 # CMAKE_DISABLE_PRECOMPILE_HEADERS (debug, sanitize) see to that.
 set(CSCD_PARSED <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <random> <span> <string>
                 <vector> <Eigen/Geometry>)
+# gcc 12 forgets of headers parsed before that they are the system's, and warns of std::string's own code.
+set(CSCD_PARSED_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
 function(cscd_parse_once target)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
-  # gcc 12 forgets of headers parsed before that they are the system's, and warns of std::string's own code.
-  target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
+  target_compile_options(${target} PRIVATE ${CSCD_PARSED_OPTIONS})
   get_property(maker GLOBAL PROPERTY "cscd_parsed ${ARGN}")
   if(maker)
     target_precompile_headers(${target} REUSE_FROM ${maker})

@@ -12,9 +12,9 @@ import shutil
 import subprocess
 import tempfile
 
-from ._cscd import Answer, Contact, Exclusions, SelfCollision
+from ._cscd import Answer, Contact, Exclusions, SelfCollision, instruction_set
 
-__all__ = ["Answer", "Contact", "Exclusions", "SelfCollision", "read"]
+__all__ = ["Answer", "Contact", "Exclusions", "SelfCollision", "instruction_set", "read"]
 
 
 def read(path, *options, program="cscd"):

@@ -1,0 +1,74 @@
+#include "core/base/instruction_set.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "core/base/error.h"
+
+namespace cscd {
+namespace {
+
+constexpr InstructionSet kAll[] = {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::baseline};
+
+std::string names_of(std::span<const InstructionSet> sets) {
+  std::string names;
+  for (const InstructionSet set : sets) names.append(names.empty() ? "" : ", ").append(to_string(set));
+  return names;
+}
+
+}  // namespace
+
+std::string_view to_string(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return "avx512";
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::baseline:
+      return "baseline";
+  }
+  return "";
+}
+
+// The names are those of the compilers' options in scripts/cmake/instruction_sets.cmake.
+bool machine_has(InstructionSet set) {
+#if defined(__x86_64__)
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                    __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+                    __builtin_cpu_supports("popcnt");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl");
+  if (set == InstructionSet::avx512) return avx2 && avx512;
+  if (set == InstructionSet::avx2) return avx2;
+#endif
+  return set == InstructionSet::baseline;
+}
+
+InstructionSet chosen_among(std::span<const InstructionSet> built) {
+  const char* const asked = std::getenv("CSCD_ISA");
+  if (asked == nullptr || *asked == '\0') {
+    const auto best = std::ranges::find_if(kAll, [&](InstructionSet set) {
+      return std::ranges::find(built, set) != built.end() && machine_has(set);
+    });
+    if (best == std::end(kAll))
+      throw InputError(
+          "this build has kernels for " + names_of(built) +
+          " alone, which this machine lacks; configure with -DCSCD_ALL_ISAS=ON, or build on this machine");
+    return *best;
+  }
+  const std::string what = "CSCD_ISA=" + std::string(asked);
+  const auto named = std::ranges::find(kAll, asked, to_string);
+  if (named == std::end(kAll))
+    throw InputError(what + ": no such instruction set; give one of " + names_of(kAll) +
+                     ", or leave it unset");
+  if (std::ranges::find(built, *named) == built.end())
+    throw InputError(what + ": this build has kernels for " + names_of(built) +
+                     " alone; give one of them, or configure with -DCSCD_ALL_ISAS=ON");
+  if (!machine_has(*named))
+    throw InputError(what + ": this machine lacks it; leave it unset for the best that the machine has");
+  return *named;
+}
+
+}  // namespace cscd

@@ -1,0 +1,128 @@
+// Prints a digest of the answers to random steps, bit by bit, and the user time that they took:
+// scripts/check-isas compares instruction sets by it.
+//
+//   digest SOUPS STEPS     steps of small random surfaces, and of a closed tube of 12,800 triangles that
+//   bends
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <random>
+#include <stdexcept>
+#include <sys/resource.h>
+
+#include "cscd/cscd.h"
+
+namespace {
+
+using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using cscd::SelfCollision;
+
+struct Digest {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::size_t contacts = 0;
+
+  void add(std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3u; }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); }
+  void add(const SelfCollision::Answer& answer) {
+    for (const auto& [a, b] : answer.start_crossings) add(std::uint64_t(a)), add(std::uint64_t(b));
+    for (const SelfCollision::Contact& contact : answer.contacts) {
+      for (const int v : contact.vertices) add(std::uint64_t(v));
+      add(contact.time), add(contact.normal_velocity);
+      for (int k = 0; k < 3; ++k) add(contact.point[k]), add(contact.normal[k]), add(contact.weights[k]);
+    }
+    contacts += answer.contacts.size();
+  }
+  void ask(SelfCollision& body, const Positions& start, const Positions& end) {
+    add(std::uint64_t(body.is_free(start, end)));
+    add(body.first_contact(start, end));
+    add(body.all_contacts(start, end));
+    add(body.largest_step(start, end));
+    const SelfCollision::Candidates near = body.candidates(start, end, 0.01);
+    add(std::uint64_t(near.vertex_face.size())), add(std::uint64_t(near.edge_edge.size()));
+  }
+};
+
+void ask_soups(int count, Digest& sum) {
+  std::mt19937_64 draw(1);
+  std::uniform_real_distribution<double> place(-1, 1);
+  for (int i = 0; i < count; ++i) {
+    Faces faces(20, 3);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) faces.row(f) << int(f), int(f) + 1, int(f) + 2;
+    Positions start(22, 3), end(22, 3);
+    for (Eigen::Index k = 0; k < start.size(); ++k) {
+      start.data()[k] = place(draw);
+      end.data()[k] = start.data()[k] + 0.1 * place(draw);
+    }
+    SelfCollision body(faces, start);
+    sum.ask(body, start, end);
+  }
+}
+
+// Errors are thrown by a copy of the engine and caught here.
+void ask_what_is_wrong(Digest& sum) {
+  Faces faces(1, 3);
+  faces << 0, 1, 2;
+  SelfCollision body(faces, Positions::Identity(3, 3));
+  try {
+    body.is_free(Positions::Identity(3, 3), Positions::Zero(4, 3));
+  } catch (const std::invalid_argument& error) {
+    for (const char* c = error.what(); *c != '\0'; ++c) sum.add(std::uint64_t(*c));
+    return;
+  }
+  throw std::runtime_error("a wrong size is taken");
+}
+
+// A closed ring of `around` by `along` quads, two triangles each, which bends to an eight as `phase` grows.
+Positions ring(int around, int along, double phase) {
+  Positions out(around * along, 3);
+  for (int i = 0; i < along; ++i)
+    for (int j = 0; j < around; ++j) {
+      const double u = 2 * M_PI * i / along, v = 2 * M_PI * j / around;
+      const double r = 1 + 0.1 * std::cos(v) - 0.9 * phase * std::cos(u) * std::cos(u);
+      out.row(i * around + j) << r * std::cos(u), 2 * std::sin(u),
+          0.1 * std::sin(v) + 0.02 * phase * i / along;
+    }
+  return out;
+}
+
+void ask_ring(int steps, Digest& sum) {
+  constexpr int kAround = 32, kAlong = 200;
+  Faces faces(2 * kAround * kAlong, 3);
+  for (int i = 0; i < kAlong; ++i)
+    for (int j = 0; j < kAround; ++j) {
+      const int a = i * kAround + j, b = i * kAround + (j + 1) % kAround;
+      const int c = (a + kAround) % (kAround * kAlong), d = (b + kAround) % (kAround * kAlong);
+      faces.row(2 * a) << a, c, b;
+      faces.row(2 * a + 1) << b, c, d;
+    }
+  SelfCollision body(faces, ring(kAround, kAlong, 0));
+  for (int i = 0; i < steps; ++i)
+    sum.ask(body, ring(kAround, kAlong, double(i) / steps), ring(kAround, kAlong, double(i + 1) / steps));
+}
+
+double user_ms() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return 1e3 * double(used.ru_utime.tv_sec) + 1e-3 * double(used.ru_utime.tv_usec);
+}
+
+}  // namespace
+
+int main(int count, char** words) try {
+  Digest sum;
+  ask_what_is_wrong(sum);
+  ask_soups(count > 1 ? std::atoi(words[1]) : 100, sum);
+  const double soups = user_ms();
+  ask_ring(count > 2 ? std::atoi(words[2]) : 10, sum);
+  std::printf("%016llx, %zu contacts\n", static_cast<unsigned long long>(sum.hash), sum.contacts);
+  const std::string_view set = cscd::instruction_set();
+  std::fprintf(stderr, "%.*s: %.0f ms and %.0f ms\n", int(set.size()), set.data(), soups, user_ms() - soups);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "digest: %s\n", error.what());
+  return 2;
+}

@@ -1,0 +1,115 @@
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/error.h"
+
+#include "library/dispatch/copy.h"
+
+// The functions of cscd.h in a build for all instruction sets. Each hands the call on to the copy that is
+// used.
+namespace cscd {
+namespace {
+
+const Copy& copy_for(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return cscd_copy_avx512;
+    case InstructionSet::avx2:
+      return cscd_copy_avx2;
+    case InstructionSet::baseline:
+      break;
+  }
+  return cscd_copy_baseline;
+}
+
+const Copy& choose_copy() {
+  using enum InstructionSet;
+  try {
+    return copy_for(chosen_among(std::array{avx512, avx2, baseline}));
+  } catch (const InputError& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+// The choice is made once a process. If it fails, the next call makes it again.
+const Copy& chosen_copy() {
+  static const Copy& chosen = choose_copy();
+  return chosen;
+}
+
+}  // namespace
+
+// Here an engine is an object that a copy has made. A copy knows another class by this name, its own.
+class SelfCollision::Engine {
+ public:
+  Engine(const Faces& faces, const Positions& reference, Options&& options)
+      : copy_(chosen_copy()), body_(copy_.make(faces, reference, std::move(options))) {}
+  ~Engine() { copy_.destroy(body_); }
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  template <class Member, class... Arguments>
+  decltype(auto) call(Member Copy::*member, Arguments&&... arguments) const {
+    return (body_->*(copy_.*member))(std::forward<Arguments>(arguments)...);
+  }
+
+ private:
+  const Copy& copy_;
+  SelfCollision* body_;
+};
+
+SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
+    : engine_(std::make_unique<Engine>(faces, reference, std::move(options))) {}
+SelfCollision::SelfCollision(const Faces& faces, const Positions& reference)
+    : SelfCollision(faces, reference, Options()) {}
+SelfCollision::~SelfCollision() = default;
+SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
+SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
+
+bool SelfCollision::is_free(const Positions& start, const Positions& end) {
+  return engine_->call(&Copy::is_free, start, end);
+}
+
+void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
+  engine_->call(&Copy::first_contact, start, end, out);
+}
+SelfCollision::Answer SelfCollision::first_contact(const Positions& start, const Positions& end) {
+  Answer out;
+  first_contact(start, end, out);
+  return out;
+}
+
+void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
+  engine_->call(&Copy::all_contacts, start, end, out);
+}
+SelfCollision::Answer SelfCollision::all_contacts(const Positions& start, const Positions& end) {
+  Answer out;
+  all_contacts(start, end, out);
+  return out;
+}
+
+double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {
+  return engine_->call(&Copy::largest_step, start, end, safety);
+}
+
+SelfCollision::Candidates SelfCollision::candidates(const Positions& start, const Positions& end,
+                                                    double radius) {
+  return engine_->call(&Copy::candidates, start, end, radius);
+}
+
+std::size_t SelfCollision::vertex_count() const {
+  return engine_->call(&Copy::vertex_count);
+}
+std::size_t SelfCollision::face_count() const {
+  return engine_->call(&Copy::face_count);
+}
+bool SelfCollision::closed() const {
+  return engine_->call(&Copy::closed);
+}
+
+std::string_view instruction_set() {
+  return to_string(chosen_copy().set);
+}
+
+}  // namespace cscd
