@@ -73,6 +73,7 @@ void report(const ReportOptions& options) {
     // The page links to the record from where it lies.
     const std::filesystem::path file = std::filesystem::relative(options.records[r], folder, error);
     rows.push_back({{"scene", record.scene.name},
+                    {"pipeline", to_string(record.pipeline)},
                     {"file", error ? options.records[r] : file.generic_string()},
                     {"counted_intervals", record.counted_intervals},
                     {"strategies", std::move(strategies)}});
@@ -100,7 +101,8 @@ void add_report(CLI::App& app) {
       "published beside measured, and its claims.\n\n"
       "  cscd report results/FOLDER/{rope,hand}*.json.gz -o site\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
-  command->add_option("records", options->records, "what cscd run wrote, at most one a scene")->required();
+  command->add_option("records", options->records, "what cscd run wrote, at most one a scene and pipeline")
+      ->required();
   command->add_option("-o,--out", options->folder, "the folder for the page; made where it is missing")
       ->required();
   command->add_flag("--force", options->force, "replace the page if it exists");

@@ -17,6 +17,7 @@ function element(tag, text, className) {
 }
 const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 const withInterval = (cell) => short(cell.measured) + (cell.interval ? ` [${short(cell.interval[0])}, ${short(cell.interval[1])}]` : "");
+const label = (record) => record.scene + (record.pipeline === "published" ? ", pipeline published" : "");
 const dark = () => document.documentElement.classList.contains("dark");
 function colourOf(name) {
   const row = LOOKS.filter(([known]) => name === known || name.startsWith(`${known}_`)).at(-1);
@@ -32,9 +33,12 @@ class Report {
     this.cells = new Map();
     for (const table of data.tables.tables)
       for (const row of table.rows)
-        for (const cell of row.cells) this.cells.set(`${table.id} ${row.scene} ${cell.key}`, cell);
+        for (const cell of row.cells)
+          if (cell.pipeline !== "published") this.cells.set(`${table.id} ${row.scene} ${cell.key}`, cell);
+    // The speeds on top are those of this project's code: the other pipeline has its rows in the tables.
+    this.today = data.records.filter((record) => record.pipeline !== "published");
     this.counter = "pctp";
-    this.scene = data.records[0].scene;
+    this.scene = label(data.records[0]);
     document.documentElement.classList.toggle("dark", window.matchMedia("(prefers-color-scheme: dark)").matches);
     byId("theme").addEventListener("click", () => {
       document.documentElement.classList.toggle("dark");
@@ -62,7 +66,7 @@ class Report {
   }
 
   say() {
-    const scenes = this.data.records.map((record) => record.scene);
+    const scenes = this.today.map((record) => record.scene);
     const times = scenes.map((scene) => this.cell("engine", scene, "fast.median")).filter(Boolean).map((cell) => cell.measured);
     const gains = scenes.map((scene) => this.bestBaseline(scene)).filter(Boolean).map((row) => row.cell.measured);
     const range = (values) => (Math.min(...values) === Math.max(...values) ? short(values[0]) : `${short(Math.min(...values))} to ${short(Math.max(...values))}`);
@@ -89,7 +93,7 @@ class Report {
   }
 
   speed() {
-    const scenes = this.data.records.map((record) => record.scene);
+    const scenes = this.today.map((record) => record.scene);
     const rows = [
       ["one query of drvbc_fast, ms (median)", (scene) => this.cell("engine", scene, "fast.median")],
       ["times faster than the best complete baseline", (scene) => this.bestBaseline(scene)?.cell, (scene) => this.bestBaseline(scene)?.name],
@@ -121,7 +125,7 @@ class Report {
 
   makeCurves() {
     const select = byId("scene");
-    for (const { scene } of this.data.records) select.append(new Option(scene, scene));
+    for (const record of this.data.records) select.append(new Option(label(record), label(record)));
     select.addEventListener("change", () => {
       this.scene = select.value;
       this.drawCurves();
@@ -143,7 +147,7 @@ class Report {
 
   drawCurves() {
     for (const button of byId("counters").children) button.setAttribute("aria-checked", String(button.value === this.counter));
-    const record = this.data.records.find((row) => row.scene === this.scene);
+    const record = this.data.records.find((row) => label(row) === this.scene);
     const rows = record.strategies.filter((strategy) => strategy.counts[this.counter]);
     const style = getComputedStyle(document.documentElement), text = style.getPropertyValue("--soft"), line = style.getPropertyValue("--line");
     const axis = { stroke: text, grid: { stroke: line, width: 1 }, ticks: { stroke: line } };
@@ -178,7 +182,7 @@ class Report {
       if (rows.length === 0) return;
       const details = element("details"), bars = element("div", undefined, "bars");
       details.open = n === 0;
-      details.append(element("summary", record.scene), bars);
+      details.append(element("summary", label(record)), bars);
       const total = (strategy) => STAGES.reduce((sum, [stage]) => sum + (strategy.stages[stage] || 0), 0);
       const most = Math.max(...rows.map(total));
       for (const strategy of rows) {
@@ -203,10 +207,10 @@ class Report {
       if (table.rows.length === 0) return;
       const details = element("details"), wide = element("div", undefined, "wide");
       details.open = n < 3;
-      const titles = table.rows[0].cells.map((cell) => [cell.key, cell.title + (cell.unit ? `, ${cell.unit}` : "")]);
-      wide.append(this.table(["", ...table.rows.map((row) => row.scene)], titles.map(([key, title]) => [title, ...table.rows.map((row) => {
-        const cell = row.cells.find((one) => one.key === key);
-        if (!cell) return element("td", "", "none");
+      const two = table.rows[0].cells.some((cell) => cell.pipeline === "published");
+      const titles = table.rows[0].cells.map((cell) => cell.title + (cell.unit ? `, ${cell.unit}` : "") + (two && cell.pipeline !== "both" ? `, ${cell.pipeline}` : ""));
+      wide.append(this.table(["", ...table.rows.map((row) => row.scene)], titles.map((title, n) => [title, ...table.rows.map((row) => {
+        const cell = row.cells[n];
         const td = cell.measured === null ? element("td", cell.reason, "none") : element("td", withInterval(cell));
         if (cell.published !== null) td.append(element("small", `published ${short(cell.published)}`));
         return td;
@@ -226,7 +230,7 @@ class Report {
       if (claim.evidence.length > 0) {
         const details = element("details");
         details.append(element("summary", `${claim.evidence.filter((one) => one.holds).length} of ${claim.evidence.length} figures hold`));
-        for (const one of claim.evidence) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.measured === null || one.measured === undefined ? one.reason || "not measured" : short(one.measured)}`));
+        for (const one of claim.evidence) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.measured === null || one.measured === undefined ? one.reason || "not measured" : short(one.measured)}${one.today === undefined ? "" : ` (${short(one.today)} with today's code)`}`));
         evidence.append(details);
       }
       return [quote, verdict, element("td", claim.expectation, "text"), evidence];
@@ -242,7 +246,7 @@ class Report {
       cell.append(link);
       const command = element("td", undefined, "text");
       command.append(element("code", record.command.join(" ")));
-      return [record.scene, cell, `${record.environment.date.slice(0, 10)}`, record.environment.commit.slice(0, 12), command];
+      return [label(record), cell, `${record.environment.date.slice(0, 10)}`, record.environment.commit.slice(0, 12), command];
     });
     byId("record-list").append(this.table(["scene", "record", "date", "commit", "made by"], rows));
   }

@@ -1,6 +1,6 @@
 """Pictures of surfaces without a 3D library: triangles are painted from back to front."""
 import numpy as np
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 
 AMBIENT = 0.35
 
@@ -36,14 +36,32 @@ def shaded(positions, triangles, colours, view):
     return colours * bright[:, None]
 
 
-def paint(axes, positions, triangles, colours, view):
-    """Paints the triangles that face the viewer, and returns width and height of the surface on the page."""
+def draw_borders(axes, positions, triangles, label, view, width):
+    """Draws the edges between triangles with different labels, where they face the viewer."""
+    right, up, towards = view
+    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    owner = np.repeat(np.arange(len(triangles)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    edges, owner = edges[order], owner[order]
+    twice = np.flatnonzero(np.all(edges[1:] == edges[:-1], axis=1))
+    a, b = owner[twice], owner[twice + 1]
+    facing = normals_of(positions, triangles) @ towards > 0
+    border = twice[(label[a] != label[b]) & facing[a] & facing[b]]
+    ends = positions[edges[border]]
+    axes.add_collection(LineCollection(np.stack([ends @ right, ends @ up], axis=2), colors="black", linewidths=width))
+
+
+def paint(axes, positions, triangles, colours, view, through=None):
+    """Paints the triangles that face the viewer, and returns width and height of the surface on the page. `through`, a mask of
+    triangles: these are painted last and wherever they face, as if one saw them through the surface."""
     right, up, towards = view
     corners = positions[triangles]
     order = np.argsort(corners.mean(axis=1) @ towards)
-    order = order[(normals_of(positions, triangles) @ towards > 0)[order]]
+    facing = order[(normals_of(positions, triangles) @ towards > 0)[order]]
+    if through is not None:
+        facing = np.concatenate([facing[~through[facing]], order[through[order]]])
     flat = np.stack([corners @ right, corners @ up], axis=2)
-    axes.add_collection(PolyCollection(flat[order], facecolors=colours[order], edgecolors=colours[order], linewidths=0.15))
+    axes.add_collection(PolyCollection(flat[facing], facecolors=colours[facing], edgecolors=colours[facing], linewidths=0.15))
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.axis("off")
