@@ -58,6 +58,12 @@ void tables(const TableOptions& options) {
   const std::filesystem::path folder(options.folder);
   OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force, ".md"),
       csv(folder / "tables.csv", options.force, ".csv"), page(folder / "claims.md", options.force, ".md");
+  for (const PaperTable& table : made)
+    if (table.columns.size() > kMostLatexRows)
+      std::fprintf(
+          stderr,
+          "%s.tex: not written, %zu rows are too many for a page; choose with --strategy or --columns\n",
+          table.id.c_str(), table.columns.size());
   std::deque<OutputFile> floats;
   const std::vector<LatexTable> latex = latex_tables(made);
   for (const LatexTable& table : latex)

@@ -5,13 +5,17 @@
 #include <cstdio>
 #include <optional>
 
+#include "bench/tables/quantity.h"
+
 namespace cscd::bench {
 namespace {
 
 constexpr std::size_t kScenesAcross = 6;  // more do not fit in the width of a page
 
-// What a table takes of a page's height, in points of scriptsize type, estimated: a page has about 600.
-constexpr std::size_t kMostHeight = 480, kLineHeight = 8, kIntervalHeight = 7, kLettersPerLine = 19;
+// What a table takes of a page, estimated in points of scriptsize type. A page is about 600 high, and 450
+// wide.
+constexpr std::size_t kMostHeight = 480, kLineHeight = 8, kIntervalHeight = 7;
+constexpr std::size_t kWidth = 450, kMeasuredWidth = 40, kPaperWidth = 24, kLetterWidth = 4;
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -42,9 +46,8 @@ std::string interval(const Estimate& estimate) {
 // A column of numbers aligned at the point, as wide as the widest of them asks for.
 class NumberColumn {
  public:
-  void add(const std::optional<double>& value) {
-    if (!value) return;
-    const std::string text = digits(*value);
+  void add(const std::string& text) {
+    if (text.front() == '{') return;  // no number
     const std::size_t point = std::min(text.find('.'), text.size());
     before_ = std::max(before_, point);
     after_ = std::max(after_, text.size() - std::min(point + 1, text.size()));
@@ -60,8 +63,19 @@ class NumberColumn {
   bool used_ = false;
 };
 
-std::string number(const std::optional<double>& value) {
-  return value ? digits(*value) : "{--}";
+std::string measured_text(const Cell& cell) {
+  return cell.measured.value ? digits(*cell.measured.value) : "{--}";
+}
+// As many digits as the paper has.
+std::string paper_text(const Cell& cell) {
+  return cell.published ? number_text(*cell.published) : "{--}";
+}
+
+// LaTeX numbers tables by itself, so the paper's number goes to the end.
+std::string title(const std::string& text) {
+  const std::size_t dot = text.find(". ");
+  if (!text.starts_with("Table ") || dot == std::string::npos) return text;
+  return text.substr(dot + 2) + " (the paper's " + text.substr(0, dot) + ")";
 }
 
 // The part of a table that one float shows.
@@ -87,8 +101,8 @@ std::string float_text(const PaperTable& table, const Part& part, const std::str
   std::vector<NumberColumn> measured(part.rows.size()), paper(part.rows.size());
   for (std::size_t s = 0; s < part.rows.size(); ++s)
     for (std::size_t i = part.first; i < part.last; ++i) {
-      measured[s].add(part.rows[s].cells[i].measured.value);
-      paper[s].add(part.rows[s].cells[i].published);
+      measured[s].add(measured_text(part.rows[s].cells[i]));
+      paper[s].add(paper_text(part.rows[s].cells[i]));
     }
   const bool beside = std::ranges::any_of(paper, [](const NumberColumn& c) { return c.used(); });
 
@@ -106,8 +120,7 @@ std::string float_text(const PaperTable& table, const Part& part, const std::str
     std::string figures, intervals;
     for (std::size_t s = 0; s < part.rows.size(); ++s) {
       const Cell& cell = part.rows[s].cells[i];
-      figures +=
-          " & " + number(cell.measured.value) + (paper[s].used() ? " & " + number(cell.published) : "");
+      figures += " & " + measured_text(cell) + (paper[s].used() ? " & " + paper_text(cell) : "");
       intervals += " & " + (cell.measured.interval ? interval(*cell.measured.interval) : "{}") +
                    (paper[s].used() ? " & {}" : "");
     }
@@ -116,8 +129,9 @@ std::string float_text(const PaperTable& table, const Part& part, const std::str
     if (has_second_line) body += intervals.substr(1) + " \\\\\n";
   }
 
-  std::string caption = table.title + (continued ? " (continued)" : "") + ".";
-  if (part.all) caption += " Pipeline " + std::string(to_string(*part.all)) + ".";
+  std::string caption = title(table.title) + (continued ? ", continued" : "") + ".";
+  caption += part.all ? " Pipeline: " + std::string(to_string(*part.all)) + "."
+                      : " Figures that differ between the pipelines published and today name theirs.";
   if (body.find("\\tiny") != std::string::npos) caption += " Beneath: 95 % intervals.";
   return "% Made by `cscd tables`; needs "
          "\\usepackage{booktabs,tabularx,siunitx}.\n\\begin{table*}\n\\centering\n"
@@ -131,9 +145,11 @@ std::string float_text(const PaperTable& table, const Part& part, const std::str
 
 // The quantities from one on that fit on a page.
 std::size_t end_of_page(const PaperTable& table, const Part& part, std::size_t first) {
+  const std::size_t letters_a_line =
+      (kWidth - part.rows.size() * (kMeasuredWidth + kPaperWidth)) / kLetterWidth;
   std::size_t height = 0, i = first;
   for (; i < table.columns.size(); ++i) {
-    height += kLineHeight * (1 + label(table, part, i).size() / kLettersPerLine) +
+    height += kLineHeight * (1 + label(table, part, i).size() / letters_a_line) +
               (has_interval(table, i) ? kIntervalHeight : 0);
     if (height > kMostHeight && i > first) break;
   }
@@ -145,7 +161,7 @@ std::size_t end_of_page(const PaperTable& table, const Part& part, std::size_t f
 std::vector<LatexTable> latex_tables(std::span<const PaperTable> tables) {
   std::vector<LatexTable> out;
   for (const PaperTable& table : tables) {
-    if (table.rows.empty() || table.columns.empty()) continue;
+    if (table.rows.empty() || table.columns.empty() || table.columns.size() > kMostLatexRows) continue;
     Part part{};
     part.all = table.columns.front().pipeline;
     if (std::ranges::any_of(table.columns, [&](const Column& c) { return c.pipeline != part.all; }))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct LatexTable {
 // Returns the tables for a two-column article, each as a table* of its own: quantities down, scenes across,
 // measured figures and the paper's in columns of their own, intervals in small type beneath. They need
 // booktabs, tabularx and siunitx. A table that does not fit on a page or in its width goes on in further
-// files, NAME-2.tex and so on.
+// files, NAME-2.tex and so on. Tables of more than kMostLatexRows quantities are left out.
+inline constexpr std::size_t kMostLatexRows = 60;
 std::vector<LatexTable> latex_tables(std::span<const PaperTable> tables);
 
 }  // namespace cscd::bench
