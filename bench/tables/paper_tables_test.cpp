@@ -267,8 +267,8 @@ TEST(TablesText, CsvHasOneLineACellAndQuotesCommas) {
   definitions["tables"][0].erase("scenes");  // rows are those of the records
   const auto tables = paper_tables(definitions, {}, records);
   EXPECT_EQ(tables_csv(tables),
-            "table,scene,key,title,unit,published,measured,low,high,reason\n"
-            "t,rope,k,\"swift, slow\",,,9,6,45,\n");
+            "table,scene,key,title,unit,published,measured,low,high,reason,pipeline\n"
+            "t,rope,k,\"swift, slow\",,,9,6,45,,today\n");
 }
 
 }  // namespace

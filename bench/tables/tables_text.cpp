@@ -235,17 +235,16 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
 }
 
 std::string tables_csv(std::span<const PaperTable> tables) {
-  std::string out = "table,scene,key,title,unit,pipeline,published,measured,low,high,reason\n";
+  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason,pipeline\n";
   for (const PaperTable& table : tables)
     for (const Row& row : table.rows)
       for (std::size_t i = 0; i < row.cells.size(); ++i) {
         const Cell& cell = row.cells[i];
         const Column& column = table.columns[i];
         out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
-               column.unit + "," + std::string(pipeline_text(column)) + "," + number(cell.published) + "," +
-               number(cell.measured.value) + "," +
+               column.unit + "," + number(cell.published) + "," + number(cell.measured.value) + "," +
                (cell.measured.interval ? interval(cell.measured, ",") : std::string(",")) + "," +
-               quoted(cell.measured.reason) + "\n";
+               quoted(cell.measured.reason) + "," + std::string(pipeline_text(column)) + "\n";
       }
   return out;
 }
