@@ -105,7 +105,7 @@ OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std
 
 void OrientationTable::update(const Motion& motion) {
   motion_ = motion;
-  if (pipeline_ == Pipeline::published) return;  // normals are then made where they are asked for
+  if (pipeline_ == Pipeline::published) return update_one_by_one();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const auto& [first, second, third] = lanes_[i].corner;
     const VectorLanes corner = gather(motion, first);
@@ -134,7 +134,7 @@ void OrientationTable::with_signs(const Observer& observer, Use use) const {
 
 void OrientationTable::classify(std::size_t group, const Observer& observer,
                                 std::span<Orientation> out) const {
-  if (pipeline_ == Pipeline::published) return classify_one_by_one(group, observer, out);
+  if (pipeline_ == Pipeline::published) return classify_one_by_one(first_triangle_[group], observer, out);
   with_signs(observer, [&](const auto& block_signs) {
     for (std::size_t b = first_block_[group], first = 0; first < out.size(); ++b, first += kLanes) {
       const Sign8 signs = block_signs(b);
@@ -146,11 +146,11 @@ void OrientationTable::classify(std::size_t group, const Observer& observer,
 
 Orientation OrientationTable::classify(std::size_t group, std::size_t member,
                                        const Observer& observer) const {
-  if (pipeline_ == Pipeline::published) {
-    const auto [p, q, r] = mesh_.corners(triangles_of(group)[member]);
-    return orientation({(*motion_)[p], (*motion_)[q], (*motion_)[r]}, observer, test_, sign_);
-  }
   Orientation found;
+  if (pipeline_ == Pipeline::published) {
+    classify_one_by_one(first_triangle_[group] + member, observer, {&found, 1});
+    return found;
+  }
   with_signs(observer, [&](const auto& block_signs) {
     const Sign8 signs = block_signs(first_block_[group] + member / kLanes);
     found = from_sign(static_cast<int>(signs[member % kLanes]));

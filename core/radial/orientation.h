@@ -51,17 +51,16 @@ class OrientationTable {
   };
   template <class Use>
   void with_signs(const Observer& observer, Use use) const;
-  void classify_one_by_one(std::size_t group, const Observer& observer, std::span<Orientation> out) const;
-  std::span<const TriangleId> triangles_of(std::size_t group) const {
-    return std::span(triangles_)
-        .subspan(first_triangle_[group], first_triangle_[group + 1] - first_triangle_[group]);
-  }
+  void update_one_by_one();
+  // Classifies the triangles from number `first` in triangles_ on.
+  void classify_one_by_one(std::size_t first, const Observer& observer, std::span<Orientation> out) const;
 
   const TriangleMesh& mesh_;
   SegmentTest test_;
   SignTest sign_;
   Pipeline pipeline_;
   std::vector<TriangleId> triangles_;        // of all groups
+  std::vector<MovingNormal> normals_;        // [triangles], in the pipeline `published`
   std::vector<std::size_t> first_triangle_;  // [groups + 1]: where the triangles of a group begin
   std::vector<std::size_t> first_block_;     // [groups + 1]: where the blocks of a group begin
   std::vector<TriangleLanes> lanes_;         // [blocks]; a block with fewer triangles repeats its last one

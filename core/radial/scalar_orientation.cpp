@@ -8,11 +8,14 @@
 namespace cscd::radial {
 namespace {
 
+MovingNormal normal_of(const MovingPoint (&corner)[3]) {
+  return moving_cross(between(corner[0], corner[1]), between(corner[0], corner[2]));
+}
+
 // The class of a triangle towards the moving point q, each coordinate of which is known up to `slack`.
-Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, double slack, SignTest sign) {
-  return from_sign(signs_of(triple_product(between(corner[0], corner[1]), between(corner[0], corner[2]),
-                                           between(q, corner[0]), slack),
-                            sign));
+Orientation towards_point(const MovingNormal& normal, const MovingPoint& corner, const MovingPoint& q,
+                          double slack, SignTest sign) {
+  return from_sign(signs_of(triple_product(normal, between(q, corner), slack), sign));
 }
 
 struct Range {
@@ -39,12 +42,12 @@ Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& s
   return known ? Range{std::clamp(range.low, 0.0, 1.0), std::clamp(range.high, 0.0, 1.0)} : Range{0, 1};
 }
 
-Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment& segment, SegmentTest test,
-                            SignTest sign) {
+Orientation towards_segment(const MovingNormal& normal, const MovingPoint (&corner)[3],
+                            const MovingSegment& segment, SegmentTest test, SignTest sign) {
   const Range range = viewing_range(looked_at(corner, test), segment);
-  const Orientation first = towards_point(corner, segment.at(range.low), segment.slack, sign);
+  const Orientation first = towards_point(normal, corner[0], segment.at(range.low), segment.slack, sign);
   if (first == Orientation::uncertain || range.low == range.high) return first;
-  const Orientation last = towards_point(corner, segment.at(range.high), segment.slack, sign);
+  const Orientation last = towards_point(normal, corner[0], segment.at(range.high), segment.slack, sign);
   return last == first ? first : Orientation::uncertain;
 }
 
@@ -52,25 +55,32 @@ Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment&
 
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test,
                         SignTest sign) {
-  if (observer.is_segment) return towards_segment(corner, MovingSegment(observer), test, sign);
-  return towards_point(corner, observer.head, 0, sign);
+  const MovingNormal normal = normal_of(corner);
+  if (observer.is_segment) return towards_segment(normal, corner, MovingSegment(observer), test, sign);
+  return towards_point(normal, corner[0], observer.head, 0, sign);
 }
 
-void OrientationTable::classify_one_by_one(std::size_t group, const Observer& observer,
+void OrientationTable::update_one_by_one() {
+  normals_.resize(triangles_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const auto [p, q, r] = mesh_.corners(triangles_[i]);
+    normals_[i] = normal_of({(*motion_)[p], (*motion_)[q], (*motion_)[r]});
+  }
+}
+
+void OrientationTable::classify_one_by_one(std::size_t first, const Observer& observer,
                                            std::span<Orientation> out) const {
-  const std::span<const TriangleId> triangles = triangles_of(group);
-  const auto for_each_triangle = [&](const auto& towards) {
-    for (std::size_t member = 0; member < out.size(); ++member) {
-      const auto [p, q, r] = mesh_.corners(triangles[member]);
-      const MovingPoint corner[3] = {(*motion_)[p], (*motion_)[q], (*motion_)[r]};
-      out[member] = towards(corner);
-    }
-  };
   if (observer.is_segment) {
     const MovingSegment segment(observer);
-    for_each_triangle([&](const auto& corner) { return towards_segment(corner, segment, test_, sign_); });
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const auto [p, q, r] = mesh_.corners(triangles_[first + i]);
+      out[i] = towards_segment(normals_[first + i], {(*motion_)[p], (*motion_)[q], (*motion_)[r]}, segment,
+                               test_, sign_);
+    }
   } else {
-    for_each_triangle([&](const auto& corner) { return towards_point(corner, observer.head, 0, sign_); });
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = towards_point(normals_[first + i], (*motion_)[mesh_.corners(triangles_[first + i])[0]],
+                             observer.head, 0, sign_);
   }
 }
 
