@@ -26,8 +26,9 @@ class RvbcCuller : public Culler {
              const RvbcOptions& options)
       : clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
-        hierarchy_(setup.mesh, setup.reference, clusters_),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test),
+        hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, radial::SignTest::certain,
+               setup.pipeline),
         unmerged_(clusters_.clusters.size()) {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }

@@ -46,9 +46,9 @@ class McdCuller : public Culler {
   explicit McdCuller(const Setup& setup)
       : mesh_(setup.mesh),
         tree_(build_tree(mesh_, setup.reference)),
-        bounds_(mesh_, tree_),
+        bounds_(mesh_, tree_, setup.pipeline),
         discs_(mesh_, tree_),
-        cones_(mesh_, tree_) {}
+        cones_(mesh_, tree_, setup.pipeline) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
 

@@ -87,6 +87,24 @@ TEST(NormalCones, HoldEveryNormalBelowThemAtAllTimes) {
   EXPECT_GT(wide, 30u) << "all cones are narrow";
 }
 
+// Mutation: scalar code takes the corners of a triangle in another order.
+TEST(NormalCones, AreTheSameOneByOne) {
+  std::mt19937_64 random(2);
+  const Shape shape = test::icosphere(2);
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  NormalCones in_lanes(mesh, tree), one_by_one(mesh, tree, Pipeline::published);
+  for (int round = 0; round < 5; ++round) {
+    const std::vector<Vec3> start = shaken(shape.positions, 0.1, random), end = shaken(start, 0.1, random);
+    in_lanes.update(tree, Motion(start, end));
+    one_by_one.update(tree, Motion(start, end));
+    for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
+      ASSERT_EQ(in_lanes[node].axis, one_by_one[node].axis);
+      ASSERT_EQ(in_lanes[node].cosine, one_by_one[node].cosine);
+    }
+  }
+}
+
 TEST(NormalCones, AreUnknownWhereTheNormalVanishesOrTurnsRound) {
   const auto cone_of = [](const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
     const TriangleMesh mesh({corners(0, 1, 2)}, 3);

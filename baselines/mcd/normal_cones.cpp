@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bernstein.h"
+
 namespace cscd::mcd {
 namespace {
 
@@ -56,7 +58,8 @@ NormalCone merged(const NormalCone& a, const NormalCone& b) {
   return cone(axis, std::min(cosine_towards(axis, a), cosine_towards(axis, b)));
 }
 
-NormalCones::NormalCones(const TriangleMesh& mesh, const Tree& tree) : node_(tree.node_count()) {
+NormalCones::NormalCones(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline)
+    : mesh_(mesh), pipeline_(pipeline), node_(tree.node_count()) {
   std::size_t lane = kLanes;
   for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
     if (!tree.is_leaf(node)) continue;
@@ -74,6 +77,17 @@ NormalCones::NormalCones(const TriangleMesh& mesh, const Tree& tree) : node_(tre
 }
 
 void NormalCones::update(const Tree& tree, const Motion& motion) {
+  if (pipeline_ == Pipeline::published)
+    update_leaves_one_by_one(tree, motion);
+  else
+    update_leaves(motion);
+  // Children have larger numbers than their parents, so this visits them first.
+  for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node)
+    if (!tree.is_leaf(node))
+      node_[static_cast<std::size_t>(node)] = merged((*this)[tree.left(node)], (*this)[tree.right(node)]);
+}
+
+void NormalCones::update_leaves(const Motion& motion) {
   for (const LeafLanes& lanes : lanes_) {
     const auto& [first, second, third] = lanes.corner;
     const VectorLanes corner = gather(motion, first);
@@ -85,10 +99,18 @@ void NormalCones::update(const Tree& tree, const Motion& motion) {
       node_[static_cast<std::size_t>(lanes.node[l])] = cone_around(control, normal.area[l]);
     }
   }
-  // Children have larger numbers than their parents, so this visits them first.
-  for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node)
-    if (!tree.is_leaf(node))
-      node_[static_cast<std::size_t>(node)] = merged((*this)[tree.left(node)], (*this)[tree.right(node)]);
+}
+
+void NormalCones::update_leaves_one_by_one(const Tree& tree, const Motion& motion) {
+  for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node) {
+    if (!tree.is_leaf(node)) continue;
+    const auto [p, q, r] = mesh_.corners(tree.triangle(node));
+    const MovingPoint corner = motion[p], second = motion[q], third = motion[r];
+    const MovingNormal normal = moving_cross({second.start - corner.start, second.end - corner.end},
+                                             {third.start - corner.start, third.end - corner.end});
+    node_[static_cast<std::size_t>(node)] =
+        cone_around({normal.at[0], normal.at[1], normal.at[2]}, normal.area);
+  }
 }
 
 }  // namespace cscd::mcd

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/pipeline.h"
 #include "core/geometry/triple_product_lanes.h"
 #include "core/hierarchy/tree.h"
 #include "core/mesh/motion.h"
@@ -39,7 +40,9 @@ NormalCone merged(const NormalCone& a, const NormalCone& b);
 // The cones of all nodes of a tree.
 class NormalCones {
  public:
-  NormalCones(const TriangleMesh& mesh, const Tree& tree);
+  // In the pipeline `published`, normals are made by scalar code, one triangle at a time. They have the same
+  // bits. The mesh must outlive the cones.
+  NormalCones(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline = Pipeline::today);
 
   // Computes the cones for one interval. Linear in the number of triangles; allocates nothing. `tree` must
   // be the tree of the constructor.
@@ -52,6 +55,11 @@ class NormalCones {
     std::array<NodeIndex, kLanes> node;
     std::array<VertexLanes, 3> corner;
   };
+  void update_leaves(const Motion& motion);
+  void update_leaves_one_by_one(const Tree& tree, const Motion& motion);
+
+  const TriangleMesh& mesh_;
+  Pipeline pipeline_;
   std::vector<LeafLanes> lanes_;  // the last one may repeat its last leaf
   std::vector<NormalCone> node_;  // [nodes]
 };

@@ -156,7 +156,7 @@ void report(const ReportOptions& options) {
     for (const StrategyRecord& strategy : record.strategies) strategies.push_back(strategy_of(strategy));
     // A record made with the paper's code around every method says so.
     rows.push_back({{"scene", record.scene.name},
-                    {"pipeline", read_document(sources.runs[r]).value("pipeline", "today")},
+                    {"pipeline", to_string(record.pipeline)},
                     {"file", link(sources.runs[r])},
                     {"counted_intervals", record.counted_intervals},
                     {"strategies", std::move(strategies)}});
@@ -196,7 +196,7 @@ void add_report(CLI::App& app) {
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
   command
       ->add_option("records", options->records,
-                   "what cscd run wrote, at most one a scene; and what cscd accuracy and cscd scale wrote")
+                   "what cscd run wrote, at most one a scene and pipeline; and what cscd accuracy and cscd scale wrote")
       ->required();
   command->add_option("--history", options->history,
                       "a folder of entries of cscd history, such as results/history, to show too");

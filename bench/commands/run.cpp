@@ -19,6 +19,7 @@
 #include "bench/rows/catalogue.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
+#include "core/base/pipeline.h"
 #include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/digest.h"
@@ -27,10 +28,11 @@ namespace cscd::bench {
 namespace {
 
 constexpr char kAllScenes[] = "all";
-constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
+constexpr char kReferee[] = "exact";         // judges culling, whatever test is timed
+constexpr char kPublishedTest[] = "newton";  // the paper's
 
 struct RunOptions {
-  std::string scene = "rope", elementary = "newton", frames, output;
+  std::string scene = "rope", elementary = kPublishedTest, pipeline = "today", frames, output;
   std::vector<std::string> strategies;
   std::size_t repetitions = 5, count_every = 1, time_every = 1, time_contacts = 3, verify_every = 1;
   std::uint64_t seed = 2014;
@@ -55,6 +57,8 @@ std::vector<std::string> command_line(const RunOptions& options, std::span<const
                                     names,
                                     "--elementary",
                                     options.elementary,
+                                    "--pipeline",
+                                    options.pipeline,
                                     "--frames",
                                     std::to_string(range.first) + ":" + std::to_string(range.last),
                                     "--repetitions",
@@ -163,8 +167,8 @@ VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contes
     const TimingPlan plan{record.timed_intervals, options.repetitions, options.seed};
     void_times = time_contestants(input, contestants, plan, verifier, counted, record.strategies);
     for (StrategyRecord& strategy : record.strategies)
-      strategy.footprint =
-          measure_footprint(input, strategy_named(strategy.name), timed, record.timed_intervals);
+      strategy.footprint = measure_footprint(input, {&strategy_named(strategy.name), false, record.pipeline},
+                                             timed, record.timed_intervals);
   }
   VerificationRecord verified = verifier.record();
   verified.disagreeing = counted.disagreeing;
@@ -189,7 +193,8 @@ bool run_one(RunOptions options, OutputFile& output) {
     options.verify_every = options.time_every = kSmokeEvery;
     options.time_contacts = std::min<std::size_t>(options.time_contacts, 1);
   }
-  const std::vector<const Strategy*> strategies = chosen_strategies(input, options.strategies);
+  const std::vector<const Strategy*> strategies =
+      chosen_strategies(input, options.strategies, pipeline_named(options.pipeline));
   if (strategies.empty())
     throw InputError("--strategy: " + options.scene +
                      " allows none of these; name others (cscd list strategies)");
@@ -198,6 +203,7 @@ bool run_one(RunOptions options, OutputFile& output) {
   record.environment = environment();
   record.scene = describe(input);
   record.seed = options.seed;
+  record.pipeline = pipeline_named(options.pipeline);
   record.elementary = timed.name;
   record.intervals = range.last - range.first;
   record.timed_intervals = intervals_to_time(input, range, options);
@@ -205,7 +211,7 @@ bool run_one(RunOptions options, OutputFile& output) {
   const std::vector<std::size_t> to_verify =
       united(std::vector{every_kth(range, options.verify_every), record.timed_intervals});
   record.counted_intervals = united(std::vector{every_kth(range, options.count_every), to_verify});
-  std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed);
+  std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed, record.pipeline);
   record.command = command_line(options, contestants, range, input.import.has_value());
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
 
@@ -252,6 +258,9 @@ bool run_all(const RunOptions& options) {
 }
 
 void run(const RunOptions& options) {
+  if (pipeline_named(options.pipeline) == Pipeline::published && options.elementary != kPublishedTest)
+    throw InputError("--pipeline published --elementary " + options.elementary +
+                     ": the paper's elementary test is a part of that pipeline; leave --elementary out");
   elementary_test_named(options.elementary);
   for (const std::string& name : options.strategies)  // before anything is opened
     if (strategies_in(name).empty()) strategy_named(name);
@@ -291,6 +300,12 @@ void add_run(CLI::App& app) {
                    "strategies or groups of them, with commas between; default all without a group")
       ->delimiter(',');
   command->add_option("--elementary", options->elementary, "the elementary test that is timed")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--pipeline", options->pipeline,
+          "`published` measures the paper's rows with the paper's code: scalar refit and orientation, "
+          "its\nfilter alone, one feature pair after the other; `today` with this project's")
       ->capture_default_str();
   command->add_option("--repetitions", options->repetitions, "how often each interval is timed")
       ->check(CLI::Range(1, 1000))

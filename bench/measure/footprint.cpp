@@ -71,7 +71,7 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
   const auto resident = status_bytes("VmRSS");
 
   const auto begin = std::chrono::steady_clock::now();
-  Made made{row.strategy->make(input.setup(elementary, row.first)), {}};
+  Made made{row.strategy->make(input.setup(elementary, row.first, row.pipeline)), {}};
   made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   ContactSet found;
   for (int time = 0; time < 2; ++time)
@@ -82,9 +82,9 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
   return made;
 }
 
-Footprint measure_footprint(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+Footprint measure_footprint(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
                             std::span<const std::size_t> intervals) {
-  const Made made = make_measured(input, {&strategy}, elementary, intervals.front());
+  const Made made = make_measured(input, row, elementary, intervals.front());
   Footprint footprint = made.footprint;
   if (made.prepared.preparation.threads > 1) return footprint;  // the counter sees one
   ContactSet found;

@@ -20,7 +20,7 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
                    std::size_t interval);
 
 // Makes the strategy anew and runs it on the intervals, of which there is at least one.
-Footprint measure_footprint(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+Footprint measure_footprint(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
                             std::span<const std::size_t> intervals);
 
 }  // namespace cscd::bench

@@ -50,7 +50,8 @@ TEST(Footprint, SeesPeakAndHeldMemory) {
 
   const Strategy hoarder{"hoarder", "a test", Guarantee::heuristic, {}, make_hoarder};
   const std::array<std::size_t, 1> intervals{0};
-  const Footprint footprint = measure_footprint(input, hoarder, elementary_test_named("newton"), intervals);
+  const Footprint footprint =
+      measure_footprint(input, {&hoarder}, elementary_test_named("newton"), intervals);
   constexpr double mebibyte = 1 << 20;
   if (!footprint.peak_bytes || !footprint.held_bytes) GTEST_SKIP() << "the kernel does not say";
   EXPECT_NEAR(static_cast<double>(*footprint.held_bytes) / mebibyte, 64, 8);

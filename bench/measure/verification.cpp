@@ -14,7 +14,8 @@ using Clock = std::chrono::steady_clock;
 
 }  // namespace
 
-// The reference with both tests: a contestant where it takes part, else made for the occasion.
+// The reference with both tests: a contestant where it takes part in the pipeline `today`, which drops no
+// contact, else made for the occasion.
 class Verifier::Reference {
  public:
   Contestant own;
@@ -23,8 +24,9 @@ class Verifier::Reference {
   Reference(const Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
             const ElementaryTest& timed) {
     const Strategy* strategy = &complete_reference();
-    const auto row = std::find_if(contestants.begin(), contestants.end(),
-                                  [&](const Contestant& c) { return c.strategy == strategy; });
+    const auto row = std::find_if(contestants.begin(), contestants.end(), [&](const Contestant& c) {
+      return c.strategy == strategy && c.pipeline == Pipeline::today;
+    });
     used = row != contestants.end() ? &*row : &own;
     if (used == &own) own = std::move(make_contestants(input, {&strategy, 1}, exact, timed).front());
   }

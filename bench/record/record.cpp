@@ -201,6 +201,7 @@ ordered_json to_json(const Record& record) {
           {"command", record.command},
           {"seed", record.seed},
           {"scene", std::move(scene_json)},
+          {"pipeline", to_string(record.pipeline)},
           {"elementary", record.elementary},
           {"intervals", record.intervals},
           {"counted_intervals", record.counted_intervals},
@@ -232,6 +233,7 @@ Record parse_record(const std::string& text, const std::string& where) {
       out.scene.path = out.scene.name;
       out.scene.name = scenes::plain_name(out.scene.path);
     }
+    out.pipeline = pipeline_named(document.value("pipeline", to_string(Pipeline::today)));
     out.elementary = document.at("elementary");
     out.intervals = document.at("intervals");
     out.counted_intervals = document.at("counted_intervals").get<std::vector<std::size_t>>();

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/pipeline.h"
 #include "core/detect/detector.h"
 #include "core/detect/verify.h"
 #include "scenes/catalog/generate.h"
@@ -102,6 +103,7 @@ struct Record {
   std::vector<std::string> command;
   std::uint64_t seed = 0;
   SceneRecord scene;
+  Pipeline pipeline = Pipeline::today;         // older records do not say
   std::string elementary;                      // the timed one
   std::size_t intervals = 0;                   // that the command spans
   std::vector<std::size_t> counted_intervals;  // those of them that have counters and digests, ascending

@@ -40,6 +40,11 @@ constexpr Strategy seeing_start(Strategy row) {
   row.sees_start = true;
   return row;
 }
+// The paper's method, or what the paper compares it with: it can be made in the pipeline `published`.
+constexpr Strategy of_paper(Strategy row) {
+  row.published = true;
+  return row;
+}
 // The library allocates memory as it pleases. A build without any library has no such row.
 [[maybe_unused]] constexpr Strategy in_library(Strategy row) {
   row.settles = false;
@@ -48,18 +53,18 @@ constexpr Strategy seeing_start(Strategy row) {
 
 // Members that a row leaves out have the defaults of strategy.h.
 constexpr std::array kStrategies = {
-    seeing_start(with_role(
+    of_paper(seeing_start(with_role(
         {"base", "16-DOP hierarchy (Klosowski et al. 1998)", Guarantee::complete, kAnySurface, make_base},
-        Role::reference)),
-    seeing_start(
+        Role::reference))),
+    of_paper(seeing_start(
         with_role({"brute", "all pairs of triangles", Guarantee::complete, kAnySurface, make_brute, "oracle"},
-                  Role::oracle)),
-    seeing_start(
-        {"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb}),
-    Strategy{"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
-             kAnySurface, make_mcd},
-    Strategy{"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
-             Guarantee::complete, kAnySurface, make_selfccd},
+                  Role::oracle))),
+    of_paper(seeing_start(
+        {"aabb", "AABB hierarchy (van den Bergen 1999)", Guarantee::complete, kAnySurface, make_aabb})),
+    of_paper({"mcd", "continuous normal cones and contour tests (Tang et al. 2009)", Guarantee::complete,
+              kAnySurface, make_mcd}),
+    of_paper({"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
+              Guarantee::complete, kAnySurface, make_selfccd}),
 #ifdef CSCD_BASELINES_EMBREE
     in_library({"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, kAnySurface, make_embree}),
 #endif
@@ -67,10 +72,10 @@ constexpr std::array kStrategies = {
     in_library(
         {"cgal_boxes", "CGAL, box_self_intersection_d", Guarantee::complete, kAnySurface, make_cgal_boxes}),
 #endif
-    Strategy{"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, kBones,
-             [](const Setup& setup) { return make_rvbc(setup); }},
-    Strategy{"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact,
-             kBones, [](const Setup& setup) { return make_drvbc(setup); }},
+    of_paper({"rvbc", "radial view based culling (Wong et al. 2013)", Guarantee::first_contact, kBones,
+              [](const Setup& setup) { return make_rvbc(setup); }}),
+    of_paper({"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact,
+              kBones, [](const Setup& setup) { return make_drvbc(setup); }}),
     Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
              kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }},
     seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
@@ -85,40 +90,41 @@ constexpr std::array kStrategies = {
                 Guarantee::heuristic, kAnySurface, make_fcl, "checker", true}),
 #endif
     // One thing at a time left out, or added.
-    Strategy{"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, kBones,
-             [](const Setup& setup) {
-               return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
-             },
-             kAblation},
-    Strategy{"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
-             kBones,
-             [](const Setup& setup) {
-               return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
-             },
-             kAblation},
-    Strategy{"drvbc_bones", "drvbc with one atomic cluster for each bone", Guarantee::first_contact, kBones,
-             [](const Setup& setup) {
-               return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
-             },
-             kAblation},
-    Strategy{"drvbc_pieces", "drvbc with one atomic cluster for each connected piece of a bone's surface",
-             Guarantee::first_contact, kBones,
-             [](const Setup& setup) {
-               return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
-             },
-             kAblation},
-    Strategy{"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, kBones,
-             [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
-             kAblation},
-    Strategy{"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, kBones,
-             [](const Setup& setup) {
-               return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
-             },
-             kAblation},
-    Strategy{"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
-             Guarantee::first_contact, kBones,
-             [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
-             kAblation},
+    of_paper({"rvbc_relative", "rvbc with relative boxes", Guarantee::first_contact, kBones,
+              [](const Setup& setup) {
+                return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
+              },
+              kAblation}),
+    of_paper({"drvbc_unrefined", "drvbc without refinement of its atomic clusters", Guarantee::first_contact,
+              kBones,
+              [](const Setup& setup) {
+                return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
+              },
+              kAblation}),
+    of_paper({"drvbc_bones", "drvbc with one atomic cluster for each bone", Guarantee::first_contact, kBones,
+              [](const Setup& setup) {
+                return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
+              },
+              kAblation}),
+    of_paper({"drvbc_pieces", "drvbc with one atomic cluster for each connected piece of a bone's surface",
+              Guarantee::first_contact, kBones,
+              [](const Setup& setup) {
+                return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
+              },
+              kAblation}),
+    of_paper({"drvbc_unmerged", "drvbc without mega clusters", Guarantee::first_contact, kBones,
+              [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
+              kAblation}),
+    of_paper({"drvbc_unrelative", "drvbc without relative boxes", Guarantee::first_contact, kBones,
+              [](const Setup& setup) {
+                return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
+              },
+              kAblation}),
+    of_paper(
+        {"drvbc_uncached", "drvbc without its cache of triangles that were not positive",
+         Guarantee::first_contact, kBones,
+         [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
+         kAblation}),
     Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
              Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {
@@ -163,13 +169,13 @@ constexpr std::array kStrategies = {
                                               .clusters = DrvbcFastOptions::Clusters::of_surface});
              },
              kAblation},
-    Strategy{"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
-             Guarantee::heuristic, kBones,
-             [](const Setup& setup) {
-               return make_drvbc(
-                   setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
-             },
-             kAblation},
+    of_paper({"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
+              Guarantee::heuristic, kBones,
+              [](const Setup& setup) {
+                return make_drvbc(
+                    setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
+              },
+              kAblation}),
 };
 
 const Strategy& playing(Role role) {

@@ -5,17 +5,19 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/pipeline.h"
 #include "core/detect/strategy.h"
 #include "core/detect/verify.h"
 
 namespace cscd::bench {
 
-// A strategy, and what it is asked for: by `first`, the earliest contact alone.
+// A strategy, what it is asked for (by `first`, the earliest contact alone), and in which pipeline.
 struct StrategyRow {
   static constexpr std::string_view kFirst = " --first";
 
   const Strategy* strategy;
   bool first = false;
+  Pipeline pipeline = Pipeline::today;
 
   std::string name() const { return std::string(strategy->name) + std::string(first ? kFirst : ""); }
   bool operator==(const StrategyRow&) const = default;

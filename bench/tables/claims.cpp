@@ -4,6 +4,7 @@
 
 #include "bench/output/data.h"
 #include "bench/output/markdown.h"
+#include "bench/tables/paper_tables.h"
 
 namespace cscd::bench {
 namespace {
@@ -34,37 +35,171 @@ ClaimVerdict judge(const std::vector<Evidence>& evidence, bool somewhere) {
   return holding > 0 ? ClaimVerdict::partly : ClaimVerdict::not_reproduced;
 }
 
-ClaimResult judge(const ordered_json& claim, std::span<const Record> records) {
+const Record* record_of(std::span<const Record> records, const std::string& scene, Pipeline pipeline) {
+  const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
+    return candidate.scene.name == scene && candidate.scene.path.empty() && candidate.pipeline == pipeline;
+  });
+  return record == records.end() ? nullptr : &*record;
+}
+
+Measured measured_in(const ordered_json& definition, std::span<const Record> records,
+                     const std::string& scene, Pipeline pipeline) {
+  const auto find = [&](Pipeline wanted) { return record_of(records, scene, wanted); };
+  const auto missing = [](Pipeline wanted) -> Measured {
+    return {{}, {}, "no record in the pipeline " + std::string(to_string(wanted))};
+  };
+  if (!definition.contains("over_pipeline")) {
+    const Record* record = find(pipeline);
+    return record == nullptr ? missing(pipeline) : measure(definition, *record);
+  }
+  const Pipeline first = pipeline_named(definition.at("pipeline").get<std::string>()),
+                 second = pipeline_named(definition.at("over_pipeline").get<std::string>());
+  for (const Pipeline wanted : {first, second})
+    if (find(wanted) == nullptr) return missing(wanted);
+  return measure_over(definition, *find(first), *find(second));
+}
+
+bool is_about_times(const ordered_json& definition) {
+  return definition.at("quantity").get<std::string>().starts_with("ms.");
+}
+
+// The paper's figure for a row of stages: a figure of its tables, or a product of two, as a total is the
+// total of its own method times the speedup.
+std::optional<double> paper_figure(const ordered_json& row, const std::string& strategy,
+                                   const ordered_json& published, const std::string& scene) {
+  for (const ordered_json& paths : row.value("published", ordered_json::array())) {
+    std::optional<double> product = 1;
+    for (const std::string path : paths) {
+      const ordered_json* figure = find_published(published, replaced(path, "{strategy}", strategy), scene);
+      product = product && figure != nullptr ? std::optional(*product * figure->get<double>()) : std::nullopt;
+    }
+    if (product) return product;
+  }
+  return std::nullopt;
+}
+
+// Where the time goes in the strategies that a claim compares, on a scene where it is missed.
+void add_stages(const ordered_json& rows, const std::vector<std::string>& strategies,
+                const std::string& scene, std::span<const Record> records, std::vector<StageFigure>& out) {
+  const ordered_json published = data_json("published.json");
+  for (const std::string& strategy : strategies)
+    for (ordered_json row : rows) {
+      row["strategy"] = strategy;
+      StageFigure figure{scene,
+                         strategy + ": " + row.at("title").get<std::string>(),
+                         {},
+                         {},
+                         paper_figure(row, strategy, published, scene)};
+      for (const Pipeline pipeline : {Pipeline::published, Pipeline::today})
+        if (const Record* record = record_of(records, scene, pipeline))
+          (pipeline == Pipeline::published ? figure.published : figure.today) = measure(row, *record);
+      const auto has = [](const std::optional<Measured>& m) { return m && m->value; };
+      if (has(figure.published) || has(figure.today)) out.push_back(std::move(figure));
+    }
+}
+
+ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
+                  std::span<const Record> records) {
   ClaimResult result;
   result.id = claim.at("id");
   result.quote = claim.at("quote");
   result.where = claim.at("where");
+  result.held_against = pipelines_of(records).front();
   if (!claim.contains("measure")) {
     result.not_measured_because = claim.at("not_measured_because");
     return result;
   }
   result.expectation = text_of(claim.at("expect"));
-  for (const ordered_json& scene : claim.at("scenes")) {
-    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
-      return candidate.scene.name == scene && candidate.scene.path.empty();
-    });
-    if (record == records.end()) continue;
+  for (const std::string scene : claim.at("scenes")) {
+    const Record* const today = record_of(records, scene, Pipeline::today);
+    if (today == nullptr && record_of(records, scene, Pipeline::published) == nullptr) continue;
+    std::vector<std::string> compared;  // on this scene, in vain
     for (const ordered_json& definition : claim["measure"]) {
       Evidence& evidence = result.evidence.emplace_back();
       evidence.scene = scene;
       evidence.title = definition.at("title");
-      evidence.measured = measure(definition, *record);
+      evidence.measured = measured_in(definition, records, scene, result.held_against);
       evidence.holds = evidence.measured.value && within(*evidence.measured.value, claim["expect"]);
+      if (result.held_against != Pipeline::today && today != nullptr && !definition.contains("over_pipeline"))
+        evidence.today = measure(definition, *today);
+      if (evidence.holds || !evidence.measured.value || !is_about_times(definition)) continue;
+      for (const char* key : {"strategy", "over"}) {
+        const std::string name = definition.value(key, "");
+        if (!name.empty() && std::ranges::find(compared, name) == compared.end()) compared.push_back(name);
+      }
     }
+    add_stages(stage_rows, compared, scene, records, result.stages);
   }
   result.verdict = judge(result.evidence, claim.value("somewhere", false));
+  if (result.verdict == ClaimVerdict::reproduced) result.stages.clear();
   return result;
 }
 
+std::string text_of(const Measured& measured) {
+  return measured.value ? number_text(*measured.value) : measured.reason;
+}
+
 std::string figure(const Evidence& evidence) {
-  if (!evidence.measured.value) return evidence.measured.reason;
-  const std::string number = number_text(*evidence.measured.value);
-  return evidence.holds ? number : "**" + number + "**";
+  const std::string text = text_of(evidence.measured);
+  return evidence.holds || !evidence.measured.value ? text : "**" + text + "**";
+}
+
+bool same(const Measured& a, const Measured& b) {
+  return a.value && b.value && *a.value == *b.value;
+}
+
+// The names in the order in which they first occur.
+template <class Parts, class Name>
+std::vector<std::string> names_in(const Parts& parts, const Name& name) {
+  std::vector<std::string> names;
+  for (const auto& part : parts)
+    if (std::ranges::find(names, name(part)) == names.end()) names.push_back(name(part));
+  return names;
+}
+
+constexpr auto kScene = [](const auto& part) { return part.scene; };
+constexpr auto kTitle = [](const auto& part) { return part.title; };
+
+// The row of one figure, and beneath it what it is in the pipeline `today`, where that differs.
+void add_rows(const std::string& title, std::span<const Evidence> evidence, const ClaimResult& claim,
+              std::vector<std::vector<std::string>>& rows) {
+  std::vector<const Evidence*> of_title;
+  for (const Evidence& e : evidence)
+    if (e.title == title) of_title.push_back(&e);
+  const bool two = std::ranges::any_of(
+      of_title, [](const Evidence* e) { return e->today && !same(e->measured, *e->today); });
+  std::vector<std::string> held(1, title + (two ? ", " + std::string(to_string(claim.held_against)) : "")),
+      beside(1, title + ", today");
+  for (const Evidence* e : of_title) {
+    held.push_back(figure(*e));
+    beside.push_back(e->today ? text_of(*e->today) : "");
+  }
+  rows.push_back(std::move(held));
+  if (two) rows.push_back(std::move(beside));
+}
+
+std::string stages_markdown(const ClaimResult& claim) {
+  const std::vector<std::string> scenes = names_in(claim.stages, kScene);
+  std::vector<std::string> head(1, "where the time goes: `published`, `today` (the paper)");
+  head.insert(head.end(), scenes.begin(), scenes.end());
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& title : names_in(claim.stages, kTitle)) {
+    std::vector<std::string>& row = rows.emplace_back(1, title);
+    for (const std::string& scene : scenes) {
+      const auto place = std::ranges::find_if(
+          claim.stages, [&](const StageFigure& s) { return s.scene == scene && s.title == title; });
+      if (place == claim.stages.end()) {
+        row.push_back("");
+        continue;
+      }
+      const auto text = [](const std::optional<Measured>& m) {
+        return m && m->value ? number_text(*m->value) : std::string("–");
+      };
+      row.push_back(text(place->published) + ", " + text(place->today) +
+                    (place->paper ? " (" + number_text(*place->paper) + ")" : ""));
+    }
+  }
+  return markdown_table(head, rows);
 }
 
 }  // namespace
@@ -85,7 +220,8 @@ std::string_view to_string(ClaimVerdict verdict) {
 
 std::vector<ClaimResult> judge_claims(const ordered_json& claims, std::span<const Record> records) {
   std::vector<ClaimResult> results;
-  for (const ordered_json& claim : claims.at("claims")) results.push_back(judge(claim, records));
+  const ordered_json stage_rows = claims.value("stages", ordered_json::array());
+  for (const ordered_json& claim : claims.at("claims")) results.push_back(judge(claim, stage_rows, records));
   return results;
 }
 
@@ -103,11 +239,13 @@ ordered_json claims_json(std::span<const ClaimResult> claims) {
         row.update({{"measured", *e.measured.value}, {"holds", e.holds}});
       else
         row["reason"] = e.measured.reason;
+      if (e.today && e.today->value) row["today"] = *e.today->value;
     }
     out.push_back({{"id", claim.id},
                    {"quote", claim.quote},
                    {"where", claim.where},
                    {"expectation", claim.expectation},
+                   {"pipeline", to_string(claim.held_against)},
                    {"verdict", to_string(claim.verdict)},
                    {"evidence", std::move(evidence)},
                    {"why", claim.not_measured_because}});
@@ -120,29 +258,31 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       "# The paper's claims, held against the records\n\n"
       "A claim is *reproduced* when every measured figure lies where it says, *partly* when some do. Figures "
       "in bold\n"
-      "do not. What somebody has found out about the differences since stands in notes.md beside this page, "
+      "do not. " +
+      (claims.empty() || claims.front().held_against == Pipeline::today
+           ? std::string("The records are of the pipeline `today`: this project's code around every method.")
+           : std::string("Claims are held against the pipeline `published`, the paper's code around every "
+                         "method; `today` is\nthis project's, and stands beside it where it differs.")) +
+      " Where a claim about times is missed, a\n"
+      "second table shows the stages in milliseconds an interval, beside those of the paper, and the work "
+      "that they do. The\n"
+      "paper's totals of base, mcd, aabb and selfccd are its speedups times its own total.\n"
+      "What somebody has found out about the differences since stands in notes.md beside this page, "
       "if "
       "anywhere.\n";
   for (const ClaimResult& claim : claims) {
     out += "\n## " + claim.id + ": " + std::string(to_string(claim.verdict)) + "\n\n> " + claim.quote + " (" +
            claim.where + ")\n\n";
-    std::vector<std::string> titles, scenes;
-    for (const Evidence& e : claim.evidence) {
-      if (std::find(titles.begin(), titles.end(), e.title) == titles.end()) titles.push_back(e.title);
-      if (std::find(scenes.begin(), scenes.end(), e.scene) == scenes.end()) scenes.push_back(e.scene);
-    }
+    const std::vector<std::string> titles = names_in(claim.evidence, kTitle),
+                                   scenes = names_in(claim.evidence, kScene);
     if (!scenes.empty()) {
       std::vector<std::string> head = {"expected " + claim.expectation};
       head.insert(head.end(), scenes.begin(), scenes.end());
       std::vector<std::vector<std::string>> rows;
-      for (std::size_t t = 0; t < titles.size(); ++t) {
-        std::vector<std::string>& row = rows.emplace_back(1, titles[t]);
-        for (std::size_t s = 0; s < scenes.size(); ++s)
-          row.push_back(figure(claim.evidence[s * titles.size() + t]));
-      }
-      out += markdown_table(head, rows);
-      out += "\n";
+      for (const std::string& title : titles) add_rows(title, claim.evidence, claim, rows);
+      out += markdown_table(head, rows) + "\n";
     }
+    if (!claim.stages.empty()) out += stages_markdown(claim) + "\n";
     if (!claim.not_measured_because.empty()) out += claim.not_measured_because + "\n";
   }
   return out;

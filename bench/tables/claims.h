@@ -21,12 +21,24 @@ struct Evidence {
   std::string scene, title;
   Measured measured;
   bool holds = false;  // false too where nothing was measured
+  // The same in the pipeline `today`, to be shown beside; none where the claim is held against that one, and
+  // where a figure compares the two.
+  std::optional<Measured> today = std::nullopt;
+};
+
+// Where the time goes in one strategy on one scene, for a claim about times that is missed somewhere.
+struct StageFigure {
+  std::string scene, title;
+  std::optional<Measured> published, today;  // by pipeline; none without a record
+  std::optional<double> paper;
 };
 
 struct ClaimResult {
   std::string id, quote, where, expectation;
   ClaimVerdict verdict = ClaimVerdict::not_measured;
+  Pipeline held_against = Pipeline::today;
   std::vector<Evidence> evidence;
+  std::vector<StageFigure> stages;   // of the scenes on which it is missed, by scene and then by title
   std::string not_measured_because;  // empty for a claim that is measured
 };
 
@@ -35,7 +47,8 @@ struct ClaimResult {
 // claim without `measure` cannot be measured here, for the reason in `not_measured_because`. Explanations of
 // what differs belong to a scene and a record, and stand in notes beside the record. With `somewhere`, one
 // scene is enough. Reproduced: every figure that was measured holds; partly: some; scenes without a record do
-// not count.
+// not count. Claims are held against the pipeline `published` where there is any record of it, and else
+// against `today`. A definition with `over_pipeline` divides the figure of its `pipeline` by that of another.
 std::vector<ClaimResult> judge_claims(std::span<const Record> records);
 // The same with other claims.
 std::vector<ClaimResult> judge_claims(const nlohmann::ordered_json& claims, std::span<const Record> records);

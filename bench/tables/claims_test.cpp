@@ -69,6 +69,52 @@ TEST(Claims, ThatCannotBeMeasuredSayWhy) {
   EXPECT_NE(claims_markdown(std::vector{claim}).find("of noise"), std::string::npos);
 }
 
+// Mutation: a claim is held against the wrong pipeline, or the other one decides, too.
+TEST(Claims, AreHeldAgainstThePublishedPipelineWhereThereIsOne) {
+  std::vector<Record> both = {record_of("rope", 1, 10), record_of("rope", 9, 10), record_of("hand", 1, 10)};
+  both[1].pipeline = Pipeline::published;
+  const ClaimResult claim = judge_claims(a_over_b({{"most", 0.5}}), both).at(0);
+  EXPECT_EQ(claim.held_against, Pipeline::published);
+  EXPECT_EQ(claim.verdict, ClaimVerdict::not_reproduced);
+  ASSERT_EQ(claim.evidence.size(), 2u);
+  EXPECT_EQ(claim.evidence[0].measured.value, 0.9);
+  EXPECT_EQ(claim.evidence[0].today.value().value, 0.1);
+  EXPECT_FALSE(claim.evidence[1].measured.value) << "hand has no record of that pipeline";
+  const std::string page = claims_markdown(std::vector{claim});
+  EXPECT_NE(page.find("a / b, published | **0.9**"), std::string::npos) << page;
+  EXPECT_NE(page.find("a / b, today | 0.1"), std::string::npos) << page;
+}
+
+TEST(Claims, CompareThePipelinesWhereTheySaySo) {
+  ordered_json claims = a_over_b({{"most", 0.5}});
+  claims["claims"][0]["measure"] = {{{"title", "a, today against published"},
+                                     {"quantity", "counts.bvot"},
+                                     {"strategy", "a"},
+                                     {"pipeline", "today"},
+                                     {"over_pipeline", "published"}}};
+  std::vector<Record> both = {record_of("rope", 1, 10), record_of("rope", 4, 10)};
+  EXPECT_EQ(judge_claims(claims, std::span(both).first(1)).at(0).verdict, ClaimVerdict::not_measured);
+  both[1].pipeline = Pipeline::published;
+  EXPECT_EQ(judge_claims(claims, both).at(0).evidence.at(0).measured.value, 0.25);
+}
+
+// A claim about times that is missed shows where the time goes, beside the paper's.
+TEST(Claims, ThatAreMissedShowTheStages) {
+  ordered_json claims = a_over_b({{"least", 9}});
+  claims["claims"][0]["measure"][0]["quantity"] = "ms.traversal";
+  claims["stages"] = {{{"title", "traversal (ms)"},
+                       {"quantity", "ms.traversal"},
+                       {"published", {{"table3.{scene}.rvbc.bvh_traversal"}}}}};
+  Record record = record_of("rope", 1, 10);
+  for (StrategyRecord& row : record.strategies) row.ms = {{"traversal", {{2}, {2}}}};
+  const ClaimResult claim = judge_claims(claims, std::vector{record}).at(0);
+  ASSERT_EQ(claim.stages.size(), 2u);
+  EXPECT_EQ(claim.stages[0].title, "a: traversal (ms)");
+  EXPECT_EQ(claim.stages[0].today.value().value, 2);
+  EXPECT_EQ(claim.stages[0].paper, 11.0);
+  EXPECT_NE(claims_markdown(std::vector{claim}).find("a: traversal (ms) | –, 2 (11)"), std::string::npos);
+}
+
 // Every claim that ships can be judged, and says what it measures or why it measures nothing.
 TEST(Claims, ShippedOnesAreComplete) {
   Record record = record_of("rope", 1, 10);

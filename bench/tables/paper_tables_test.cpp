@@ -53,7 +53,7 @@ Cell cell(nlohmann::ordered_json column, const std::string& scene = "rope") {
   column["key"] = column["title"] = "k";
   const nlohmann::ordered_json published = {{"t", {{"rope", {{"k", 2.5}}}, {"hand", {{"k", 3.5}}}}}};
   const std::vector<Record> records = {sample_record()};
-  return paper_tables(one_column(column), published, records, scene).at(0).rows.at(0).cells.at(0);
+  return paper_tables(one_column(column), published, records, {{scene}, {}, {}}).at(0).rows.at(0).cells.at(0);
 }
 
 TEST(PaperTables, CountsAreExact) {
@@ -123,6 +123,34 @@ TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
   EXPECT_EQ(table.columns[0].key, "slow.k");
   EXPECT_EQ(table.columns[0].title, "slow / swift");
   EXPECT_EQ(table.rows.at(0).cells.at(0).measured.value, 10);
+}
+
+// Times stand once for each pipeline, counters once. Mutation: figures of one pipeline under the other's
+// name.
+TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
+  std::vector<Record> records = {sample_record(), sample_record()};
+  records[1].pipeline = Pipeline::published;
+  for (StrategyRecord& row : records[1].strategies)
+    for (auto& repetition : row.ms["refit"])
+      for (double& ms : repetition) ms *= 4;
+  records[0].strategies.push_back(records[0].strategies[0]);
+  records[0].strategies.back().name = "own";  // has no published twin
+  nlohmann::ordered_json definitions =
+      one_column({{"key", "refit"}, {"title", "refit"}, {"quantity", "ms.refit"}, {"strategy", "slow"}});
+  auto& columns = definitions["tables"][0]["columns"];
+  columns.push_back({{"key", "bvot"}, {"title", "bvot"}, {"quantity", "counts.bvot"}, {"strategy", "slow"}});
+  columns.push_back({{"key", "own"}, {"title", "own"}, {"quantity", "counts.bvot"}, {"strategy", "own"}});
+  definitions["tables"][0].erase("scenes");
+  const PaperTable table = paper_tables(definitions, {}, records).at(0);
+  ASSERT_EQ(table.columns.size(), 4u);
+  const std::vector<Cell>& cells = table.rows.at(0).cells;
+  EXPECT_EQ(table.columns[0].pipeline, Pipeline::published);
+  EXPECT_EQ(cells[0].measured.value, 4);
+  EXPECT_EQ(table.columns[1].pipeline, Pipeline::today);
+  EXPECT_EQ(cells[1].measured.value, 1);
+  EXPECT_EQ(table.columns[2].pipeline, std::nullopt);
+  EXPECT_EQ(cells[2].measured.value, 200);
+  EXPECT_EQ(table.columns[3].pipeline, Pipeline::today);
 }
 
 // The definitions that ship: every published figure has its column, and every column that names a published
@@ -239,8 +267,8 @@ TEST(TablesText, CsvHasOneLineACellAndQuotesCommas) {
   definitions["tables"][0].erase("scenes");  // rows are those of the records
   const auto tables = paper_tables(definitions, {}, records);
   EXPECT_EQ(tables_csv(tables),
-            "table,scene,key,title,unit,published,measured,low,high,reason\n"
-            "t,rope,k,\"swift, slow\",,,9,6,45,\n");
+            "table,scene,key,title,unit,published,measured,low,high,reason,pipeline\n"
+            "t,rope,k,\"swift, slow\",,,9,6,45,,today\n");
 }
 
 }  // namespace

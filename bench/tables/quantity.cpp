@@ -190,4 +190,11 @@ Measured measure(const ordered_json& definition, const Record& record) {
   }
 }
 
+Measured measure_over(const ordered_json& definition, const Record& record, const Record& divisor) {
+  const Measured amount = measure(definition, record), by = measure(definition, divisor);
+  if (!amount.value) return {{}, {}, amount.reason};
+  if (!by.value || *by.value == 0) return {{}, {}, by.value ? "the divisor is zero" : by.reason};
+  return {*amount.value / *by.value, {}, {}};
+}
+
 }  // namespace cscd::bench

@@ -32,6 +32,10 @@ struct Measured {
 // Throws std::logic_error for a definition that says something else.
 Measured measure(const nlohmann::ordered_json& definition, const Record& record);
 
+// The same quantity of two records, the first divided by the second. The two were not measured in turns, so
+// there is no interval.
+Measured measure_over(const nlohmann::ordered_json& definition, const Record& record, const Record& divisor);
+
 // "a+b" at '+'; "a.b" at '.'.
 std::vector<std::string> split(const std::string& text, char separator);
 

@@ -13,9 +13,10 @@ std::vector<Record> read_records(const std::vector<std::string>& paths) {
                        ": its verification failed, so it holds no times; mend the strategy and "
                        "run again");
     for (const Record& other : records)
-      if (other.scene.name == record.scene.name)
+      if (other.scene.name == record.scene.name && other.pipeline == record.pipeline)
         throw InputError("record " + path + ": a second record of scene " + record.scene.name +
-                         "; give one a scene");
+                         " in the pipeline " + std::string(to_string(record.pipeline)) +
+                         "; give one a scene and pipeline");
     records.push_back(std::move(record));
   }
   return records;

@@ -25,8 +25,22 @@ std::string number(const std::optional<double>& value) {
 
 constexpr std::size_t kScenesAcross = 6;  // more make a page too wide to read
 
-std::string title(const Column& column) {
-  return column.unit.empty() ? column.title : column.title + " (" + column.unit + ")";
+// The pipeline of all columns, where it is one.
+std::optional<Pipeline> only_pipeline(const PaperTable& table) {
+  for (const Column& column : table.columns)
+    if (column.pipeline != table.columns.front().pipeline) return std::nullopt;
+  return table.columns.empty() ? std::nullopt : table.columns.front().pipeline;
+}
+
+std::string title(const PaperTable& table) {
+  const std::optional<Pipeline> pipeline = only_pipeline(table);
+  return table.title + (pipeline ? " (pipeline `" + std::string(to_string(*pipeline)) + "`)" : "");
+}
+
+std::string title(const PaperTable& table, const Column& column) {
+  std::string out = column.unit.empty() ? column.title : column.title + " (" + column.unit + ")";
+  if (column.pipeline && !only_pipeline(table)) out += ", `" + std::string(to_string(*column.pipeline)) + "`";
+  return out;
 }
 
 // "4.4 [3.8, 4.5] (28.4)", or the reason why nothing was measured.
@@ -34,15 +48,6 @@ std::string plain(const Cell& cell) {
   std::string out = cell.measured.value ? number_text(*cell.measured.value) : cell.measured.reason;
   if (cell.measured.interval) out += " [" + interval(cell.measured, ", ") + "]";
   if (cell.published) out += " (" + number_text(*cell.published) + ")";
-  return out;
-}
-
-std::string latex(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '_' || c == '%' || c == '&' || c == '#') out += '\\';
-    out += c;
-  }
   return out;
 }
 
@@ -54,6 +59,7 @@ ordered_json cell_json(const Column& column, const Cell& cell) {
   ordered_json out = {{"key", column.key},
                       {"title", column.title},
                       {"unit", column.unit},
+                      {"pipeline", pipeline_text(column)},
                       {"published", number_or_null(cell.published)},
                       {"measured", number_or_null(cell.measured.value)}};
   if (cell.measured.interval) out["interval"] = {cell.measured.interval->low, cell.measured.interval->high};
@@ -87,6 +93,7 @@ std::size_t timed_and(const std::vector<std::size_t>& intervals, const Record& r
 ordered_json source_json(const Record& record) {
   const VerificationRecord& v = record.verification;
   return {{"scene", record.scene.name},
+          {"pipeline", to_string(record.pipeline)},
           {"digest", record.scene.digest},
           {"command", record.command},
           {"environment", record.environment},
@@ -127,8 +134,9 @@ std::string provenance(const Record& record) {
   const ordered_json& e = record.environment;
   const VerificationRecord& v = record.verification;
   const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
-  std::string out = "**" + record.scene.name + "**: " + get("cpu") + ", " + get("cores") + " cores, " +
-                    threads(record) + "; " + get("compiler") + ", " + get("build_type") +
+  std::string out = "**" + record.scene.name + "**, pipeline `" + std::string(to_string(record.pipeline)) +
+                    "`: " + get("cpu") + ", " + get("cores") + " cores, " + threads(record) + "; " +
+                    get("compiler") + ", " + get("build_type") +
                     (e.contains("instruction_set") ? ", " + get("instruction_set") : "") + "; commit " +
                     get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
                     get("date") + ".\n";
@@ -200,9 +208,16 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
   out += "Published: " + text(published.at("machine")) +
          ".\n\nA cell is the measured figure, its 95 % interval in ";
   out += "brackets where it has noise, and the published figure in parentheses where there is one.\n";
+  if (pipelines_of(records).size() == 2)
+    out +=
+        "\nA row that ends in `published` was measured with the paper's code around every method: scalar "
+        "refit "
+        "and\norientation classes, its filter alone, feature pairs one by one. A row that ends in `today` "
+        "was "
+        "measured with\nthis project's. The figures of other rows are the same in both.\n";
   for (const PaperTable& table : tables) {
     if (table.rows.empty()) continue;
-    out += "\n### " + table.title + "\n";
+    out += "\n### " + title(table) + "\n";
     for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
       const auto rows =
           std::span(table.rows).subspan(first, std::min(kScenesAcross, table.rows.size() - first));
@@ -210,7 +225,7 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
       for (const Row& row : rows) head.push_back(row.scene);
       std::vector<std::vector<std::string>> lines;
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        std::vector<std::string>& line = lines.emplace_back(1, title(table.columns[i]));
+        std::vector<std::string>& line = lines.emplace_back(1, title(table, table.columns[i]));
         for (const Row& row : rows) line.push_back(plain(row.cells[i]));
       }
       out += "\n" + markdown_table(head, lines);
@@ -219,26 +234,8 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
   return out;
 }
 
-std::string tables_latex(std::span<const PaperTable> tables) {
-  std::string out = "% Needs \\usepackage{booktabs}. Measured [95 % interval] (published).\n";
-  for (const PaperTable& table : tables) {
-    if (table.rows.empty()) continue;
-    out += "\\begin{table*}\n\\caption{" + latex(table.title) + "}\n\\label{tab:" + table.id +
-           "}\n\\begin{tabular}{l" + std::string(table.rows.size(), 'r') + "}\n\\toprule\n";
-    for (const Row& row : table.rows) out += " & " + latex(row.scene);
-    out += " \\\\\n\\midrule\n";
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      out += latex(title(table.columns[i]));
-      for (const Row& row : table.rows) out += " & " + latex(plain(row.cells[i]));
-      out += " \\\\\n";
-    }
-    out += "\\bottomrule\n\\end{tabular}\n\\end{table*}\n";
-  }
-  return out;
-}
-
 std::string tables_csv(std::span<const PaperTable> tables) {
-  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason\n";
+  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason,pipeline\n";
   for (const PaperTable& table : tables)
     for (const Row& row : table.rows)
       for (std::size_t i = 0; i < row.cells.size(); ++i) {
@@ -247,7 +244,7 @@ std::string tables_csv(std::span<const PaperTable> tables) {
         out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
                column.unit + "," + number(cell.published) + "," + number(cell.measured.value) + "," +
                (cell.measured.interval ? interval(cell.measured, ",") : std::string(",")) + "," +
-               quoted(cell.measured.reason) + "\n";
+               quoted(cell.measured.reason) + "," + std::string(pipeline_text(column)) + "\n";
       }
   return out;
 }

@@ -18,8 +18,6 @@ nlohmann::ordered_json tables_json(std::span<const PaperTable> tables, std::span
                                    std::span<const Record> records);
 // For people: quantities down, scenes across; preceded by where the records come from.
 std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records);
-// For papers: the same tables for LaTeX with booktabs.
-std::string tables_latex(std::span<const PaperTable> tables);
 // One line a cell.
 std::string tables_csv(std::span<const PaperTable> tables);
 

@@ -42,7 +42,9 @@ class PairTester : public TrianglePairSink {
         first_only_(setup.first_only),
         exclusions_(setup.exclusions),
         options_(std::move(options)),
-        clock_(clock) {}
+        clock_(clock) {
+    if (setup.pipeline == Pipeline::published) options_.filter = PairFilter::plain_sign;
+  }
 
   // `start`, where it is not null, takes up to `most` pairs that cross at the start.
   void start_interval(const Motion& motion, ContactSet& out, std::size_t most, Crossings* start) {
@@ -129,7 +131,11 @@ class PairTester : public TrianglePairSink {
   void test_assigned(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
-    filter(mesh_, *motion_, pairs, left_);
+    if (options_.filter == PairFilter::certain_sign)
+      filter(mesh_, *motion_, pairs, left_);
+    else
+      left_.assign(pairs.begin(), pairs.end());
+    if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
     test_left();
   }
 

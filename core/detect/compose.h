@@ -10,21 +10,22 @@ namespace cscd {
 
 // Which feature pairs the coplanarity cubic drops. `certain_sign` drops those whose sign is certain. The
 // others are there to measure what that certainty costs and saves: a plain sign, without its error bound,
-// loses contacts.
+// is the published filter and may lose contacts.
 enum class PairFilter { certain_sign, plain_sign, none };
 
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
   PairFilter filter = PairFilter::certain_sign;
   // Which feature pairs a triangle pair is tested for; null means all that it carries. An assignment is used
-  // without relative boxes and with the certain sign.
+  // without relative boxes.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy
 // shares what happens behind the culler: relative boxes (optional), expansion into feature pairs, each of
 // which is tested once, the certified non-penetration filter, and the elementary test. The detector owns the
-// clock of the interval. What `setup` refers to must outlive the detector.
+// clock of the interval. In the pipeline `published`, the filter is the plain sign, whatever the options say.
+// What `setup` refers to must outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup,
                                   PairOptions options = {});
 

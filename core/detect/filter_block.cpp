@@ -118,14 +118,4 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
   }
 }
 
-void drop_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::vector<FeaturePair>& pairs) {
-  std::erase_if(pairs, [&](const FeaturePair& pair) {
-    BernsteinCubic f = pair.kind == FeaturePair::Kind::vertex_face
-                           ? coplanarity(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
-                           : coplanarity(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
-    f.error = 0;
-    return certain_sign(f) != 0;
-  });
-}
-
 }  // namespace cscd

@@ -18,8 +18,8 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
             bool single_precision_first, std::vector<FeaturePair>& left);
 
 // Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
-// et al. 2010), one pair at a time. It is an ablation that may drop features that touch (rule
-// certain-sign, core/soundness.md).
+// et al. 2010), one pair at a time. This is the filter of the pipeline `published`. It may drop features that
+// touch (rule certain-sign, core/soundness.md).
 void drop_by_plain_sign(const TriangleMesh& mesh, const Motion& motion, std::vector<FeaturePair>& pairs);
 
 }  // namespace cscd

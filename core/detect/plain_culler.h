@@ -13,10 +13,10 @@ namespace cscd {
 template <class Volume, bool kAdjacent = true>
 class PlainCuller : public Culler {
  public:
-  explicit PlainCuller(const Setup& setup) : PlainCuller(setup.mesh, setup.reference) {}
+  explicit PlainCuller(const Setup& setup) : PlainCuller(setup.mesh, setup.reference, setup.pipeline) {}
   // `mesh` must outlive the culler. `reference`, [vertices], shapes the tree.
-  PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference)
-      : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_) {}
+  PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference, Pipeline pipeline = Pipeline::today)
+      : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_, pipeline) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/base/pipeline.h"
 #include "core/detect/detector.h"
 #include "core/elementary/question/elementary_test.h"
 #include "core/mesh/rig.h"
@@ -41,6 +42,8 @@ struct Setup {
   // guarantee `first_contact` is void with exclusions, because the surface may then pass through itself. A
   // strategy that brings its own elementary test throws InputError.
   const Exclusions* exclusions = nullptr;
+  // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.
+  Pipeline pipeline = Pipeline::today;
 };
 
 // Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).
@@ -90,6 +93,9 @@ struct Strategy {
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
   // edge can pierce a face.
   bool sees_start = false;
+  // Whether the strategy can be made in the pipeline `published`: the paper's method and those that the paper
+  // compares it with.
+  bool published = false;
 };
 
 }  // namespace cscd

@@ -31,8 +31,9 @@ class DrvbcCuller : public Culler {
   DrvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
               const DrvbcOptions& options)
       : clusters_(std::move(clusters)),
-        hierarchy_(setup.mesh, setup.reference, clusters_),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign),
+        hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign,
+               setup.pipeline),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }

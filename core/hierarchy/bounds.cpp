@@ -1,26 +1,18 @@
 #include "core/hierarchy/bounds.h"
 
-#include "core/base/rounding.h"
-
 namespace cscd {
 
 namespace {
+
 // Number of nodes whose bounds are computed in one pass: few enough to be still in the
 // cache when their parents need them.
 constexpr NodeIndex kNodesAtOnce = 1024;
-// Directions are at most sqrt(2) long. The sums are rounded outward, as the bounds are.
-template <class Volume>
-Volume thickened(Volume volume, double margin) {
-  for (float& bound : volume.at_least)
-    bound = float_below_sum(static_cast<double>(bound), -1.4142135623731 * margin);
-  return volume;
-}
 
 }  // namespace
 
 template <class Volume>
-SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree)
-    : vertex_(mesh.vertex_count()), node_(tree.node_count()) {
+SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline)
+    : vertex_(mesh.vertex_count()), node_(tree.node_count()), pipeline_(pipeline) {
   for (auto node = static_cast<NodeIndex>(tree.node_count()) - 1; node >= 0; --node)
     if (tree.is_leaf(node))
       leaves_.push_back({node, mesh.corners(tree.triangle(node))});
@@ -30,6 +22,7 @@ SweptVolumes<Volume>::SweptVolumes(const TriangleMesh& mesh, const Tree& tree)
 
 template <class Volume>
 void SweptVolumes<Volume>::refit(const Motion& motion, double margin) {
+  if (pipeline_ == Pipeline::published) return refit_one_by_one(motion, margin);
   swept_vertex_bounds(motion, std::span(vertex_));
   if (margin > 0)
     for (Volume& volume : vertex_) volume = thickened(volume, margin);

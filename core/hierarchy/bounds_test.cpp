@@ -139,6 +139,24 @@ TEST(SweptBounds, EveryNodeContainsThePathsBelowIt) {
   }
 }
 
+// Both pipelines have the same bounds, with a margin and without. Mutation: a node takes its children's bounds
+// before they are made.
+TYPED_TEST(SweptVertexBounds, OfAllNodesAreTheSameOneByOne) {
+  const test::Shape shape = test::torus();
+  const TriangleMesh mesh = shape.mesh();
+  const Tree tree = build_tree(mesh, shape.positions);
+  SweptVolumes<TypeParam> in_lanes(mesh, tree), one_by_one(mesh, tree, Pipeline::published);
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Ends ends = assorted_motion(shape.positions.size(), seed);
+    for (const double margin : {0.0, 0.25}) {
+      in_lanes.refit(ends.motion(), margin);
+      one_by_one.refit(ends.motion(), margin);
+      for (NodeIndex node = 0; node < static_cast<NodeIndex>(tree.node_count()); ++node)
+        ASSERT_EQ(bits_without_sign_of_zero(in_lanes[node]), bits_without_sign_of_zero(one_by_one[node]));
+    }
+  }
+}
+
 // Every bound of every node is attained by some vertex below the node. So nothing is left over from earlier
 // intervals, and nodes are as small as they can be. Together with containment this determines every bound.
 TEST(SweptBounds, AreTheUnionOfWhatIsBelowWhateverCameBefore) {

@@ -5,10 +5,10 @@
 namespace cscd::radial {
 
 ClusterHierarchy::ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                                   const AtomicClusters& clusters)
+                                   const AtomicClusters& clusters, Pipeline pipeline)
     : mesh_(mesh),
       tree_(build_tree(mesh, reference, clusters.of_triangle, static_cast<int>(clusters.clusters.size()))),
-      bounds_(mesh, tree_),
+      bounds_(mesh, tree_, pipeline),
       cluster_at_(tree_.node_count(), -1),
       groups_(clusters.clusters.size()),
       first_leaf_(clusters.clusters.size()),

@@ -1,8 +1,9 @@
 #include "core/radial/orientation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "core/radial/orientation_class.h"
 
 // Towards a point q, the orientation of a triangle is the sign of normal(t) . (p(t) - q(t)) for any one
 // corner p. That is a cubic in t. Its Bernstein coefficients prove a sign if they exceed their forward error
@@ -20,110 +21,8 @@
 namespace cscd::radial {
 namespace {
 
-Orientation from_sign(int sign) {
-  return sign > 0 ? Orientation::positive : sign < 0 ? Orientation::negative : Orientation::uncertain;
-}
-
-MovingVector between(const MovingPoint& from, const MovingPoint& to) {
-  return {to.start - from.start, to.end - from.end};
-}
-
-// Returns the sign of one cubic, or the signs of eight.
-//
-// Error bound of a half: each half sum rounds once, and a control point of a half is up to three half sums
-// deep. That puts it off by at most 3 u times the coefficients. The factor 4 also pays for the roundings of
-// the bound.
-template <class Cubic>
-auto signs_of(Cubic f, SignTest test) {
-  if (test == SignTest::plain) f.error -= f.error;  // NaN, thus no sign, where the error is infinite
-  const auto whole = certain_sign(f);
-  if (test != SignTest::halved) return whole;
-  const auto error =
-      f.error +
-      4 * kUnitRoundoff * (absolute(f.c[0]) + absolute(f.c[1]) + absolute(f.c[2]) + absolute(f.c[3]));
-  const auto a = 0.5 * (f.c[0] + f.c[1]), b = 0.5 * (f.c[1] + f.c[2]), c = 0.5 * (f.c[2] + f.c[3]);
-  const auto d = 0.5 * (a + b), e = 0.5 * (b + c), middle = 0.5 * (d + e);
-  const auto first = certain_sign(Cubic{{f.c[0], a, d, middle}, error}),
-             last = certain_sign(Cubic{{middle, e, c, f.c[3]}, error});
-  const decltype(whole + 0) none{};
-  return select(whole != 0, whole, select(first == last, first, none));
-}
-
-// The class of a triangle towards the moving point q, each coordinate of which is known up to `slack`.
-Orientation towards_point(const MovingPoint (&corner)[3], const MovingPoint& q, double slack, SignTest sign) {
-  return from_sign(signs_of(triple_product(between(corner[0], corner[1]), between(corner[0], corner[2]),
-                                           between(q, corner[0]), slack),
-                            sign));
-}
-
-// A segment as an observer, with the numbers that are the same for all triangles.
-struct MovingSegment {
-  MovingPoint head, tail;
-  MovingVector way;          // from head to tail
-  double shortest, longest;  // bounds of the squared length
-  double slack;              // error of a viewing position, which rounds in two operations on each coordinate
-
-  explicit MovingSegment(const Observer& observer)
-      : head(observer.head), tail(observer.tail), way(between(head, tail)) {
-    const double length[3] = {way.start.squaredNorm(), way.start.dot(way.end), way.end.squaredNorm()};
-    shortest = std::min({length[0], length[1], length[2]});
-    longest = std::max({length[0], length[1], length[2]});
-    const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
-    slack = 4 * kUnitRoundoff *
-            std::max({largest(head.start), largest(head.end), largest(tail.start), largest(tail.end)});
-  }
-  // False if the squared length may leave the range of doubles, so that nothing is known of projections.
-  // Triple products have limits as strict.
-  bool projects() const { return shortest > 0 && longest <= kHugeProduct; }
-  MovingPoint at(double u) const {
-    return {(1 - u) * head.start + u * tail.start, (1 - u) * head.end + u * tail.end};
-  }
-};
-
-// A dot product of differences is off by at most 6 u times three products. The factor 32 also covers the
-// division.
-constexpr double kProjectionError = 32 * kUnitRoundoff;
-
-struct Range {
-  double low, high;
-};
-
-// Returns a range that encloses the clamped projection parameters of the corners on the moving segment.
-Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& segment) {
-  if (!segment.projects()) return {0, 1};
-  const auto& [head, tail, d, shortest, longest, unused] = segment;
-  double low = std::numeric_limits<double>::infinity(), high = -low, reach = 0;
-  for (const MovingPoint& p : corners) {
-    const MovingVector w = between(head, p);
-    const double along[3] = {w.start.dot(d.start), (w.start.dot(d.end) + w.end.dot(d.start)) / 2,
-                             w.end.dot(d.end)};
-    low = std::min({low, along[0], along[1], along[2]});
-    high = std::max({high, along[0], along[1], along[2]});
-    reach = std::max(reach, w.largest());
-  }
-  const double slack = kProjectionError * (1 + 3 * reach * d.largest() / shortest);
-  const Range range{low / (low < 0 ? shortest : longest) - slack,
-                    high / (high < 0 ? longest : shortest) + slack};
-  const bool known = range.low <= range.high;  // false for NaN
-  return known ? Range{std::clamp(range.low, 0.0, 1.0), std::clamp(range.high, 0.0, 1.0)} : Range{0, 1};
-}
-
-// Returns the corners that the test takes into account.
-template <class Corner>
-std::span<const Corner> looked_at(const Corner (&corner)[3], SegmentTest test) {
-  return std::span<const Corner>(corner).first(test == SegmentTest::all_corners ? 3 : 1);
-}
-
-Orientation towards_segment(const MovingPoint (&corner)[3], const MovingSegment& segment, SegmentTest test,
-                            SignTest sign) {
-  const Range range = viewing_range(looked_at(corner, test), segment);
-  const Orientation first = towards_point(corner, segment.at(range.low), segment.slack, sign);
-  if (first == Orientation::uncertain || range.low == range.high) return first;
-  const Orientation last = towards_point(corner, segment.at(range.high), segment.slack, sign);
-  return last == first ? first : Orientation::uncertain;
-}
-
-// The rest repeats the functions above for eight triangles side by side, operation for operation.
+// These repeat the functions of scalar_orientation.cpp for eight triangles side by side, operation for
+// operation.
 
 VectorLanes in_all_lanes(const Vec3& start, const Vec3& end) {
   VectorLanes out;
@@ -184,32 +83,29 @@ Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corne
 
 }  // namespace
 
-Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test,
-                        SignTest sign) {
-  if (observer.is_segment) return towards_segment(corner, MovingSegment(observer), test, sign);
-  return towards_point(corner, observer.head, 0, sign);
-}
-
 OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                                   SegmentTest test, SignTest sign)
-    : test_(test), sign_(sign) {
+                                   SegmentTest test, SignTest sign, Pipeline pipeline)
+    : mesh_(mesh), test_(test), sign_(sign), pipeline_(pipeline) {
   for (const std::vector<TriangleId>& group : groups) {
+    first_triangle_.push_back(triangles_.size());
+    triangles_.insert(triangles_.end(), group.begin(), group.end());
     first_block_.push_back(lanes_.size());
     for (std::size_t first = 0; first < group.size(); first += kLanes) {
       TriangleLanes& lanes = lanes_.emplace_back();
       for (std::size_t l = 0; l < kLanes; ++l) {
         const TriangleId triangle = group[std::min(first + l, group.size() - 1)];
-        lanes.triangle[l] = triangle;
         for (std::size_t k = 0; k < 3; ++k) lanes.corner[k].set(l, mesh.corners(triangle)[k]);
       }
     }
   }
+  first_triangle_.push_back(triangles_.size());
   first_block_.push_back(lanes_.size());
   blocks_.resize(lanes_.size());
 }
 
 void OrientationTable::update(const Motion& motion) {
   motion_ = motion;
+  if (pipeline_ == Pipeline::published) return update_one_by_one();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const auto& [first, second, third] = lanes_[i].corner;
     const VectorLanes corner = gather(motion, first);
@@ -238,6 +134,7 @@ void OrientationTable::with_signs(const Observer& observer, Use use) const {
 
 void OrientationTable::classify(std::size_t group, const Observer& observer,
                                 std::span<Orientation> out) const {
+  if (pipeline_ == Pipeline::published) return classify_one_by_one(first_triangle_[group], observer, out);
   with_signs(observer, [&](const auto& block_signs) {
     for (std::size_t b = first_block_[group], first = 0; first < out.size(); ++b, first += kLanes) {
       const Sign8 signs = block_signs(b);
@@ -250,6 +147,10 @@ void OrientationTable::classify(std::size_t group, const Observer& observer,
 Orientation OrientationTable::classify(std::size_t group, std::size_t member,
                                        const Observer& observer) const {
   Orientation found;
+  if (pipeline_ == Pipeline::published) {
+    classify_one_by_one(first_triangle_[group] + member, observer, {&found, 1});
+    return found;
+  }
   with_signs(observer, [&](const auto& block_signs) {
     const Sign8 signs = block_signs(first_block_[group] + member / kLanes);
     found = from_sign(static_cast<int>(signs[member % kLanes]));

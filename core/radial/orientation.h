@@ -1,43 +1,20 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/base/pipeline.h"
 #include "core/base/vec3.h"
 #include "core/geometry/triple_product_lanes.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/radial/orientation_class.h"
 
 // Orientation of moving triangles towards a moving observer (Wong et al. 2013; section 3.1 of the 2014
 // paper).
 namespace cscd::radial {
-
-// A triangle is *positive* if its normal makes a positive dot product with the ray from the observer through
-// every point of the triangle at every t in [0, 1]. It is *negative* if all these products are negative. It
-// is *uncertain* if neither is proven. The values are bits, so that a set of classes is a mask.
-enum class Orientation : std::uint8_t { positive = 1, negative = 2, uncertain = 4 };
-
-// An observer is a point, or a segment along which the viewing position slides. Its ends move in straight
-// lines.
-struct Observer {
-  MovingPoint head, tail;
-  bool is_segment;
-
-  static Observer point(const MovingPoint& p) { return {p, p, false}; }
-  static Observer segment(const MovingPoint& head, const MovingPoint& tail) { return {head, tail, true}; }
-};
-
-// Which corners decide how a triangle is seen from a segment. The paper looks at one arbitrary corner, which
-// proves nothing (rule three-vertices, core/soundness.md); it is here to count what that costs and loses.
-enum class SegmentTest { all_corners, first_corner };
-
-// How the sign of the cubic behind a class is told. `certain` is the proof; the others are there to measure
-// what certainty costs and what it leaves undecided. A plain sign, without its error bound, proves nothing
-// (rule error-bound, core/soundness.md). `halved` cuts [0, 1] once where the whole is not certain.
-enum class SignTest { certain, plain, halved };
 
 // Classifies one triangle in double precision, straight from its vertices. This is the scalar twin of
 // OrientationTable.
@@ -49,9 +26,11 @@ Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer
 // of eight lanes, so that an observer is tried on a whole cluster in vector code.
 class OrientationTable {
  public:
-  // `groups` are the triangles of each cluster.
+  // `groups` are the triangles of each cluster. In the pipeline `published`, one triangle is classified after
+  // the other by the scalar twin. The classes are the same. The mesh must outlive the table.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                   SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
+                   SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain,
+                   Pipeline pipeline = Pipeline::today);
 
   // Begins an interval. The positions of `motion` must stay in place until the last classification of the
   // interval.
@@ -64,7 +43,6 @@ class OrientationTable {
 
  private:
   struct TriangleLanes {
-    std::array<TriangleId, kLanes> triangle;
     std::array<VertexLanes, 3> corner;
   };
   struct Block {
@@ -73,11 +51,19 @@ class OrientationTable {
   };
   template <class Use>
   void with_signs(const Observer& observer, Use use) const;
+  void update_one_by_one();
+  // Classifies the triangles from number `first` in triangles_ on.
+  void classify_one_by_one(std::size_t first, const Observer& observer, std::span<Orientation> out) const;
 
+  const TriangleMesh& mesh_;
   SegmentTest test_;
   SignTest sign_;
-  std::vector<std::size_t> first_block_;  // [groups + 1]: where the blocks of a group begin
-  std::vector<TriangleLanes> lanes_;      // [blocks]; a block with fewer triangles repeats its last one
+  Pipeline pipeline_;
+  std::vector<TriangleId> triangles_;        // of all groups
+  std::vector<MovingNormal> normals_;        // [triangles], in the pipeline `published`
+  std::vector<std::size_t> first_triangle_;  // [groups + 1]: where the triangles of a group begin
+  std::vector<std::size_t> first_block_;     // [groups + 1]: where the blocks of a group begin
+  std::vector<TriangleLanes> lanes_;         // [blocks]; a block with fewer triangles repeats its last one
   std::vector<Block> blocks_;
   std::optional<Motion> motion_;
 };

@@ -335,19 +335,24 @@ int expect_twins(const Soup& soup, const std::function<Observer(std::size_t grou
                  SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain) {
   const TriangleMesh mesh(soup.triangles, soup.start.size());
   OrientationTable table(mesh, soup.groups, test, sign);
+  OrientationTable one_by_one(mesh, soup.groups, test, sign, Pipeline::published);
   const Motion motion(soup.start, soup.end);
-  table.update(motion);
+  table.update(motion), one_by_one.update(motion);
   int differences = 0, certain = 0;
   for (std::size_t g = 0; g < soup.groups.size(); ++g) {
     const Observer observer = observer_of(g);
     std::vector<Orientation> classes(soup.groups[g].size(), Orientation{0});
     table.classify(g, observer, classes);
+    std::vector<Orientation> again(classes.size(), Orientation{0});
+    one_by_one.classify(g, observer, again);
+    EXPECT_EQ(again, classes);
     for (std::size_t member = 0; member < classes.size(); ++member) {
       const Triangle& c = mesh.corners(soup.groups[g][member]);
       const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test, sign);
       differences += classes[member] != twin;
       certain += twin != Orientation::uncertain;
       EXPECT_EQ(table.classify(g, member, observer), twin);
+      EXPECT_EQ(one_by_one.classify(g, member, observer), twin);
     }
   }
   EXPECT_EQ(differences, 0);

@@ -273,7 +273,7 @@ class Report {
       if (claim.evidence.length > 0) {
         const details = element("details");
         details.append(element("summary", `${claim.evidence.filter((one) => one.holds).length} of ${claim.evidence.length} figures hold`));
-        for (const one of claim.evidence) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.measured === null || one.measured === undefined ? one.reason || "not measured" : short(one.measured)}`));
+        for (const one of claim.evidence) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.measured === null || one.measured === undefined ? one.reason || "not measured" : short(one.measured)}${one.today === undefined ? "" : ` (${short(one.today)} with today's code)`}`));
         evidence.append(details);
       }
       return [quote, verdict, element("td", claim.expectation, "text"), evidence];

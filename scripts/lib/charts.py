@@ -11,6 +11,7 @@ matplotlib.use("Agg")
 matplotlib.rcParams.update({
     "figure.dpi": 150, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True,
+    "pdf.fonttype": 42,  # text stays text, which a reader can search and a journal asks for
 })
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
 import matplotlib.ticker  # noqa: E402
@@ -108,10 +109,10 @@ def _moved_apart(heights, gap, low, high):
     return [max(low, min(place, highest)) + i * gap for i, place in enumerate(moved)]
 
 
-def label_ends(axes, ends, fontsize=8, width=24):
+def label_ends(axes, ends, fontsize=8, width=24, room=0):
     """Writes each name beside the right end of its curve. Curves that end in one place share a line of text of at most `width`
-    letters, and lines are moved apart so that no two overlap. `ends`: (x, y, name, colour). To be called last, as it needs the
-    final layout."""
+    letters, and lines are moved apart so that no two overlap. `ends`: (x, y, name, colour). `room`: pixels left free beside the
+    axes. To be called last, as it needs the final layout."""
     if not ends:
         return
     figure = axes.figure
@@ -124,10 +125,11 @@ def label_ends(axes, ends, fontsize=8, width=24):
     lines = [(place, ", ".join(names), by_place[place][names[0]]) for place in sorted(by_place, key=lambda place: place[1])
              for names in reversed(_lines(by_place[place], width))]
     heights = _moved_apart([y for (_, y), _, _ in lines], fontsize * 1.3 * figure.dpi / 72, axes.bbox.y0, axes.bbox.y1)
-    right = axes.bbox.x1 + 14
+    right = axes.bbox.x1 + 14 + room
+    points = 72 / figure.dpi  # a PDF has other pixels
     for (place, text, colour), y in zip(lines, heights):
-        note = axes.annotate(text, xy=place, xycoords="figure pixels", xytext=(right, y),
-                             textcoords="figure pixels", color=colour, fontsize=fontsize, va="center", annotation_clip=False,
+        note = axes.annotate(text, xy=(place[0] * points, place[1] * points), xycoords="figure points",
+                             xytext=(right * points, y * points), textcoords="figure points", color=colour, fontsize=fontsize, va="center", annotation_clip=False,
                              arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.6, "shrinkA": 0, "shrinkB": 1,
                                          "relpos": (0, 0.5)})
         note.set_in_layout(False)
@@ -197,8 +199,10 @@ def reduced(image, shaded):
     return few
 
 
-def save(figure, folder, name, shaded=False, dpi=None):
-    """Writes FOLDER/NAME.png and closes the figure."""
+def save(figure, folder, name, shaded=False, dpi=None, pdf=False):
+    """Writes FOLDER/NAME.png, and NAME.pdf where a paper may want it, and closes the figure."""
+    if pdf:
+        figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None})
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=dpi or figure.dpi, metadata={"Software": None})
     plt.close(figure)
