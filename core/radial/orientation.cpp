@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/radial/orientation_class.h"
-
 // Towards a point q, the orientation of a triangle is the sign of normal(t) . (p(t) - q(t)) for any one
 // corner p. That is a cubic in t. Its Bernstein coefficients prove a sign if they exceed their forward error
 // bound (rule error-bound).

@@ -1,20 +1,46 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/pipeline.h"
 #include "core/base/vec3.h"
+#include "core/geometry/bernstein.h"
 #include "core/geometry/triple_product_lanes.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
-#include "core/radial/orientation_class.h"
 
 // Orientation of moving triangles towards a moving observer (Wong et al. 2013; section 3.1 of the 2014
 // paper).
 namespace cscd::radial {
+
+// A triangle is *positive* if its normal makes a positive dot product with the ray from the observer through
+// every point of the triangle at every t in [0, 1]. It is *negative* if all these products are negative. It
+// is *uncertain* if neither is proven. The values are bits, so that a set of classes is a mask.
+enum class Orientation : std::uint8_t { positive = 1, negative = 2, uncertain = 4 };
+
+// An observer is a point, or a segment along which the viewing position slides. Its ends move in straight
+// lines.
+struct Observer {
+  MovingPoint head, tail;
+  bool is_segment;
+
+  static Observer point(const MovingPoint& p) { return {p, p, false}; }
+  static Observer segment(const MovingPoint& head, const MovingPoint& tail) { return {head, tail, true}; }
+};
+
+// Which corners decide how a triangle is seen from a segment. The paper looks at one arbitrary corner, which
+// proves nothing (rule three-vertices, core/soundness.md); it is here to count what that costs and loses.
+enum class SegmentTest { all_corners, first_corner };
+
+// How the sign of the cubic behind a class is told. `certain` is the proof; the others are there to measure
+// what certainty costs and what it leaves undecided. A plain sign, without its error bound, proves nothing
+// (rule error-bound, core/soundness.md). `halved` cuts [0, 1] once where the whole is not certain.
+enum class SignTest { certain, plain, halved };
 
 // Classifies one triangle in double precision, straight from its vertices. This is the scalar twin of
 // OrientationTable.
@@ -67,5 +93,70 @@ class OrientationTable {
   std::vector<Block> blocks_;
   std::optional<Motion> motion_;
 };
+
+// The rest is what scalar and vector code have in common, and private to them.
+
+inline Orientation from_sign(int sign) {
+  return sign > 0 ? Orientation::positive : sign < 0 ? Orientation::negative : Orientation::uncertain;
+}
+
+inline MovingVector between(const MovingPoint& from, const MovingPoint& to) {
+  return {to.start - from.start, to.end - from.end};
+}
+
+// Returns the sign of one cubic, or the signs of eight.
+//
+// Error bound of a half: each half sum rounds once, and a control point of a half is up to three half sums
+// deep. That puts it off by at most 3 u times the coefficients. The factor 4 also pays for the roundings of
+// the bound.
+template <class Cubic>
+auto signs_of(Cubic f, SignTest test) {
+  if (test == SignTest::plain) f.error -= f.error;  // NaN, thus no sign, where the error is infinite
+  const auto whole = certain_sign(f);
+  if (test != SignTest::halved) return whole;
+  const auto error =
+      f.error +
+      4 * kUnitRoundoff * (absolute(f.c[0]) + absolute(f.c[1]) + absolute(f.c[2]) + absolute(f.c[3]));
+  const auto a = 0.5 * (f.c[0] + f.c[1]), b = 0.5 * (f.c[1] + f.c[2]), c = 0.5 * (f.c[2] + f.c[3]);
+  const auto d = 0.5 * (a + b), e = 0.5 * (b + c), middle = 0.5 * (d + e);
+  const auto first = certain_sign(Cubic{{f.c[0], a, d, middle}, error}),
+             last = certain_sign(Cubic{{middle, e, c, f.c[3]}, error});
+  const decltype(whole + 0) none{};
+  return select(whole != 0, whole, select(first == last, first, none));
+}
+
+// A segment as an observer, with the numbers that are the same for all triangles.
+struct MovingSegment {
+  MovingPoint head, tail;
+  MovingVector way;          // from head to tail
+  double shortest, longest;  // bounds of the squared length
+  double slack;              // error of a viewing position, which rounds in two operations on each coordinate
+
+  explicit MovingSegment(const Observer& observer)
+      : head(observer.head), tail(observer.tail), way(between(head, tail)) {
+    const double length[3] = {way.start.squaredNorm(), way.start.dot(way.end), way.end.squaredNorm()};
+    shortest = std::min({length[0], length[1], length[2]});
+    longest = std::max({length[0], length[1], length[2]});
+    const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
+    slack = 4 * kUnitRoundoff *
+            std::max({largest(head.start), largest(head.end), largest(tail.start), largest(tail.end)});
+  }
+  // False if the squared length may leave the range of doubles, so that nothing is known of projections.
+  // Triple products have limits as strict.
+  bool projects() const { return shortest > 0 && longest <= kHugeProduct; }
+  MovingPoint at(double u) const {
+    return {(1 - u) * head.start + u * tail.start, (1 - u) * head.end + u * tail.end};
+  }
+};
+
+// A dot product of differences is off by at most 6 u times three products. The factor 32 also covers the
+// division.
+inline constexpr double kProjectionError = 32 * kUnitRoundoff;
+
+// Returns the corners that the test takes into account.
+template <class Corner>
+std::span<const Corner> looked_at(const Corner (&corner)[3], SegmentTest test) {
+  return std::span<const Corner>(corner).first(test == SegmentTest::all_corners ? 3 : 1);
+}
 
 }  // namespace cscd::radial
