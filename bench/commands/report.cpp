@@ -196,7 +196,8 @@ void add_report(CLI::App& app) {
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
   command
       ->add_option("records", options->records,
-                   "what cscd run wrote, at most one a scene and pipeline; and what cscd accuracy and cscd scale wrote")
+                   "what cscd run wrote, at most one a scene and pipeline; and what cscd accuracy and cscd "
+                   "scale wrote")
       ->required();
   command->add_option("--history", options->history,
                       "a folder of entries of cscd history, such as results/history, to show too");

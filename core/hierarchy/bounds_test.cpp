@@ -139,8 +139,8 @@ TEST(SweptBounds, EveryNodeContainsThePathsBelowIt) {
   }
 }
 
-// Both pipelines have the same bounds, with a margin and without. Mutation: a node takes its children's bounds
-// before they are made.
+// Both pipelines have the same bounds, with a margin and without. Mutation: a node takes its children's
+// bounds before they are made.
 TYPED_TEST(SweptVertexBounds, OfAllNodesAreTheSameOneByOne) {
   const test::Shape shape = test::torus();
   const TriangleMesh mesh = shape.mesh();
