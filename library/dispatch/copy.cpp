@@ -14,6 +14,8 @@ const cscd::Copy CSCD_COPY = {
           return std::make_unique<SelfCollision>(faces, reference, std::move(options)).release();
         },
     .destroy = [](SelfCollision* body) { delete body; },
+    .place_obstacle = &SelfCollision::place_obstacle,
+    .move_obstacle = &SelfCollision::move_obstacle,
     .is_free = &SelfCollision::is_free,
     .first_contact = &SelfCollision::first_contact,
     .all_contacts = &SelfCollision::all_contacts,

@@ -20,6 +20,8 @@ struct Copy {
   InstructionSet set;
   SelfCollision* (*make)(const SelfCollision::Faces&, const Positions&, SelfCollision::Options&&);
   void (*destroy)(SelfCollision*);
+  void (SelfCollision::*place_obstacle)(std::size_t, const Positions&);
+  void (SelfCollision::*move_obstacle)(std::size_t, const Positions&, const Positions&);
   bool (SelfCollision::*is_free)(const Positions&, const Positions&);
   void (SelfCollision::*first_contact)(const Positions&, const Positions&, Answer&);
   void (SelfCollision::*all_contacts)(const Positions&, const Positions&, Answer&);

@@ -67,6 +67,13 @@ SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
 
+void SelfCollision::place_obstacle(std::size_t obstacle, const Positions& positions) {
+  engine_->call(&Copy::place_obstacle, obstacle, positions);
+}
+void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) {
+  engine_->call(&Copy::move_obstacle, obstacle, start, end);
+}
+
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
   return engine_->call(&Copy::is_free, start, end);
 }

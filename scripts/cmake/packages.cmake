@@ -1,5 +1,5 @@
 # cpack in a build folder makes Debian's packages: libcscd-dev (library and headers, MIT), python3-cscd, and, where the program
-# is built, cscd (GPL, because it links CGAL). scripts/check-deb tries them in a bare system.
+# is built, cscd (GPL, because it links CGAL).
 if(CSCD_INSIDE)
   return()  # the packages of a project around this one are its own
 endif()
