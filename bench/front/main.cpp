@@ -239,18 +239,20 @@ void preparation(const std::string& name, const Way& way, int rounds) {
 
 int run(int rounds) {
   std::printf("%-66s %12s  %10s\n", "", "the first", "more");
-  const Way long_rope = rope(), small = tube(20, 25), body = tube(50, 50), sheet = tube(50, 51, false);
+  const Way small = tube(20, 25), body = tube(50, 50), sheet = tube(50, 51, false);
   const auto name = [](const Way& way) { return std::to_string(way.faces.rows()) + " triangles"; };
-  front_over_detector("rope", long_rope, rounds);
   front_over_detector(name(small), small, rounds * 8);
   front_over_detector(name(sheet) + ", open", sheet, rounds * 4);
-  filters("rope", long_rope, rounds);
   filters(name(sheet) + ", open", sheet, rounds * 4);
-  candidates("rope", long_rope, rounds);
   candidates(name(sheet) + ", open", sheet, rounds * 4);
   obstacles(name(body), body, rounds * 4);
-  preparation("rope", long_rope, 1);
   preparation(name(small), small, 3);
+  if (rounds == 1) return 0;  // a test that all this runs; preparing the rope over and over takes long
+  const Way long_rope = rope();
+  front_over_detector("rope", long_rope, rounds);
+  filters("rope", long_rope, rounds);
+  candidates("rope", long_rope, rounds);
+  preparation("rope", long_rope, 1);
   return 0;
 }
 
