@@ -129,7 +129,8 @@ def label_ends(axes, ends, fontsize=8, width=24, room=0):
     points = 72 / figure.dpi  # a PDF has other pixels
     for (place, text, colour), y in zip(lines, heights):
         note = axes.annotate(text, xy=(place[0] * points, place[1] * points), xycoords="figure points",
-                             xytext=(right * points, y * points), textcoords="figure points", color=colour, fontsize=fontsize, va="center", annotation_clip=False,
+                             xytext=(right * points, y * points), textcoords="figure points", color=colour, fontsize=fontsize,
+                             va="center", annotation_clip=False,
                              arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.6, "shrinkA": 0, "shrinkB": 1,
                                          "relpos": (0, 0.5)})
         note.set_in_layout(False)
