@@ -5,7 +5,7 @@ set(failed "")
 string(REPLACE "\n" ";" lines "${symbols}")
 set(shown "")
 foreach(line IN LISTS lines)
-  # The second column is g for global, u for unique, w for weak; *UND* are names that others define.
+  # The second column is g for global, u for unique, w for weak, ! for local and global; *UND* are names that others define.
   if(line MATCHES "^[0-9a-f]+ (g|u| w|!)" AND NOT line MATCHES "\\*UND\\*")
     string(REGEX REPLACE ".* " "" symbol "${line}")
     list(APPEND shown ${symbol})

@@ -101,7 +101,7 @@ endfunction()
 
 # The examples, a consumer outside the tree, and the pages of the interface, as tests.
 function(cscd_test_library path)
-  # A build for all instruction sets takes long. That its front compiles is seen in every build.
+  # Only a build for all instruction sets links the dispatch, and such a build takes long. Here every build compiles it.
   add_library(cscd_dispatch_compiles OBJECT ${PROJECT_SOURCE_DIR}/${path}/dispatch/front.cpp
                                             ${PROJECT_SOURCE_DIR}/${path}/dispatch/copy.cpp)
   target_compile_definitions(cscd_dispatch_compiles PRIVATE CSCD_COPY=cscd_copy_baseline)
