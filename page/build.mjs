@@ -12,7 +12,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const [packages, out] = process.argv.slice(2);
 const { build } = createRequire(join(packages, "package.json"))("esbuild");
 
-async function bundle(entry, loader) {
+async function bundle(entry) {
   const made = await build({
     entryPoints: [join(here, "src", entry)],
     bundle: true,
@@ -22,7 +22,6 @@ async function bundle(entry, loader) {
     target: ["chrome110", "firefox115", "safari16.4"],
     nodePaths: [join(packages, "node_modules")],
     legalComments: "none",
-    loader,
   });
   return made.outputFiles[0].text.trim();
 }

@@ -11,7 +11,7 @@ const DASHES = [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
 export const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 
 // Black becomes white on a dark page.
-export const seen = (colour) => (colour === "#000000" && isDark() ? "#ffffff" : colour);
+const seen = (colour) => (colour === "#000000" && isDark() ? "#ffffff" : colour);
 
 export function colourOf(name) {
   const row = LOOKS.filter(([known]) => name === known || name.startsWith(`${known}_`) || name.startsWith(`${known}@`)).at(-1);
@@ -25,7 +25,8 @@ export const redrawCharts = () => charts.forEach((chart) => chart.draw());
 
 export const LOG = 3, LINEAR = 1;  // what uPlot calls the distributions of a scale
 
-// A chart in a box. `describe` returns what to draw: {data, series, x, y, points, hooks}; x and y are {label, scale, values}.
+// A chart in a box. `describe` returns what to draw: {data, series, x, y, hooks}; x and y are {label, scale, values,
+// range}, and x.name gives the text of a value in the legend.
 // Arrow keys move along the chart while it has the focus.
 export class Chart {
   constructor(box, height, describe) {

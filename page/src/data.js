@@ -57,7 +57,8 @@ function strategyOf(row, arrays, prefix, triangles) {
   const rowBytes = Math.ceil(triangles / 8);
   undoDifferences(strategy.touched, rowBytes);
   if (row.has_clusters) undoDifferences(strategy.positive, rowBytes);
-  // Of each cover: the observers of interval i are numbers offset[i] to offset[i + 1]. `place` holds twelve numbers of each.
+  // One entry for each cover. The observers of interval i have the numbers offset[i] to offset[i + 1] - 1, and `place` holds
+  // twelve numbers for each of them: where its head is at the start and at the end of the interval, then the same of its tail.
   strategy.observers = Array.from({ length: row.covers || 0 }, (_, c) => ({
     offset: offsets(strategy[`cover${c}.observer_count`]),
     cluster: strategy[`cover${c}.observer_cluster`],

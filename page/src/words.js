@@ -1,4 +1,4 @@
-// What the page says in words. Every text from a file goes through textContent, so that no name is read as markup.
+// What the page says in words.
 export const VERDICTS = ["clear", "touches", "intersects at its start", "undecided"];
 
 const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
