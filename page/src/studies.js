@@ -84,10 +84,15 @@ export function showGrowth(study) {
   choose();
 }
 
+// A scene, a machine, and what was timed of the scene. Only times of one measurement can be held against each other, as in
+// scripts/history-chart.
+const measurementOf = ({ scene, machine, measured }) =>
+  `${scene} on ${machine}: ${measured.timed_intervals.length} intervals, ${measured.rows.length} rows in turns`;
+
 export function showHistory(history) {
-  const places = distinct(history.courses.map((course) => `${course.scene} on ${course.machine}`)), select = byId("history-scene");
+  const places = distinct(history.courses.map(measurementOf)), select = byId("history-scene");
   select.append(...places.map((place) => new Option(place, place)));
-  const courses = () => history.courses.filter((course) => `${course.scene} on ${course.machine}` === select.value);
+  const courses = () => history.courses.filter((course) => measurementOf(course) === select.value);
   const commits = () => {
     const dates = new Map(courses().flatMap((course) => course.points.map((point) => [point.commit, point.committed])));
     return [...dates.keys()].sort((a, b) => new Date(dates.get(a)) - new Date(dates.get(b)));
