@@ -10,7 +10,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL library)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the binaries link follows from them
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # derives the libraries a package needs from what its binaries link
 set(summary "continuous self-collision detection of deforming triangle meshes")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libcscd-dev)

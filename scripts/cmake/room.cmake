@@ -3,7 +3,7 @@
 # CMAKE_DISABLE_PRECOMPILE_HEADERS (debug, sanitize) see to that.
 set(CSCD_PARSED <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <random> <span> <string>
                 <vector> <Eigen/Geometry>)
-# gcc 12 forgets of headers parsed before that they are the system's, and warns of std::string's own code.
+# gcc 12 forgets that precompiled headers are system headers, and warns of code within std::string.
 set(CSCD_PARSED_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
 function(cscd_parse_once target)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
