@@ -15,7 +15,6 @@ function chromiumOfThisMachine() {
   return null;
 }
 
-
 export function require(holds, what) {
   if (!holds) throw new Error(what);
 }
