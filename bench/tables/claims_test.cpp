@@ -52,7 +52,9 @@ TEST(Claims, ArePartlyReproducedWhereSomeFiguresHold) {
 }
 
 TEST(Claims, WithoutFiguresAreNotMeasured) {
-  EXPECT_EQ(judge_claims(a_over_b({{"most", 1}}), {}).at(0).verdict, ClaimVerdict::not_measured);
+  const ClaimResult unrecorded = judge_claims(a_over_b({{"most", 1}}), {}).at(0);
+  EXPECT_EQ(unrecorded.verdict, ClaimVerdict::not_measured);
+  EXPECT_NE(unrecorded.not_measured_because.find("rope, hand, man"), std::string::npos);
   ordered_json other = a_over_b({{"most", 1}});
   other["claims"][0]["measure"][0]["over"] = "nowhere";
   const ClaimResult claim = judge_claims(other, kRecords).at(0);
@@ -80,6 +82,11 @@ TEST(Claims, AreHeldAgainstThePublishedPipelineWhereThereIsOne) {
   EXPECT_EQ(claim.evidence[0].measured.value, 0.9);
   EXPECT_EQ(claim.evidence[0].today.value().value, 0.1);
   EXPECT_FALSE(claim.evidence[1].measured.value) << "hand has no record of that pipeline";
+  std::vector<Record> hand_without_today = both;
+  hand_without_today[2].pipeline = Pipeline::published;
+  const ClaimResult lacks_today = judge_claims(a_over_b({{"most", 0.5}}), hand_without_today).at(0);
+  EXPECT_NE(claims_markdown(std::vector{lacks_today}).find("0.1 | no record in the pipeline today |"),
+            std::string::npos);
   const std::string page = claims_markdown(std::vector{claim});
   EXPECT_NE(page.find("a / b, published | **0.9**"), std::string::npos) << page;
   EXPECT_NE(page.find("a / b, today | 0.1"), std::string::npos) << page;
@@ -113,6 +120,22 @@ TEST(Claims, ThatAreMissedShowTheStages) {
   EXPECT_EQ(claim.stages[0].today.value().value, 2);
   EXPECT_EQ(claim.stages[0].paper, 11.0);
   EXPECT_NE(claims_markdown(std::vector{claim}).find("a: traversal (ms) | –, 2 (11)"), std::string::npos);
+}
+
+// The paper gives one refit for the methods with 16-DOPs. Mutation: `aabb` is shown beside that figure.
+TEST(Claims, HoldNoMethodAgainstTheFigureOfAnother) {
+  ordered_json claims = a_over_b({{"least", 9}});
+  claims["claims"][0]["measure"][0]["quantity"] = "ms.refit";
+  claims["stages"] = {{{"title", "refit (ms)"},
+                       {"quantity", "ms.refit"},
+                       {"published", {{"text.refit_ms.{scene}"}}},
+                       {"published_not_of", {"b"}}}};
+  Record record = record_of("rope", 1, 10);
+  for (StrategyRecord& row : record.strategies) row.ms = {{"refit", {{2}, {2}}}};
+  const ClaimResult claim = judge_claims(claims, std::vector{record}).at(0);
+  ASSERT_EQ(claim.stages.size(), 2u);
+  EXPECT_EQ(claim.stages[0].paper, 20.0);
+  EXPECT_EQ(claim.stages[1].paper, std::nullopt);
 }
 
 // Every claim that ships can be judged, and says what it measures or why it measures nothing.
