@@ -138,13 +138,18 @@ TEST(Claims, HoldNoMethodAgainstTheFigureOfAnother) {
   EXPECT_EQ(claim.stages[1].paper, std::nullopt);
 }
 
-// Every claim that ships can be judged, and says what it measures or why it measures nothing.
+// Every claim that ships can be judged, and says what it measures or why it measures nothing. A bound is 1
+// ("fewest"), or a number of the quote, or one of the readings that the comment in claims.json gives.
 TEST(Claims, ShippedOnesAreComplete) {
   Record record = record_of("rope", 1, 10);
   const ordered_json published = data_json("published.json");
   const ordered_json shipped = data_json("claims.json");
   for (const ordered_json& claim : shipped["claims"]) {
     EXPECT_NE(claim.contains("measure"), claim.contains("not_measured_because")) << claim["id"];
+    const std::string source = claim["quote"].get<std::string>() + shipped["comment"].get<std::string>();
+    const ordered_json expect = claim.value("expect", ordered_json::object());
+    for (const auto& [side, bound] : expect.items())
+      EXPECT_TRUE(bound == 1 || source.find(number_text(bound)) != std::string::npos) << claim["id"] << side;
     const ordered_json scenes = claim.value("scenes", ordered_json::array());
     for (const ordered_json& scene : scenes) EXPECT_TRUE(published["scenes"].contains(scene)) << scene;
   }
