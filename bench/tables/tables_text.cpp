@@ -210,7 +210,7 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
         "measured with\nthis project's. Preparation is the same code in both and is shown from the record of "
         "`published`. The figures of\nother rows are the same in both.\n";
   for (const PaperTable& table : tables) {
-    if (table.rows.empty()) continue;
+    if (table.rows.empty() || table.columns.empty()) continue;
     out += "\n### " + title(table) + "\n";
     for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
       const auto rows =
