@@ -2,19 +2,17 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <sstream>
 #include <vector>
 
 #include "bench/commands/command.h"
 #include "bench/commands/view_page.h"
 #include "bench/history/history.h"
-#include "bench/output/gzip.h"
 #include "bench/output/output.h"
 #include "bench/output/schema.h"
+#include "bench/record/record.h"
 #include "bench/statistics/statistics.h"
 #include "bench/studies/report_figures.h"
 #include "bench/tables/claims.h"
@@ -29,8 +27,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostRecordBytes = std::size_t{1} << 30;  // of a record, unpacked
-
 struct ReportOptions {
   std::vector<std::string> records;
   std::string folder, history;
@@ -44,11 +40,7 @@ struct Sources {
 
 // Reads a record of any kind whole. Throws InputError for a file that cannot be read or is no JSON object.
 json read_document(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf()))
-    throw InputError("record " + path + ": cannot be read; name a file that cscd wrote");
-  json document = json::parse(without_gzip(text.str(), "record " + path, kMostRecordBytes), nullptr, false);
+  json document = json::parse(record_text(path), nullptr, false);
   if (!document.is_object())
     throw InputError("record " + path + ": is no record; name what cscd run, accuracy or scale wrote");
   return document;

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "bench/compare/google_benchmark.h"
-#include "bench/output/gzip.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -15,23 +12,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of a file, unpacked
-
 bool names_json(const fs::path& path) {
   const std::string name = path.filename().string();
   return name.ends_with(".json") || name.ends_with(".json.gz");
 }
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf()))
-    throw InputError("record " + path.string() + ": cannot be read; name a file that `cscd run` wrote");
-  return without_gzip(text.str(), "record " + path.string(), kMostBytes);
-}
-
 void add_file(const fs::path& path, bool named_itself, std::vector<Record>& records) {
-  const std::string text = text_of(path);
+  const std::string text = record_text(path);
   const ordered_json document = ordered_json::parse(text, nullptr, false);
   if (is_google_benchmark(document)) {
     records.push_back(record_from_google_benchmark(document, path.string()));

@@ -250,13 +250,16 @@ Record parse_record(const std::string& text, const std::string& where) {
   }
 }
 
-Record read_record(const std::filesystem::path& path) {
+std::string record_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf()))
-    throw InputError("record " + path.string() + ": cannot be read; name a file that `cscd run` wrote");
-  const std::string where = "record " + path.string();
-  return parse_record(without_gzip(text.str(), where, kMostBytes), path.string());
+    throw InputError("record " + path.string() + ": cannot be read; name a file that cscd wrote");
+  return without_gzip(text.str(), "record " + path.string(), kMostBytes);
+}
+
+Record read_record(const std::filesystem::path& path) {
+  return parse_record(record_text(path), path.string());
 }
 
 }  // namespace cscd::bench

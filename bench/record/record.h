@@ -122,6 +122,10 @@ void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repeti
 
 nlohmann::ordered_json to_json(const Record& record);
 
+// Returns the text of a record of any kind, unpacked if the file is a gzip file. Throws InputError, naming
+// the file, if it cannot be read or unpacked.
+std::string record_text(const std::filesystem::path& path);
+
 // Throws InputError, naming the file, unless it is a whole record of this schema.
 Record read_record(const std::filesystem::path& path);
 // The same from a text; `where` begins the error texts.

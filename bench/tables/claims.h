@@ -21,8 +21,8 @@ struct Evidence {
   std::string scene, title;
   Measured measured;
   bool holds = false;  // false too where nothing was measured
-  // The same in the pipeline `today`, to be shown beside; none where the claim is held against that one, and
-  // where a figure compares the two.
+  // The figure in the pipeline `today`, to be shown beside. There is none if the claim is held against that
+  // pipeline, if that pipeline has no record of the scene, or if the figure compares the two pipelines.
   std::optional<Measured> today = std::nullopt;
 };
 
@@ -38,17 +38,19 @@ struct ClaimResult {
   ClaimVerdict verdict = ClaimVerdict::not_measured;
   Pipeline held_against = Pipeline::today;
   std::vector<Evidence> evidence;
-  std::vector<StageFigure> stages;   // of the scenes on which it is missed, by scene and then by title
+  std::vector<StageFigure> stages;   // of the scenes on which the claim is missed, by scene, then by title
   std::string not_measured_because;  // empty for a claim that is measured
 };
 
 // A claim has `quote`, `where`, `scenes`, `measure` (definitions as in bench/tables/quantity.h, each with a
-// title; all must hold in a scene), `expect` ({"least": .., "most": ..}, either may be left out) . A
+// title; all must hold in a scene), `expect` ({"least": .., "most": ..}, either may be left out). A
 // claim without `measure` cannot be measured here, for the reason in `not_measured_because`. Explanations of
 // what differs belong to a scene and a record, and stand in notes beside the record. With `somewhere`, one
 // scene is enough. Reproduced: every figure that was measured holds; partly: some; scenes without a record do
 // not count. Claims are held against the pipeline `published` where there is any record of it, and else
-// against `today`. A definition with `over_pipeline` divides the figure of its `pipeline` by that of another.
+// against `today`. A row of `stages` names the paper's figures for it (`published`: lists of factors, of
+// which the first that is complete counts) and the strategies that they are not of (`published_not_of`). A
+// definition with `over_pipeline` divides the figure of its `pipeline` by that of another.
 std::vector<ClaimResult> judge_claims(std::span<const Record> records);
 // The same with other claims.
 std::vector<ClaimResult> judge_claims(const nlohmann::ordered_json& claims, std::span<const Record> records);

@@ -59,7 +59,10 @@ Cell fill(const ordered_json& column, const ordered_json& published, const std::
     return candidate.scene.name == scene && candidate.pipeline == pipeline;
   });
   if (record == records.end())
-    cell.measured.reason = "no record of " + scene + " was given";
+    cell.measured.reason =
+        "no record of " + scene +
+        (pipelines_of(records).size() == 2 ? " in the pipeline " + std::string(to_string(pipeline)) : "") +
+        " was given";
   else
     cell.measured = measure(column, *record);
   // A scene of the user's own is not the paper's, even if it has that name.
@@ -139,6 +142,12 @@ const ordered_json* find_published(const ordered_json& published, const std::str
     place = &(*place)[key];
   }
   return place;
+}
+
+std::optional<Pipeline> only_pipeline(const PaperTable& table) {
+  for (const Column& column : table.columns)
+    if (column.pipeline != table.columns.front().pipeline) return std::nullopt;
+  return table.columns.empty() ? std::nullopt : table.columns.front().pipeline;
 }
 
 std::string_view pipeline_text(const Column& column) {

@@ -22,7 +22,9 @@ struct Cell {
 
 struct Column {
   std::string key, title, unit;
-  // In which the figures were measured; none where records of both pipelines have the same ones, as counters.
+  // The pipeline in which the figures were measured. None if records of both pipelines have the same figures,
+  // as for counters, and for preparation, which is the same code in both and is shown as the first of them
+  // has it.
   std::optional<Pipeline> pipeline = Pipeline::today;
 };
 // "today", "published", or "both".
@@ -38,6 +40,9 @@ struct PaperTable {
   std::vector<Column> columns;
   std::vector<Row> rows;
 };
+
+// The pipeline of all columns; none if they differ, or if it is both.
+std::optional<Pipeline> only_pipeline(const PaperTable& table);
 
 // The text with every `what` replaced.
 std::string replaced(std::string text, const std::string& what, const std::string& by);

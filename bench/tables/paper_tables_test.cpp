@@ -151,6 +151,12 @@ TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
   EXPECT_EQ(table.columns[2].pipeline, std::nullopt);
   EXPECT_EQ(cells[2].measured.value, 200);
   EXPECT_EQ(table.columns[3].pipeline, Pipeline::today);
+
+  records.push_back(sample_record());
+  records.back().scene.name = "hand";
+  const PaperTable uneven = paper_tables(definitions, {}, records).at(0);
+  EXPECT_EQ(uneven.rows.at(1).cells.at(0).measured.reason,
+            "no record of hand in the pipeline published was given");
 }
 
 // The definitions that ship: every published figure has its column, and every column that names a published

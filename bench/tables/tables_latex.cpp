@@ -27,13 +27,16 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+constexpr int kMostDecimals = 6;
+constexpr double kLeast = 1e-6;  // a smaller number is shown as less than this one
+
 // Three significant digits, or all digits before the point, without an exponent, which a column aligned at
-// the point cannot hold.
+// the point cannot hold. Behind the point stand six digits at most.
 std::string digits(double value) {
   const double size = std::abs(value);
   int decimals = 0;
   if (size > 0 && size < 100 && value != std::floor(value))
-    decimals = std::min(6, std::max(0, 2 - static_cast<int>(std::floor(std::log10(size)))));
+    decimals = std::min(kMostDecimals, std::max(0, 2 - static_cast<int>(std::floor(std::log10(size)))));
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", decimals, value);
   return text;
@@ -63,12 +66,16 @@ class NumberColumn {
   bool used_ = false;
 };
 
+constexpr char kMissing[] = "{--}";
+
 std::string measured_text(const Cell& cell) {
-  return cell.measured.value ? digits(*cell.measured.value) : "{--}";
+  if (!cell.measured.value) return kMissing;
+  const double value = *cell.measured.value;
+  return value > 0 && value < kLeast ? "{$<$" + digits(kLeast) + "}" : digits(value);
 }
 // As many digits as the paper has.
 std::string paper_text(const Cell& cell) {
-  return cell.published ? number_text(*cell.published) : "{--}";
+  return cell.published ? number_text(*cell.published) : kMissing;
 }
 
 // LaTeX numbers tables by itself, so the paper's number goes to the end.
@@ -82,7 +89,7 @@ std::string title(const std::string& text) {
 struct Part {
   std::span<const Row> rows;    // of the table: scenes
   std::size_t first, last;      // columns of the table: quantities
-  std::optional<Pipeline> all;  // the pipeline of all columns, where it is one
+  std::optional<Pipeline> all;  // the pipeline of all columns of the table, where it is one
 };
 
 std::string label(const PaperTable& table, const Part& part, std::size_t i) {
@@ -132,6 +139,8 @@ std::string float_text(const PaperTable& table, const Part& part, const std::str
   std::string caption = title(table.title) + (continued ? ", continued" : "") + ".";
   caption += part.all ? " Pipeline: " + std::string(to_string(*part.all)) + "."
                       : " Figures that differ between the pipelines published and today name theirs.";
+  if (body.find(kMissing) != std::string::npos)
+    caption += " --: not published, or not measured, for the reason in tables.md.";
   if (body.find("\\tiny") != std::string::npos) caption += " Beneath: 95 % intervals.";
   return "% Made by `cscd tables`; needs "
          "\\usepackage{booktabs,tabularx,siunitx}.\n\\begin{table*}\n\\centering\n"
@@ -163,9 +172,7 @@ std::vector<LatexTable> latex_tables(std::span<const PaperTable> tables) {
   for (const PaperTable& table : tables) {
     if (table.rows.empty() || table.columns.empty() || table.columns.size() > kMostLatexRows) continue;
     Part part{};
-    part.all = table.columns.front().pipeline;
-    if (std::ranges::any_of(table.columns, [&](const Column& c) { return c.pipeline != part.all; }))
-      part.all = std::nullopt;
+    part.all = only_pipeline(table);
     std::size_t number = 0;
     for (std::size_t scene = 0; scene < table.rows.size(); scene += kScenesAcross) {
       part.rows = std::span(table.rows).subspan(scene, std::min(kScenesAcross, table.rows.size() - scene));

@@ -75,6 +75,21 @@ TEST(LatexTables, HaveColumnsOfTheirOwnForMeasuredAndPublished) {
   for (const LatexTable& table : latex) EXPECT_EQ(count(table.text, "\\begin{table*}"), 1u) << table.name;
 }
 
+// Mutation: a share of less than a millionth is printed as zero.
+TEST(LatexTables, PrintNoSmallShareAsZero) {
+  Record record = wide_record("rope", Pipeline::today);
+  for (StrategyRecord& row : record.strategies)
+    if (row.name == "drvbc")
+      row.counts["pctp"] = {1};
+    else
+      row.counts["pctp"] = {20'000'000};
+  const std::vector<Record> records = {record};
+  const std::vector<LatexTable> latex =
+      latex_tables(paper_tables(records, {{"rope"}, {"drvbc", "base"}, {"pctp_over_base"}}));
+  ASSERT_FALSE(latex.empty());
+  EXPECT_NE(latex[0].text.find("{$<$0.000001}"), std::string::npos) << latex[0].text;
+}
+
 // Mutation: a column wider than its numbers ask for, a page of one more row, a name that cannot be broken.
 TEST(LatexTables, CompileAndFitATwoColumnArticle) {
   if (std::system("kpsewhich siunitx.sty tabularx.sty booktabs.sty article.cls >/dev/null 2>&1") != 0)

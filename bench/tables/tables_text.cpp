@@ -25,13 +25,6 @@ std::string number(const std::optional<double>& value) {
 
 constexpr std::size_t kScenesAcross = 6;  // more make a page too wide to read
 
-// The pipeline of all columns, where it is one.
-std::optional<Pipeline> only_pipeline(const PaperTable& table) {
-  for (const Column& column : table.columns)
-    if (column.pipeline != table.columns.front().pipeline) return std::nullopt;
-  return table.columns.empty() ? std::nullopt : table.columns.front().pipeline;
-}
-
 std::string title(const PaperTable& table) {
   const std::optional<Pipeline> pipeline = only_pipeline(table);
   return table.title + (pipeline ? " (pipeline `" + std::string(to_string(*pipeline)) + "`)" : "");
@@ -214,9 +207,10 @@ std::string tables_markdown(std::span<const PaperTable> tables, std::span<const 
         "refit "
         "and\norientation classes, its filter alone, feature pairs one by one. A row that ends in `today` "
         "was "
-        "measured with\nthis project's. The figures of other rows are the same in both.\n";
+        "measured with\nthis project's. Preparation is the same code in both and is shown from the record of "
+        "`published`. The figures of\nother rows are the same in both.\n";
   for (const PaperTable& table : tables) {
-    if (table.rows.empty()) continue;
+    if (table.rows.empty() || table.columns.empty()) continue;
     out += "\n### " + title(table) + "\n";
     for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
       const auto rows =

@@ -53,8 +53,9 @@ class ObserverRecording {
  private:
   std::vector<std::uint32_t> count_;    // [intervals]
   std::vector<std::uint16_t> cluster_;  // [observers]
-  // [observers][x, y, z]: head at the start and at the end of the interval, and so the tail. A unit is a
-  // step of the grid times 4, counted from the grid's origin; what lies outside is moved to the border.
+  // [observers][4 points][x, y, z]: the head at the start and at the end of the interval, then the tail at
+  // the start and at the end. Coordinates count from the grid's origin in units of four steps of the grid. A
+  // point that lies outside what 16 bits hold is moved to the border.
   std::vector<std::int16_t> place_;
 };
 

@@ -19,7 +19,7 @@ struct SurfaceDetail {
   Vec3 reach;              // half axes of the ellipsoid in which the detail lies, along x, y and z; positive
   double height = 0;       // negative for a dent
   double wave_length = 0;  // distance from one fold to the next; 0 for none
-  Vec3 across;             // the direction from fold to fold, of any length; used with folds alone
+  Vec3 across;             // the direction from fold to fold, of length 1; used only if there are folds
 };
 
 // Displaces the positions by the sum of all details. Normals are those of the surface without details.
