@@ -11,7 +11,6 @@
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"
-#include "scenes/shape/rows.h"
 
 namespace cscd::bench {
 namespace {
@@ -73,7 +72,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   } else {
     const scenes::Scene scene = scenes::load_scene(name);
     clip = clip_of(scene, name);
-    bone_names = scenes::make_shape(scene.shape, scene.shape_parameters).bone_names;
+    bone_names = scenes::bone_names(scene);
   }
   const scenes::ClipHeader& header = clip->header();
   TriangleMesh mesh(header.triangles, header.vertex_count, name);

@@ -67,6 +67,11 @@ bool agree(std::span<const Contestant> contestants, std::span<const Answer> answ
   return true;
 }
 
+// The place of an interval among the counted ones, which ascend.
+std::size_t place_of(std::size_t interval, const std::vector<std::size_t>& counted) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(counted, interval) - counted.begin());
+}
+
 // Throws std::logic_error where what was timed says of a start what the verifier's plain test does not say.
 void expect_verified(bool embedded, const Verifier& verifier, std::size_t interval, const Input& input) {
   if (embedded != verifier.starts_embedded(interval))
@@ -80,7 +85,7 @@ void expect_verified(bool embedded, const Verifier& verifier, std::size_t interv
 // start adds to its query. Both have a pass of their own, as they would otherwise drive from the caches what
 // a strategy keeps.
 void time_starts(Input& input, std::span<const Contestant> contestants, std::span<const std::size_t> timed,
-                 const Verifier& verifier, EmbeddingTest& test, std::size_t repetition,
+                 const Verifier& verifier, const WarmUp& warm_up, EmbeddingTest& test, std::size_t repetition,
                  std::vector<StrategyRecord>& records) {
   ContactSet found;
   Crossings start;
@@ -99,6 +104,10 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
       stream_positions(interval.motion);
       const Report report = contestants[c].timed->detect_and_see_start(
           interval.motion, interval.bones ? &*interval.bones : nullptr, found, 0, start);
+      found.sort();
+      if (digest(found) != records[c].digests[place_of(i, warm_up.counted)])
+        throw std::logic_error("interval " + std::to_string(i) + " of " + input.name + ": " +
+                               std::string(strategy.name) + " finds other contacts when it sees the start");
       expect_verified(start.total == 0, verifier, i, input);
       append_time("start", report.start_ms, records[c].ms, repetition);
     }
@@ -176,8 +185,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition) {
     for (const std::size_t i : plan.timed) {
-      const auto row =
-          static_cast<std::size_t>(std::ranges::lower_bound(warm_up.counted, i) - warm_up.counted.begin());
+      const std::size_t row = place_of(i, warm_up.counted);
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {
@@ -195,7 +203,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   // The tests of the starts come after all queries. Between two repetitions they would drive from the caches
   // what a strategy keeps, and the first query of the next repetition would pay for that.
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition)
-    time_starts(input, contestants, plan.timed, verifier, start_test, repetition, records);
+    time_starts(input, contestants, plan.timed, verifier, warm_up, start_test, repetition, records);
   return std::nullopt;
 }
 

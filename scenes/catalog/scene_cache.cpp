@@ -14,6 +14,7 @@
 #include "core/base/output_target.h"
 #include "scenes/catalog/expected_text.h"
 #include "scenes/clip/digest.h"
+#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {
@@ -156,6 +157,23 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
     if (!is_whole(scene)) generate_to_cache(scene, progress);  // unless another process has meanwhile
   }
   return std::make_unique<PointCacheReader>(file);
+}
+
+std::vector<std::string> bone_names(const Scene& scene) {
+  const fs::path file = cache_file(scene).replace_extension(".bones.json");
+  try {
+    std::ifstream stream(file);
+    return nlohmann::json::parse(stream).get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception&) {
+    // There is no such file yet, or it is damaged.
+  }
+  std::vector<std::string> names = make_shape(scene.shape, scene.shape_parameters).bone_names;
+  try {
+    write_whole(file, nlohmann::json(names).dump() + "\n");
+  } catch (const InputError&) {
+    // Where nothing can be written, the shape is built every time.
+  }
+  return names;
 }
 
 Expected accept_scene(const fs::path& file, const Progress& progress) {

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "scenes/catalog/generate.h"
 #include "scenes/clip/point_cache.h"
@@ -24,6 +26,10 @@ std::filesystem::path cache_file(const Scene& scene);
 // cache file. If several processes miss the same cache, one of them generates it. `progress` is called only
 // while frames are generated.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
+
+// Returns the names of the scene's bones, [bones]. They are kept beside the cache of its frames, because to
+// build the shape for their sake can take longer than a query.
+std::vector<std::string> bone_names(const Scene& scene);
 
 // Generates the scene of a file, whatever the file expects, and returns the actual counts and digest. Writes
 // them into the file as its `expected`. The file is replaced as a whole, and its other text stays as it was.

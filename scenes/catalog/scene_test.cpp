@@ -10,6 +10,7 @@
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/catalog/test_scenes.h"
 #include "scenes/clip/digest.h"
+#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {
@@ -351,6 +352,20 @@ TEST_F(Catalogue, KeepsWhatEachEffectTook) {
             std::string::npos);
   fs::remove(file);
   EXPECT_EQ(generated(scene), 6u) << "a cache that does not tell is none";
+}
+
+// Mutation: a damaged file is taken for a scene without bones.
+TEST_F(Catalogue, KeepsTheNamesOfBones) {
+  const Scene scene = load_scene("small");
+  open_scene(scene);
+  const fs::path file = cache_file(scene).replace_extension(".bones.json");
+  const std::vector<std::string> names = make_shape(scene.shape, scene.shape_parameters).bone_names;
+  ASSERT_FALSE(names.empty());
+  EXPECT_EQ(bone_names(scene), names);
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_EQ(bone_names(scene), names) << "from the file";
+  std::ofstream(file) << "[\"bone_";
+  EXPECT_EQ(bone_names(scene), names);
 }
 
 TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
