@@ -215,6 +215,7 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
     return;
   }
   const bool known_free = starts_where_a_free_step_ended(own);
+  free_ = false;  // until the step is answered
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
   if (see_start && !known_free) {
