@@ -1,7 +1,6 @@
 #include "core/session/session.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/base/error.h"
 #include "core/detect/exclusions.h"
@@ -15,10 +14,6 @@ constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 constexpr std::size_t kMostLeftOut = 500'000;
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 }  // namespace
 

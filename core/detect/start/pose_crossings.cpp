@@ -11,8 +11,7 @@
 namespace cscd {
 
 bool PoseCrossings::knows(std::span<const Vec3> positions) const {
-  return positions.size() == positions_.size() && !positions.empty() &&
-         std::memcmp(positions.data(), positions_.data(), positions.size_bytes()) == 0;
+  return !positions.empty() && same_bits(positions, positions_);
 }
 
 bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite) {
