@@ -248,8 +248,8 @@ class SelfCollision::Engine {
       if (left_out > 0) question.filtered_steps = kFilteredSteps;
       if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
     }
-    --question.filtered_steps;
     made(question.filtered, question.first, kComplete, &exclusions_).step(motion, nullptr, answer_);
+    --question.filtered_steps;
   }
 
   bool excludes(const CrossingPair& pair) const {
@@ -318,8 +318,6 @@ SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Opt
         instruction_set();  // throws if it cannot be what the environment asks for
         return std::make_unique<Engine>(faces, reference, std::move(options));
       })) {}
-SelfCollision::SelfCollision(const Faces& faces, const Positions& reference)
-    : SelfCollision(faces, reference, Options()) {}
 SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
@@ -347,24 +345,12 @@ void SelfCollision::first_contact(const Positions& start, const Positions& end, 
   });
 }
 
-SelfCollision::Answer SelfCollision::first_contact(const Positions& start, const Positions& end) {
-  Answer out;
-  first_contact(start, end, out);
-  return out;
-}
-
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
   checked([&] {
     const Motion motion = engine_->motion(start, end);
     engine_->step(motion, false);
     engine_->write(motion, out);
   });
-}
-
-SelfCollision::Answer SelfCollision::all_contacts(const Positions& start, const Positions& end) {
-  Answer out;
-  all_contacts(start, end, out);
-  return out;
 }
 
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {

@@ -132,7 +132,8 @@ class CSCD_EXPORT SelfCollision {
   // of several pieces, or not manifold; closed meshes are faster. Prepare again when faces change, or when
   // the shape has come far from the reference and steps have become slow.
   SelfCollision(const Faces& faces, const Positions& reference, Options options);
-  SelfCollision(const Faces& faces, const Positions& reference);
+  SelfCollision(const Faces& faces, const Positions& reference)
+      : SelfCollision(faces, reference, Options()) {}
   ~SelfCollision();
   SelfCollision(SelfCollision&&) noexcept;
   SelfCollision& operator=(SelfCollision&&) noexcept;
@@ -149,11 +150,19 @@ class CSCD_EXPORT SelfCollision {
   // Returns contacts of the earliest time, at least one where anything touches. The second form uses the
   // memory of `out` again: after the largest step so far, a step that starts where a free step ended
   // allocates nothing.
-  Answer first_contact(const Positions& start, const Positions& end);
+  Answer first_contact(const Positions& start, const Positions& end) {
+    Answer out;
+    first_contact(start, end, out);
+    return out;
+  }
   void first_contact(const Positions& start, const Positions& end, Answer& out);
 
   // Returns all contacts.
-  Answer all_contacts(const Positions& start, const Positions& end);
+  Answer all_contacts(const Positions& start, const Positions& end) {
+    Answer out;
+    all_contacts(start, end, out);
+    return out;
+  }
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
   // Returns a time t in [0, 1] such that nothing touches in [0, t]: 1 for a free step, otherwise `safety`,
