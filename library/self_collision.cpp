@@ -101,11 +101,12 @@ std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& ob
     require_finite(own, name + ", positions");
     const auto first = static_cast<std::int32_t>(positions.size());
     std::vector<Triangle> faces;
-    for (const auto& [a, b, c] : obstacles[i].faces) {
-      faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
-      triangles.push_back({VertexId{first + a}, VertexId{first + b}, VertexId{first + c}});
+    for (const auto& [a, b, c] : obstacles[i].faces) faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+    const TriangleMesh mesh(std::move(faces), own.size(), name + ", faces");  // throws for wrong corners
+    for (Triangle t : mesh.triangles()) {
+      for (VertexId& v : t) v = VertexId{first + static_cast<std::int32_t>(v)};
+      triangles.push_back(t);
     }
-    const TriangleMesh checked(std::move(faces), own.size(), name + ", faces");
     first_vertex.push_back(positions.size());
     positions.insert(positions.end(), own.begin(), own.end());
   }

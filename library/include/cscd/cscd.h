@@ -186,8 +186,9 @@ class CSCD_EXPORT SelfCollision {
 
 // Returns the instruction set that the engine uses: "avx512", "avx2" or "baseline". It is the best that both
 // the build and the machine have, or the one that the environment variable CSCD_ISA names when the first
-// object is made. Answers are the same with each. Throws std::invalid_argument, as the constructor of
-// SelfCollision does, if the build or the machine lacks what CSCD_ISA names.
+// object is made; objects are refused where CSCD_ISA names another set later. Answers are the same with each.
+// Throws std::invalid_argument, as the constructor of SelfCollision does, if the build or the machine lacks
+// what CSCD_ISA names.
 CSCD_EXPORT std::string_view instruction_set();
 
 }  // namespace cscd
