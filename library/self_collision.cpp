@@ -101,11 +101,12 @@ std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& ob
     require_finite(own, name + ", positions");
     const auto first = static_cast<std::int32_t>(positions.size());
     std::vector<Triangle> faces;
-    for (const auto& [a, b, c] : obstacles[i].faces) {
-      faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
-      triangles.push_back({VertexId{first + a}, VertexId{first + b}, VertexId{first + c}});
+    for (const auto& [a, b, c] : obstacles[i].faces) faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+    const TriangleMesh mesh(std::move(faces), own.size(), name + ", faces");  // throws for wrong corners
+    for (Triangle t : mesh.triangles()) {
+      for (VertexId& v : t) v = VertexId{first + static_cast<std::int32_t>(v)};
+      triangles.push_back(t);
     }
-    const TriangleMesh checked(std::move(faces), own.size(), name + ", faces");
     first_vertex.push_back(positions.size());
     positions.insert(positions.end(), own.begin(), own.end());
   }
@@ -248,8 +249,8 @@ class SelfCollision::Engine {
       if (left_out > 0) question.filtered_steps = kFilteredSteps;
       if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
     }
-    --question.filtered_steps;
     made(question.filtered, question.first, kComplete, &exclusions_).step(motion, nullptr, answer_);
+    --question.filtered_steps;
   }
 
   bool excludes(const CrossingPair& pair) const {
@@ -318,8 +319,6 @@ SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Opt
         instruction_set();  // throws if it cannot be what the environment asks for
         return std::make_unique<Engine>(faces, reference, std::move(options));
       })) {}
-SelfCollision::SelfCollision(const Faces& faces, const Positions& reference)
-    : SelfCollision(faces, reference, Options()) {}
 SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
@@ -347,24 +346,12 @@ void SelfCollision::first_contact(const Positions& start, const Positions& end, 
   });
 }
 
-SelfCollision::Answer SelfCollision::first_contact(const Positions& start, const Positions& end) {
-  Answer out;
-  first_contact(start, end, out);
-  return out;
-}
-
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
   checked([&] {
     const Motion motion = engine_->motion(start, end);
     engine_->step(motion, false);
     engine_->write(motion, out);
   });
-}
-
-SelfCollision::Answer SelfCollision::all_contacts(const Positions& start, const Positions& end) {
-  Answer out;
-  all_contacts(start, end, out);
-  return out;
 }
 
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {

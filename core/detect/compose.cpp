@@ -88,9 +88,8 @@ class PairTester : public TrianglePairSink {
   void test_start(const std::vector<TrianglePair>& block) {
     clock_.enter(Stage::start);
     for (const TrianglePair& pair : block) {
-      const CrossingPair crossing(std::min(pair.a, pair.b), std::max(pair.a, pair.b));
       if (!triangles_meet(mesh_, motion_->start(), pair.a, pair.b)) continue;
-      if (start_->total++ < most_) start_->pairs.push_back(crossing);
+      if (start_->total++ < most_) start_->pairs.emplace_back(std::minmax(pair.a, pair.b));
     }
   }
 

@@ -26,8 +26,8 @@ struct RadialView {
     std::vector<Observer> observers;
   };
   std::vector<Cover> further_covers = {};  // the covers in use behind the first one
-  std::vector<std::int32_t> patch =
-      {};  // [triangles]; the patch of each triangle, the same in every interval
+  // [triangles]: the patch of each triangle, the same in every interval.
+  std::vector<std::int32_t> patch = {};
 };
 
 }  // namespace cscd

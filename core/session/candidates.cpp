@@ -47,20 +47,6 @@ bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& p
   return within(box_of(motion, mesh.ends(EdgeId{pair.a})), box_of(motion, mesh.ends(EdgeId{pair.b})), radius);
 }
 
-class CandidateSink : public TrianglePairSink {
- public:
-  CandidateSink(CandidateSet& set, const Motion& motion, std::vector<FeaturePair>& out)
-      : set_(set), motion_(motion), out_(out) {}
-
- private:
-  void take(const std::vector<TrianglePair>& block) override {
-    for (const TrianglePair& pair : block) set_.take(motion_, 0, pair, out_);
-  }
-  CandidateSet& set_;
-  const Motion& motion_;
-  std::vector<FeaturePair>& out_;
-};
-
 }  // namespace
 
 void CandidateSet::take(const Motion& motion, double radius, const TrianglePair& pair,
@@ -89,7 +75,7 @@ void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePai
     clock.enter(Stage::decomposition);
     culler_ = fast::best_candidate(setup_, {.name = "candidates", .complete = true}, clock).culler;
   }
-  CandidateSink sink(set_, motion, out);
+  CandidateSink sink(set_, motion, 0, out);
   culler_->refit(motion);
   culler_->classify(motion, nullptr);
   culler_->cull(sink);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/detect/culler.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/strategy.h"
@@ -29,6 +30,22 @@ class CandidateSet {
   const TriangleMesh& mesh_;
   const Exclusions* exclusions_;
   FeaturePairSet met_;
+};
+
+// Hands the triangle pairs that a culler passes on to a set.
+class CandidateSink : public TrianglePairSink {
+ public:
+  CandidateSink(CandidateSet& set, const Motion& motion, double radius, std::vector<FeaturePair>& out)
+      : set_(set), motion_(motion), radius_(radius), out_(out) {}
+
+ private:
+  void take(const std::vector<TrianglePair>& block) override {
+    for (const TrianglePair& pair : block) set_.take(motion_, radius_, pair, out_);
+  }
+  CandidateSet& set_;
+  const Motion motion_;
+  const double radius_;
+  std::vector<FeaturePair>& out_;
 };
 
 // Finds the feature pairs of one surface whose features may come within a radius of each other.

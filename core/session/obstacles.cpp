@@ -1,7 +1,6 @@
 #include "core/session/obstacles.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "core/base/rounding.h"
@@ -11,10 +10,6 @@ namespace cscd {
 namespace {
 
 constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 TriangleMesh joined(const TriangleMesh& own, const TriangleMesh& beside) {
   std::vector<Triangle> triangles(own.triangles().begin(), own.triangles().end());
@@ -52,12 +47,6 @@ Aabb box_of(const Motion& motion) {
     box.at_least[axis] = float_below(least);
     box.at_least[4 + axis] = float_below(-most);
   }
-  return box;
-}
-
-Aabb grown(Aabb box, double margin) {
-  for (const std::size_t k : {0u, 1u, 2u, 4u, 5u, 6u})
-    box.at_least[k] = float_below_sum(static_cast<double>(box.at_least[k]), -margin);
   return box;
 }
 
@@ -215,6 +204,7 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
     return;
   }
   const bool known_free = starts_where_a_free_step_ended(own);
+  free_ = false;  // until the step is answered
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
   if (see_start && !known_free) {
@@ -237,25 +227,12 @@ void Obstacles::find_candidates(const Motion& own, double radius, std::vector<Fe
   out.clear();
   candidates_->start_step();
   bring_up_to_date();
-  if (!between_->near(grown(box_of(own), radius))) return;
+  if (!between_->near(thickened(box_of(own), radius))) return;
   free_ = false;  // the positions of the last step are written over
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
   between_->refit_own(own, radius);
-  class Sink : public TrianglePairSink {
-   public:
-    Sink(CandidateSet& set, const Motion& motion, double radius, std::vector<FeaturePair>& out)
-        : set_(set), motion_(motion), radius_(radius), out_(out) {}
-
-   private:
-    void take(const std::vector<TrianglePair>& block) override {
-      for (const TrianglePair& pair : block) set_.take(motion_, radius_, pair, out_);
-    }
-    CandidateSet& set_;
-    const Motion motion_;
-    const double radius_;
-    std::vector<FeaturePair>& out_;
-  } sink(*candidates_, motion(), radius, out);
+  CandidateSink sink(*candidates_, motion(), radius, out);
   between_->cull(sink);
   sink.flush();
 }

@@ -21,7 +21,8 @@ class Obstacles {
  public:
   // `own` is the deforming surface, and `reference`, [its vertices], any pose of it. `beside` holds the
   // triangles of all obstacles, whose vertices are numbered from 0, and `positions` says where these are at
-  // rest. `first_vertex` holds the first vertex of each obstacle. The meshes must outlive the object.
+  // rest. `first_vertex` holds the first vertex of each obstacle. The elementary test must
+  // outlive the object.
   Obstacles(const TriangleMesh& own, std::span<const Vec3> reference, const TriangleMesh& beside,
             std::span<const Vec3> positions, std::vector<std::size_t> first_vertex,
             const ElementaryTest& elementary);
@@ -40,11 +41,12 @@ class Obstacles {
   // both are the same it is at rest. Positions have to be finite.
   void move(std::size_t obstacle, std::span<const Vec3> start, std::span<const Vec3> end);
 
-  // Finds the contacts of the deforming surface with obstacles, sorted, and the triangle pairs of them that
-  // cross at the start. With `first`, only contacts of the earliest time are asked for. Without `see_start`,
-  // `start` stays empty.
+  // Finds the contacts of the deforming surface with obstacles, sorted, and the pairs of a triangle of the
+  // surface and one of an obstacle that cross at the start. With `first`, only contacts of the earliest time
+  // are asked for. Without `see_start`, `start` stays empty.
   void step(const Motion& own, bool first, bool see_start, ContactSet& found, Crossings& start);
-  // The motion of together() in the last step that found anything.
+  // The motion of together() in the last step in which the surface's box came near an obstacle. Contacts of
+  // that step refer to it, until find_candidates() is called.
   Motion motion() const { return {start_, end_}; }
 
   // Replaces the content of `out` by the feature pairs of a feature of the deforming surface and a feature of

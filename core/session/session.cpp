@@ -1,7 +1,6 @@
 #include "core/session/session.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/base/error.h"
 #include "core/detect/exclusions.h"
@@ -15,10 +14,6 @@ constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 constexpr std::size_t kMostLeftOut = 500'000;
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 }  // namespace
 
@@ -189,17 +184,17 @@ void Session::move_on(const Motion& motion) {
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Stopwatch whole;
   move_on(motion);
-  Row& row = row_for(motion, bones);
-  out.embedding_ms = whole.milliseconds();
   try {
+    Row& row = row_for(motion, bones);
+    out.embedding_ms = whole.milliseconds();
     ask(row, motion, bones, out);
+    // A row that promises the first contact may miss those after it. If that first one is left out as a
+    // crossing at rest, the answer has to come from a complete row.
+    if (needs_start() && &row == &main_ && out.rest_contacts > 0) ask(stand_in(), motion, bones, out);
   } catch (...) {  // nothing is known of the end then
     if (moved_on_) poses_.go_back(motion.start());
     throw;
   }
-  // A row that promises the first contact may miss those after it. If that first one is left out as a
-  // crossing at rest, the answer has to come from a complete row.
-  if (needs_start() && &row == &main_ && out.rest_contacts > 0) ask(stand_in(), motion, bones, out);
 
   out.found.sort();
   if (options_.first) keep_first(out.found);

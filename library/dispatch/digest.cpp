@@ -1,8 +1,10 @@
 // Prints a digest of the answers to random steps, bit by bit, and the user time that they took:
 // scripts/check-isas compares instruction sets by it.
 //
-//   digest SOUPS STEPS     steps of small random surfaces, and of a closed tube of 12,800 triangles that
-//   bends
+//   digest SOUPS STEPS
+//
+// SOUPS is the number of small random surfaces that take one step each. STEPS is the number of steps in which
+// a closed tube of 12,800 triangles bends.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +13,7 @@
 #include <exception>
 #include <random>
 #include <stdexcept>
+#include <string_view>
 #include <sys/resource.h>
 
 #include "cscd/cscd.h"

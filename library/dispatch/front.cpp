@@ -61,8 +61,6 @@ class SelfCollision::Engine {
 
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
     : engine_(std::make_unique<Engine>(faces, reference, std::move(options))) {}
-SelfCollision::SelfCollision(const Faces& faces, const Positions& reference)
-    : SelfCollision(faces, reference, Options()) {}
 SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
@@ -81,19 +79,9 @@ bool SelfCollision::is_free(const Positions& start, const Positions& end) {
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
   engine_->call(&Copy::first_contact, start, end, out);
 }
-SelfCollision::Answer SelfCollision::first_contact(const Positions& start, const Positions& end) {
-  Answer out;
-  first_contact(start, end, out);
-  return out;
-}
 
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
   engine_->call(&Copy::all_contacts, start, end, out);
-}
-SelfCollision::Answer SelfCollision::all_contacts(const Positions& start, const Positions& end) {
-  Answer out;
-  all_contacts(start, end, out);
-  return out;
 }
 
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {

@@ -200,6 +200,5 @@ One object is used by one thread at a time; different objects are independent.)"
 
   module.def("instruction_set", &cscd::instruction_set,
              "Returns the instruction set that the engine uses: avx512, avx2 or baseline. CSCD_ISA in the "
-             "environment "
-             "chooses another.");
+             "environment chooses another.");
 }

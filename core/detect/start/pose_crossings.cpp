@@ -4,14 +4,14 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include "core/elementary/exact/triangles_meet.h"
 
 namespace cscd {
 
 bool PoseCrossings::knows(std::span<const Vec3> positions) const {
-  return positions.size() == positions_.size() && !positions.empty() &&
-         std::memcmp(positions.data(), positions_.data(), positions.size_bytes()) == 0;
+  return !positions.empty() && same_bits(positions, positions_);
 }
 
 bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite) {
@@ -51,8 +51,10 @@ void PoseCrossings::know(std::span<const Vec3> positions, const Crossings& cross
 
 const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const ContactSet& touched) {
   if (positions_.empty() || !crossings_.all_kept()) return find(positions);
-  positions_.assign(positions.begin(), positions.end());
-  if (touched.contacts.empty()) return crossings_;
+  if (touched.contacts.empty()) {
+    positions_.assign(positions.begin(), positions.end());
+    return crossings_;
+  }
 
   const TriangleMesh& mesh = test_.mesh();
   std::vector<CrossingPair> changed;
@@ -60,13 +62,15 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
     for (const CrossingPair& pair : carriers(mesh, contact.pair)) changed.push_back(pair);
   std::sort(changed.begin(), changed.end());
   changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  std::erase_if(crossings_.pairs, [&](const CrossingPair& pair) {
-    return std::binary_search(changed.begin(), changed.end(), pair);
-  });
+  // Pose and crossings are replaced together at the end, where nothing throws any more.
+  std::vector<CrossingPair> crossing;
+  std::ranges::set_difference(crossings_.pairs, changed, std::back_inserter(crossing));
   for (const CrossingPair& pair : changed)
-    if (triangles_meet(mesh, positions, pair.first, pair.second)) crossings_.pairs.push_back(pair);
-  std::sort(crossings_.pairs.begin(), crossings_.pairs.end());
+    if (triangles_meet(mesh, positions, pair.first, pair.second)) crossing.push_back(pair);
+  std::sort(crossing.begin(), crossing.end());
+  crossings_.pairs = std::move(crossing);
   crossings_.total = crossings_.pairs.size();
+  positions_.assign(positions.begin(), positions.end());
   return crossings_;
 }
 

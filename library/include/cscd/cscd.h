@@ -132,7 +132,8 @@ class CSCD_EXPORT SelfCollision {
   // of several pieces, or not manifold; closed meshes are faster. Prepare again when faces change, or when
   // the shape has come far from the reference and steps have become slow.
   SelfCollision(const Faces& faces, const Positions& reference, Options options);
-  SelfCollision(const Faces& faces, const Positions& reference);
+  SelfCollision(const Faces& faces, const Positions& reference)
+      : SelfCollision(faces, reference, Options()) {}
   ~SelfCollision();
   SelfCollision(SelfCollision&&) noexcept;
   SelfCollision& operator=(SelfCollision&&) noexcept;
@@ -149,11 +150,19 @@ class CSCD_EXPORT SelfCollision {
   // Returns contacts of the earliest time, at least one where anything touches. The second form uses the
   // memory of `out` again: after the largest step so far, a step that starts where a free step ended
   // allocates nothing.
-  Answer first_contact(const Positions& start, const Positions& end);
+  Answer first_contact(const Positions& start, const Positions& end) {
+    Answer out;
+    first_contact(start, end, out);
+    return out;
+  }
   void first_contact(const Positions& start, const Positions& end, Answer& out);
 
   // Returns all contacts.
-  Answer all_contacts(const Positions& start, const Positions& end);
+  Answer all_contacts(const Positions& start, const Positions& end) {
+    Answer out;
+    all_contacts(start, end, out);
+    return out;
+  }
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
   // Returns a time t in [0, 1] such that nothing touches in [0, t]: 1 for a free step, otherwise `safety`,
@@ -177,8 +186,9 @@ class CSCD_EXPORT SelfCollision {
 
 // Returns the instruction set that the engine uses: "avx512", "avx2" or "baseline". It is the best that both
 // the build and the machine have, or the one that the environment variable CSCD_ISA names when the first
-// object is made. Answers are the same with each. Throws std::invalid_argument, as the constructor of
-// SelfCollision does, if the build or the machine lacks what CSCD_ISA names.
+// object is made; objects are refused where CSCD_ISA names another set later. Answers are the same with each.
+// Throws std::invalid_argument, as the constructor of SelfCollision does, if the build or the machine lacks
+// what CSCD_ISA names.
 CSCD_EXPORT std::string_view instruction_set();
 
 }  // namespace cscd
