@@ -316,7 +316,8 @@ class SelfCollision::Engine {
 
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
     : engine_(checked([&] {
-        instruction_set();  // throws if it cannot be what the environment asks for
+        // Throws if it cannot be what the environment asks for. Asked once: the choice holds for the process.
+        [[maybe_unused]] static const std::string_view chosen = instruction_set();
         return std::make_unique<Engine>(faces, reference, std::move(options));
       })) {}
 SelfCollision::~SelfCollision() = default;

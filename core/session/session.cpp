@@ -14,6 +14,8 @@ constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 constexpr std::size_t kMostLeftOut = 500'000;
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
+// Preparing the stand-in takes about as long as this many plain searches for crossings, or twice as many.
+constexpr std::size_t kPlainSearches = 16;
 
 }  // namespace
 
@@ -28,9 +30,10 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
       stand_in_strategy_(stand_in),
       options_(options),
       poses_({setup.mesh, setup.reference}, kMostCrossings) {
+  const Stopwatch searching;
   if (!options.ignore_starts) find_crossings(rest, nullptr);
   rest_ = poses_.crossings();
-  rest_ms_ = searched_ms_;
+  rest_ms_ = searching.milliseconds();
   if (!options.keep_rest_crossings) {
     if (rest_.total > kMostLeftOut)
       throw InputError(
@@ -76,16 +79,15 @@ Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones)
 }
 
 // A complete row that sees starts answers from a start that is not known in less time than it takes to search
-// that start apart. It is prepared for that once the plain search has taken as long as that preparation may
-// take, which is about as long as the strategy's. So a clip whose starts are nearly all known from the steps
-// before them is spared the preparation, and no clip takes more than twice the time that the better choice
-// would take.
+// that start apart. It is prepared for that after so many plain searches that they have taken about as long
+// as its preparation. So a clip whose starts are nearly all known from the steps before them is spared the
+// preparation, and no clip takes much more than twice the time that the better choice would take. Searches
+// are counted and not timed, so that the same questions get the same answers from the same row.
 bool Session::stand_in_pays() const {
-  return stand_in_strategy_.sees_start && (stand_in_ || searched_ms_ > preparation_ms_);
+  return stand_in_strategy_.sees_start && (stand_in_ || searches_ >= kPlainSearches);
 }
 
 void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones) {
-  const Stopwatch searching;
   if (main_.detector && stand_in_pays()) {
     std::optional<Rig::Interval> rest;
     if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
@@ -95,7 +97,7 @@ void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bo
   } else {
     poses_.find(pose);
   }
-  searched_ms_ += searching.milliseconds();
+  ++searches_;
 }
 
 // Finds what crosses at the start from the straight way that leads there from the last known pose. Returns

@@ -105,8 +105,8 @@ class Session {
   std::optional<Row> stand_in_;
   double preparation_ms_ = 0;  // of the strategy
   PoseCrossings poses_;
-  double searched_ms_ = 0;  // that find_crossings() took so far
-  double rest_ms_ = 0;      // that it took for the pose at rest
+  std::size_t searches_ = 0;  // for crossings, from nothing
+  double rest_ms_ = 0;        // that the search of the pose at rest took
   Crossings rest_;
   RestCrossings left_out_;
   bool moved_on_ = false;          // poses_ holds the end of the step that is being answered

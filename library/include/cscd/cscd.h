@@ -25,14 +25,15 @@
 // `end` (t = 1). Two features *touch* if they share a point at some t in [0, 1]; touching counts, nothing has
 // to cross. For the coordinates exactly as they are given, as binary floating-point numbers:
 //   - is_free() is true only if nothing touches and nothing crosses at the start;
-//   - first_contact() gives the contacts of the earliest time, and that time is right to 2^-50;
+//   - first_contact() gives contacts of the earliest time, at least one, and that time is right to 2^-50;
 //   - all_contacts() gives all contacts;
 //   - largest_step() never reaches the first contact;
 //   - candidates() holds every pair of features that comes within the radius.
 // Nothing is sampled, and no tolerance decides. The proofs are in core/soundness.md of the project.
 //
-// What it costs: preparing a mesh takes about as long as a thousand steps without contacts. A step takes
-// longer the more of the surface is in contact. The README of the project shows times from records.
+// What it costs: preparing a mesh takes as long as some hundreds to two thousand steps without contacts. A
+// step takes longer the more of the surface is in contact. The README of the project shows times from
+// records.
 namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
@@ -186,7 +187,7 @@ class CSCD_EXPORT SelfCollision {
 
 // Returns the instruction set that the engine uses: "avx512", "avx2" or "baseline". It is the best that both
 // the build and the machine have, or the one that the environment variable CSCD_ISA names when the first
-// object is made; objects are refused where CSCD_ISA names another set later. Answers are the same with each.
+// object is made. Answers are the same with each.
 // Throws std::invalid_argument, as the constructor of SelfCollision does, if the build or the machine lacks
 // what CSCD_ISA names.
 CSCD_EXPORT std::string_view instruction_set();
