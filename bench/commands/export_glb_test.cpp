@@ -78,7 +78,7 @@ TEST(ExportGlb, WhatCannotBeExportedIsRefused) {
   write(scratch.path / "cache.h5", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"man", out}, "scene man: its last effect is skinning_dual_quaternion"},
-      {{"box", out}, "its last effect is volume_bulge"},
+      {{"box", out}, "scene box: its last effect is skinning_dual_quaternion"},
       {{"rope_contact", out}, "its last effect is contact_response"},
       {{"nobody", out}, "unknown scene nobody"},
       {{scratch / "model.gltf", out}, "only a scene, by its name"},
