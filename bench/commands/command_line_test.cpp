@@ -54,6 +54,23 @@ TEST_F(CommandLine, RefusesWordsThatAreNoText) {
   expect_refused(run("cscd query $'p\\xe4th.h5' --json -"), "is not UTF-8");
 }
 
+// As `cmake --install` leaves it: the scenes lie beside the program, where a user cannot write.
+TEST_F(CommandLine, FindsItsScenesWhereItIsInstalled) {
+  const Ran ran =
+      run(R"(mkdir -p prefix/bin prefix/share/cscd home
+cp "$(command -v cscd)" prefix /
+              bin&& mv scenes prefix / share / cscd&& here =
+              $PWD&& cd / unset CSCD_SCENES CSCD_CACHE XDG_CACHE_HOME HOME =
+                  $here / home "$here/prefix/bin/cscd" query small-- json - &&ls
+                                                                            "$here/home/.cache/cscd"
+                                                                            "$here/prefix/share/cscd") ");
+      EXPECT_EQ(ran.status, 0)
+      << ran.errors;
+  EXPECT_NE(ran.out.find(".h5\n"), std::string::npos) << ran.out;
+  EXPECT_EQ(text("prefix/share/cscd/scenes/small.json"), scenes::small_scene_with_digest());
+  EXPECT_FALSE(fs::exists(folder / "prefix/share/cscd/.cache"));
+}
+
 TEST_F(CommandLine, RefusesAnInstructionSetThatItIsNotBuiltFor) {
   expect_refused(run("CSCD_ISA=sse cscd list"), "CSCD_ISA=sse: no such instruction set; give one of avx512");
   EXPECT_EQ(run("CSCD_ISA= cscd list").status, 0);

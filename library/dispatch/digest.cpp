@@ -5,6 +5,7 @@
 //
 // SOUPS is the number of small random surfaces that take one step each. STEPS is the number of steps in which
 // a closed tube of 12,800 triangles bends.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -39,13 +40,20 @@ struct Digest {
     }
     contacts += answer.contacts.size();
   }
+  template <class Pairs>
+  void add_in_order(Pairs pairs) {
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& pair : pairs)
+      for (const int v : pair) add(std::uint64_t(v));
+    add(std::uint64_t(pairs.size()));
+  }
   void ask(SelfCollision& body, const Positions& start, const Positions& end) {
     add(std::uint64_t(body.is_free(start, end)));
     add(body.first_contact(start, end));
     add(body.all_contacts(start, end));
     add(body.largest_step(start, end));
     const SelfCollision::Candidates near = body.candidates(start, end, 0.01);
-    add(std::uint64_t(near.vertex_face.size())), add(std::uint64_t(near.edge_edge.size()));
+    add_in_order(near.vertex_face), add_in_order(near.edge_edge);
   }
 };
 

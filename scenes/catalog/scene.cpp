@@ -180,6 +180,15 @@ std::optional<fs::path> nearest_scenes(fs::path place) {
 
 }  // namespace
 
+std::optional<fs::path> installed_scenes() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return std::nullopt;
+  const fs::path scenes = program.parent_path().parent_path() / "share" / "cscd" / "scenes";
+  if (scene_files(scenes).empty()) return std::nullopt;
+  return scenes;
+}
+
 fs::path scenes_folder() {
   if (const char* named = std::getenv("CSCD_SCENES")) {
     if (scene_files(named).empty())
@@ -194,6 +203,7 @@ fs::path scenes_folder() {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error)
     if (const auto found = nearest_scenes(program.parent_path())) return *found;
+  if (const auto found = installed_scenes()) return *found;
   throw InputError(
       "no folder scenes/ here or above; run inside the repository or let CSCD_SCENES name the folder");
 }

@@ -44,9 +44,13 @@ struct SceneSummary {
 };
 
 // Returns the folder of scene files: $CSCD_SCENES, or else the nearest folder `scenes` with a scene
-// file in it, going up from the current directory and then from the program's own place. Throws
-// InputError if there is none.
+// file in it, going up from the current directory and then from the program's own place, or else
+// installed_scenes(). Throws InputError if there is none.
 std::filesystem::path scenes_folder();
+
+// Returns the folder share/cscd/scenes of the prefix in whose bin/ the program lies, if it holds a scene
+// file.
+std::optional<std::filesystem::path> installed_scenes();
 
 // Returns all scenes in the order of their names, including those with a fault.
 std::vector<SceneSummary> list_scenes();

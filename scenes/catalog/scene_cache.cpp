@@ -131,13 +131,14 @@ fs::path cache_folder() {
   if (const char* named = std::getenv("CSCD_CACHE")) return named;
   std::string no_scenes;
   try {
-    return scenes_folder().parent_path() / ".cache";
+    const fs::path scenes = scenes_folder();
+    if (scenes != installed_scenes()) return scenes.parent_path() / ".cache";
   } catch (const InputError& error) {  // a scene file may lie anywhere
     no_scenes = error.what();
   }
   if (const char* caches = std::getenv("XDG_CACHE_HOME")) return fs::path(caches) / "cscd";
   if (const char* home = std::getenv("HOME")) return fs::path(home) / ".cache" / "cscd";
-  throw InputError(no_scenes);
+  throw InputError(no_scenes.empty() ? "no folder for frames; let CSCD_CACHE or HOME name one" : no_scenes);
 }
 
 fs::path cache_file(const Scene& scene) {

@@ -14,7 +14,8 @@ namespace cscd::scenes {
 // versions are then ignored.
 inline constexpr int kGeneratorVersion = 2;
 
-// Returns $CSCD_CACHE, or else `.cache` beside the scenes' folder, or else the user's own folder of caches.
+// Returns $CSCD_CACHE, or else `.cache` beside the scenes' folder, or else, as for installed scenes, the
+// user's own folder of caches.
 std::filesystem::path cache_folder();
 
 // Returns the file in which the frames of this scene are cached. Its name holds a hash of everything that
