@@ -153,6 +153,22 @@ inline Shape ramp(int steps, double turns, double inner, double outer, double pi
   return shape;
 }
 
+// An open sheet in the plane z = 0 that faces up, over the square from (-1, -1) to (1, 1): `cells` by `cells`
+// squares.
+inline Shape sheet(int cells) {
+  Shape shape;
+  for (int y = 0; y <= cells; ++y)
+    for (int x = 0; x <= cells; ++x)
+      shape.positions.emplace_back(2.0 * x / cells - 1, 2.0 * y / cells - 1, 0);
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      const int a = y * (cells + 1) + x, b = a + 1, c = a + cells + 1, d = c + 1;
+      shape.triangles.push_back(corners(a, b, d));
+      shape.triangles.push_back(corners(a, d, c));
+    }
+  return shape;
+}
+
 // A box of twelve triangles.
 inline Shape box(const Vec3& low = {0, 0, 0}, const Vec3& high = {1, 1, 1}) {
   Shape shape;

@@ -251,6 +251,23 @@ Build touching_lattice(Random& random) {
   return build;
 }
 
+// An open sheet that is flat, waved or rolled at first, and then folds, rolls up or crumples. At rest it may
+// lie in one plane exactly.
+Build open_sheet(Random& random) {
+  Build build;
+  const double length = random.uniform(2, 6), circle = 2 * std::numbers::pi / length;
+  append_sheet(build.surface, random.integer(3, 14), random.integer(2, 8), length, random.uniform(0.5, 3));
+  build.add_chain(random.integer(1, 3), length);
+  build.start_noise = random.integer(0, 1) * random.uniform(0, 0.1);
+  build.start.bend = random.integer(0, 1) * random.uniform(0, 0.8) * circle;
+  build.end.bend = random.uniform(0, 1.6) * circle;
+  build.end.pitch = random.integer(0, 1) * random.uniform(0, 0.3);
+  build.end.twist = random.integer(0, 1) * random.uniform(-1, 1);
+  build.end.linear.diagonal() = Vec3(random.uniform(0, 1), random.uniform(0.5, 1), random.uniform(0.2, 1));
+  build.noise = random.integer(0, 1) * random.uniform(0, 0.3);
+  return build;
+}
+
 struct Family {
   std::string_view name;
   Build (*make)(Random&);
@@ -311,10 +328,11 @@ std::span<const std::string_view> random_families() {
   return kNames;
 }
 
-RandomInterval make_random_interval(std::uint64_t seed) {
-  Random random(seed * 0x9e3779b97f4a7c15u + 1);
-  const Family& family = kFamilies[seed % kFamilies.size()];
-  Build build = family.make(random);
+namespace {
+
+constexpr std::uint64_t kOneInIsASheet = 4;  // so many torn intervals hold one of an open sheet
+
+RandomInterval made(Random& random, std::string_view family, Build build) {
   const Place place = random_place(random, build.lattice);
   if (!build.lattice) build.end.shift += random.in_box(0.3);
   if (build.target.empty()) build.target = build.surface.positions;
@@ -335,12 +353,21 @@ RandomInterval make_random_interval(std::uint64_t seed) {
     for (const Bone& bone : build.bones) bones.push_back({put(bone.head), put(bone.tail)});
     clip.append({positions, bones});
   }
-  return {family.name, std::move(clip)};
+  return {family, std::move(clip)};
+}
+
+}  // namespace
+
+RandomInterval make_random_interval(std::uint64_t seed) {
+  Random random(seed * 0x9e3779b97f4a7c15u + 1);
+  const Family& family = kFamilies[seed % kFamilies.size()];
+  return made(random, family.name, family.make(random));
 }
 
 RandomInterval make_torn_interval(std::uint64_t seed) {
-  const RandomInterval whole = make_random_interval(seed);
   Random random(seed * 0x9e3779b97f4a7c15u + 2);
+  if (seed % kOneInIsASheet == 0) return made(random, "open_sheet", open_sheet(random));
+  const RandomInterval whole = make_random_interval(seed);
   ClipHeader header = whole.clip.header();
   const int one_in = random.integer(5, 200);
   std::vector<Triangle> left;

@@ -53,6 +53,21 @@ void append_box(Surface& surface, const Vec3& low, const Vec3& high) {
   }
 }
 
+void append_sheet(Surface& surface, int along, int across, double length, double width) {
+  const std::size_t first = surface.positions.size();
+  const auto rows = static_cast<std::size_t>(along), columns = static_cast<std::size_t>(across);
+  for (std::size_t i = 0; i <= rows; ++i)
+    for (std::size_t j = 0; j <= columns; ++j)
+      surface.positions.emplace_back(0, width * (static_cast<double>(j) / static_cast<double>(columns) - 0.5),
+                                     length * (static_cast<double>(i) / static_cast<double>(rows) - 0.5));
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::size_t a = first + i * (columns + 1) + j, b = a + 1, c = a + columns + 1, d = c + 1;
+      surface.triangles.push_back(triangle(a, b, d));
+      surface.triangles.push_back(triangle(a, d, c));
+    }
+}
+
 void append_tube(Surface& surface, const Tube& tube) {
   const std::size_t first = surface.positions.size();
   const auto rings = static_cast<std::size_t>(tube.rings), sides = static_cast<std::size_t>(tube.sides);

@@ -26,7 +26,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// A small closed surface, oriented outward. Each of the functions below appends one connected component.
+// A small surface, closed and oriented outward but for sheets. Each of the functions below appends one
+// connected component.
 struct Surface {
   std::vector<Vec3> positions;      // [vertices]
   std::vector<Triangle> triangles;  // [triangles]
@@ -46,6 +47,10 @@ struct Tube {
   std::vector<double> radii;  // control values along the tube, interpolated linearly
 };
 void append_tube(Surface& surface, const Tube& tube);
+
+// Appends an open sheet in the plane x = 0, centred: `along` by `across` squares over a length along z and a
+// width along y, two triangles a square.
+void append_sheet(Surface& surface, int along, int across, double length, double width);
 
 // Appends a pointed finger over the segment from (-1, 0, 0) to (1, 0, 0). The other end of the finger is
 // led round in two bends to a small face in front of the finger's tip, so that all is one connected

@@ -1,14 +1,9 @@
 #include "core/fast/cut/covers.h"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
-#include <random>
 
-#include "core/base/random.h"
-#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/cut/observer.h"
 #include "core/fast/cut/seams.h"
 
 namespace cscd::fast {
@@ -16,56 +11,6 @@ namespace {
 
 constexpr std::int32_t kReach = 6;  // so many rings of triangles about a seam belong to its cluster
 constexpr std::int32_t kThin = 4;   // a cluster without a triangle so many rings from its seams is merged
-
-// ---- Observers
-
-// Chooses a few vertices of the triangles, with weights that make them the wanted point in the reference
-// pose.
-FollowingPoint following(const TriangleMesh& mesh, std::span<const Vec3> positions,
-                         std::span<const TriangleId> triangles, const Vec3& wanted) {
-  std::vector<VertexId> vertices;
-  for (const TriangleId t : triangles)
-    vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
-  std::mt19937 random(kPreparationSeed);
-  FollowingPoint best;
-  double least = std::numeric_limits<double>::infinity();
-  for (int draw = 0; draw < 50; ++draw) {
-    for (std::size_t i = 0; i < count; ++i)
-      std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
-    const double n = static_cast<double>(count);
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) mean += positions[+vertices[i]] / n;
-    // This is the smallest change of equal weights that moves their mean to the wanted point.
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 x = positions[+vertices[i]] - mean;
-      spread += x * x.transpose();
-    }
-    const double extent = spread.trace();
-    spread += 1e-3 * extent * Eigen::Matrix3d::Identity();
-    const Vec3 slope = spread.inverse() * (wanted - mean);
-    if (!slope.allFinite()) continue;
-    FollowingPoint point;
-    Vec3 got = Vec3::Zero();
-    double largest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double weight = 1 / n + slope.dot(positions[+vertices[i]] - mean);
-      point.add(vertices[i], static_cast<float>(weight));
-      got += weight * positions[+vertices[i]];
-      largest = std::max(largest, n * std::abs(weight));
-    }
-    if (!(largest <= FollowingPoint::kMostWeight)) continue;  // the point is too far from these vertices
-    const double cost = largest + 10 * (got - wanted).norm() / std::sqrt(extent);
-    if (!(cost < least)) continue;
-    least = cost;
-    best = point;
-  }
-  if (best.vertices().empty()) best.add(vertices.front(), 1);  // the cluster has no extent
-  return best;
-}
 
 // Numbers the clusters from 0 in the order of their first triangles, and returns how many there are.
 std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
@@ -85,11 +30,8 @@ Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
     if (cover.cluster_of[t] != kNone)
       members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
           TriangleId{static_cast<std::int32_t>(t)});
-  for (const std::vector<TriangleId>& triangles : members) {
-    std::vector<Face> faces;
-    for (const TriangleId t : triangles) faces.push_back(face_of(mesh, reference, t));
-    cover.observers.push_back(following(mesh, reference, triangles, best_viewpoint(faces)));
-  }
+  for (const std::vector<TriangleId>& triangles : members)
+    cover.observers.push_back(observer_of(mesh, reference, triangles));
   return cover;
 }
 

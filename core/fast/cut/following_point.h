@@ -8,8 +8,9 @@
 
 namespace cscd::fast {
 
-// A point that follows the surface: an affine combination of a few vertices. It is held by value, because
-// hundreds of points are placed one after the other in every interval.
+// A point that follows the surface: an affine combination of a few vertices, from which it may stand off
+// along the normal that these vertices carry. It is held by value, because hundreds of points are placed one
+// after the other in every interval.
 class FollowingPoint {
  public:
   static constexpr std::size_t kMost = 16;
@@ -23,12 +24,23 @@ class FollowingPoint {
   // The weights sum to about 1. The point is defined by what they sum to exactly.
   std::span<const float> weights() const { return std::span(weights_).first(count_); }
 
+  // Lets the point stand off its vertices. An affine combination of vertices in one plane lies in that plane,
+  // from which nothing of it can be seen. The vertices are then the corners of a polygon, in the order in
+  // which they were added, and `height` is in units of the square root of its area; a negative one is behind
+  // it.
+  void stand_off(float height) { height_ = height; }
+  bool stands_off() const { return height_ != 0; }
+  // Returns by how much the point stands off its affine combination, from where the vertices are, `corners`,
+  // [vertices()]. Zero if the polygon has no area.
+  Vec3 offset(std::span<const Vec3> corners) const;
+
   Vec3 at(std::span<const Vec3> positions) const;
 
  private:
   std::array<VertexId, kMost> vertices_{};
   std::array<float, kMost> weights_{};
   std::size_t count_ = 0;
+  float height_ = 0;
 };
 
 }  // namespace cscd::fast

@@ -183,6 +183,31 @@ TEST(CappedClusters, NoPairThatTouchesIsDropped) {
   EXPECT_GT(touching_in_cluster, 800u);
 }
 
+// A flat sheet, an observer that stands off it, and a cap beyond the observer: everything is clear, as long
+// as the sheet stays open. Once a corner of it is folded over, what it comes down on is not. Mutation: as
+// above.
+TEST(CappedClusters, ASheetIsClearUntilItIsFoldedOntoItself) {
+  const Shape flat = test::sheet(16);
+  const TriangleMesh mesh = flat.mesh();
+  const CutSurface cut =
+      cut_surface(mesh, flat.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  ASSERT_TRUE(cut.covers[0].observers.at(0).stands_off());
+  const auto seen = [&](const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
+    return Seen(mesh, flat.positions, cut.tree, cut.covers[0], 0, Motion(start, end));
+  };
+  std::vector<Vec3> waved = flat.positions, folded = flat.positions;
+  for (Vec3& p : waved) p += Vec3(0.1, 3, 0.1 * std::sin(4 * p.x()) + 0.1 * p.y());
+  EXPECT_EQ(seen(flat.positions, waved).clear(), mesh.triangle_count());
+  for (Vec3& p : folded)
+    if (const double over = p.x() + p.y() - 1; over > 0) p += Vec3(-over, -over, -0.3 * over * (over - 0.8));
+  const Motion folding(flat.positions, folded);
+  const Seen over = seen(flat.positions, folded);
+  const auto pairs = touching(mesh, folding);
+  EXPECT_GT(pairs.size(), 20u);
+  EXPECT_GT(over.clear(), mesh.triangle_count() / 4);
+  for (const auto& [a, b] : pairs) EXPECT_FALSE(over.dropped(a, b)) << +a << ", " << +b;
+}
+
 // The triangles of a cluster and its caps pass every edge as often in one direction as in the other.
 // Mutation: a triangle that cuts off a vertex is left out.
 TEST(Caps, CloseTheirClusters) {
