@@ -1,0 +1,72 @@
+// The whole query of the fast engine on tiny meshes, open, torn and closed, against all pairs of features.
+#include <vector>
+
+#include "baselines/brute.h"
+#include "core/detect/start/embedding.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+
+#include "fuzz/numbers.h"
+
+namespace cscd::fuzz {
+namespace {
+
+constexpr int kMostVertices = 12, kMostTriangles = 16;
+constexpr std::size_t kMostCrossings = 10'000;
+
+ContactSet sorted_contacts(Detector& detector, const Motion& motion) {
+  ContactSet found;
+  detector.detect(motion, nullptr, found);
+  found.sort();
+  return found;
+}
+
+// Triangles with a repeated corner are left out; a mesh refuses them.
+std::vector<Triangle> triangles_of(Numbers& numbers, std::size_t vertices) {
+  std::vector<Triangle> triangles;
+  for (int left = 1 + numbers.byte() % kMostTriangles; left > 0; --left) {
+    Triangle corners;
+    for (VertexId& corner : corners) corner = VertexId{static_cast<std::int32_t>(numbers.byte() % vertices)};
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+      triangles.push_back(corners);
+  }
+  return triangles;
+}
+
+}  // namespace
+
+void target(Bytes bytes) {
+  Numbers numbers(bytes);
+  const std::size_t vertices = 3 + numbers.byte() % (kMostVertices - 2);
+  std::vector<Triangle> triangles = triangles_of(numbers, vertices);
+  if (triangles.empty()) return;
+  const TriangleMesh mesh(std::move(triangles), vertices);
+  std::vector<Vec3> reference(vertices), start(vertices), end(vertices);
+  const bool starts_in_reference = numbers.byte() % 2 == 0;
+  for (std::vector<Vec3>* pose : {&reference, &start, &end})
+    for (Vec3& p : *pose) p = numbers.point();
+  if (starts_in_reference) start = reference;
+  const Motion motion(start, end);
+  const Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
+  const ContactSet truth = sorted_contacts(*make_brute(setup).detector, motion);
+
+  const Prepared complete = make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+  if (digest(sorted_contacts(*complete.detector, motion)) != digest(truth))
+    broken("drvbc_fast_complete has other contacts than all pairs");
+  ContactSet again;
+  Crossings crossings;
+  complete.detector->detect_and_see_start(motion, nullptr, again, kMostCrossings, crossings);
+  again.sort();
+  if (digest(again) != digest(truth)) broken("seeing the start changes the contacts");
+  const Crossings plain = EmbeddingTest(mesh, reference).find_all(start, kMostCrossings);
+  if (crossings.total != plain.total || crossings.pairs != plain.pairs)
+    broken("drvbc_fast_complete sees other crossings than the plain test");
+
+  if (!mesh.closed_and_oriented() || plain.total != 0) return;
+  const ContactSet first = sorted_contacts(*make_drvbc_fast(setup).detector, motion);
+  if (first.contacts.empty() != truth.contacts.empty()) broken("drvbc_fast loses the first contact");
+  if (!truth.contacts.empty() && first.contacts[0].time != truth.contacts[0].time)
+    broken("drvbc_fast is late");
+}
+
+}  // namespace cscd::fuzz

@@ -1,0 +1,19 @@
+// glTF files, text and binary.
+#include "core/base/error.h"
+#include "scenes/import/gltf/read_gltf.h"
+
+#include "fuzz/input_file.h"
+
+namespace cscd::fuzz {
+
+void target(Bytes bytes) {
+  const InputFile file(bytes);
+  scenes::CharacterLimits limits;
+  limits.vertices = limits.triangles = limits.influences = limits.keys = limits.displacements = 100'000;
+  try {
+    validate(scenes::read_gltf(file.path(), limits), limits);
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace cscd::fuzz

@@ -1,0 +1,18 @@
+// Records of runs.
+#include "bench/record/record.h"
+
+#include "core/base/error.h"
+
+#include "fuzz/input_file.h"
+
+namespace cscd::fuzz {
+
+void target(Bytes bytes) {
+  const InputFile file(bytes);
+  try {
+    bench::read_record(file.path());
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace cscd::fuzz

@@ -1,0 +1,26 @@
+// OBJ and PLY files.
+#include "scenes/exchange/surface_file.h"
+
+#include "core/base/error.h"
+
+#include "fuzz/target.h"
+
+namespace cscd::fuzz {
+
+void target(Bytes bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (const auto read : {scenes::read_obj, scenes::read_ply}) {
+    scenes::SurfaceFile surface;
+    try {
+      surface = read(text);
+    } catch (const InputError&) {
+      continue;
+    }
+    for (const auto& corners : surface.triangles)
+      for (const std::int32_t corner : corners)
+        if (corner < 0 || static_cast<std::size_t>(corner) >= surface.positions.size())
+          broken("an index is out of range");
+  }
+}
+
+}  // namespace cscd::fuzz

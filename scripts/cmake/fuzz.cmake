@@ -1,0 +1,30 @@
+# Fuzz targets (fuzz/target.h).
+#
+#   cscd_fuzz_target(NAME RANDOM ROOM... [STORED FILE...])   fuzz/NAME.cpp, which uses the rooms
+#
+# With CSCD_FUZZ each target is a program for libFuzzer, fuzz_NAME (scripts/fuzz). Without, it is a test that runs what is
+# stored for it, in fuzz/corpus/NAME and in the files, and RANDOM inputs made from that.
+option(CSCD_FUZZ "Build the fuzz targets for libFuzzer; needs clang" OFF)
+
+function(cscd_fuzz_target name random)
+  if(NOT CSCD_FUZZ AND NOT BUILD_TESTING)
+    return()
+  endif()
+  cmake_parse_arguments(FUZZ "" "" "STORED" ${ARGN})
+  set(folder ${PROJECT_SOURCE_DIR}/fuzz)
+  string(REPLACE "/" "_" rooms "${FUZZ_UNPARSED_ARGUMENTS}")
+  if(CSCD_FUZZ)
+    set(program fuzz_${name})
+    add_executable(${program} ${folder}/${name}.cpp ${folder}/broken.cpp ${folder}/entry.cpp)
+    target_link_options(${program} PRIVATE -fsanitize=fuzzer)
+  else()
+    set(program fuzz_${name}_replay)
+    add_executable(${program} ${folder}/${name}.cpp ${folder}/broken.cpp ${folder}/replay.cpp)
+    set(stored ${FUZZ_STORED})
+    if(IS_DIRECTORY ${folder}/corpus/${name})
+      list(APPEND stored ${folder}/corpus/${name})
+    endif()
+    add_test(NAME fuzz_${name} COMMAND ${program} --random ${random} ${stored})
+  endif()
+  target_link_libraries(${program} PRIVATE ${rooms} cscd_flags)
+endfunction()
