@@ -56,16 +56,14 @@ TEST_F(CommandLine, RefusesWordsThatAreNoText) {
 
 // As `cmake --install` leaves it: the scenes lie beside the program, where a user cannot write.
 TEST_F(CommandLine, FindsItsScenesWhereItIsInstalled) {
-  const Ran ran =
-      run(R"(mkdir -p prefix/bin prefix/share/cscd home
-cp "$(command -v cscd)" prefix /
-              bin&& mv scenes prefix / share / cscd&& here =
-              $PWD&& cd / unset CSCD_SCENES CSCD_CACHE XDG_CACHE_HOME HOME =
-                  $here / home "$here/prefix/bin/cscd" query small-- json - &&ls
-                                                                            "$here/home/.cache/cscd"
-                                                                            "$here/prefix/share/cscd") ");
-      EXPECT_EQ(ran.status, 0)
-      << ran.errors;
+  const Ran ran = run(R"sh(mkdir -p prefix/bin prefix/share/cscd home
+cp "$(command -v cscd)" prefix/bin
+mv scenes prefix/share/cscd
+here=$PWD
+cd /
+unset CSCD_SCENES CSCD_CACHE XDG_CACHE_HOME
+HOME=$here/home "$here/prefix/bin/cscd" query small --json - && ls "$here/home/.cache/cscd")sh");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
   EXPECT_NE(ran.out.find(".h5\n"), std::string::npos) << ran.out;
   EXPECT_EQ(text("prefix/share/cscd/scenes/small.json"), scenes::small_scene_with_digest());
   EXPECT_FALSE(fs::exists(folder / "prefix/share/cscd/.cache"));

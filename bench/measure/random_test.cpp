@@ -50,7 +50,8 @@ TEST(RandomVerification, EveryStrategyHoldsOnThreeHundredIntervals) {
     ADD_FAILURE() << failure.strategy << ", seed " << failure.seed << ": " << failure.what;
   EXPECT_EQ(summary.intervals, 400u);
   EXPECT_EQ(summary.torn, 100u);
-  EXPECT_LT(summary.embedded, 350u) << "torn ones mostly start by meeting themselves";
+  // Of the torn ones a quarter are sheets, which mostly start embedded.
+  EXPECT_LT(summary.embedded, 360u) << "torn ones mostly start by meeting themselves";
   EXPECT_GT(summary.embedded_with_contacts, 100u);
   EXPECT_EQ(summary.embedded_hits_of.size(), scenes::random_families().size());
   const RandomRow& all = summary.rows.at(std::string(complete_reference().name));

@@ -330,6 +330,13 @@ std::span<const std::string_view> random_families() {
 
 namespace {
 
+// Returns an interval from its end to its start, with another header.
+RandomInterval backwards(const RandomInterval& whole, ClipHeader header) {
+  Clip clip(std::move(header));
+  for (const std::size_t frame : {1u, 0u}) clip.append(whole.clip.frame(frame));
+  return {whole.family, std::move(clip)};
+}
+
 constexpr std::uint64_t kOneInIsASheet = 4;  // so many torn intervals hold one of an open sheet
 
 RandomInterval made(Random& random, std::string_view family, Build build) {
@@ -366,7 +373,10 @@ RandomInterval make_random_interval(std::uint64_t seed) {
 
 RandomInterval make_torn_interval(std::uint64_t seed) {
   Random random(seed * 0x9e3779b97f4a7c15u + 2);
-  if (seed % kOneInIsASheet == 0) return made(random, "open_sheet", open_sheet(random));
+  if (seed % kOneInIsASheet == 0) {
+    RandomInterval sheet = made(random, "open_sheet", open_sheet(random));
+    return seed % (2 * kOneInIsASheet) == 0 ? sheet : backwards(sheet, sheet.clip.header());
+  }
   const RandomInterval whole = make_random_interval(seed);
   ClipHeader header = whole.clip.header();
   const int one_in = random.integer(5, 200);
@@ -379,9 +389,7 @@ RandomInterval make_torn_interval(std::uint64_t seed) {
     if (fate == 2) left.push_back(corners);
   }
   if (!left.empty()) header.triangles = std::move(left);
-  Clip clip(std::move(header));
-  for (const std::size_t frame : {1u, 0u}) clip.append(whole.clip.frame(frame));
-  return {whole.family, std::move(clip)};
+  return backwards(whole, std::move(header));
 }
 
 }  // namespace cscd::scenes

@@ -24,8 +24,8 @@ RandomInterval make_random_interval(std::uint64_t seed);
 
 // Makes the random interval of the seed backwards, on a torn surface: some triangles are missing, turned
 // round, or there twice. Played backwards, most intervals start with surfaces that cross. Every fourth seed
-// makes an open sheet instead, flat, waved or rolled at first. Code that promises to take any input is tested
-// on these intervals.
+// makes an open sheet instead, which is flat, waved or rolled at first, or, of half of them, at the end. Code
+// that promises to take any input is tested on these intervals.
 RandomInterval make_torn_interval(std::uint64_t seed);
 
 }  // namespace cscd::scenes

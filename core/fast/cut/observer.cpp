@@ -20,7 +20,7 @@ constexpr double kSeen = 0.2;
 constexpr double kSeenWell = 0.8;
 // An observer among the vertices is taken if it sees this share of the faces. It stays among them when they
 // bend, where one that stands off is left behind.
-constexpr double kEnough = 0.9;
+constexpr double kEnough = 0.5;
 // How far an observer may stand off, in units of the square root of its polygon's area. From farther away,
 // cones of directions are too blunt to tell patches apart.
 constexpr float kHeights[] = {-0.5F, -1, -2, -4};
@@ -127,7 +127,9 @@ FollowingPoint observer_of(const TriangleMesh& mesh, std::span<const Vec3> refer
 
   FollowingPoint best = following(reference, vertices, best_viewpoint(faces));
   const View among = view(faces, best.at(reference));
-  if (among.seen >= kEnough || !(normal.norm() > 0)) return best;
+  // A cluster of a closed surface bends round its observer nearly always. The few that do not gained nothing
+  // on characters in motion.
+  if (mesh.closed_and_oriented() || among.seen >= kEnough || !(normal.norm() > 0)) return best;
   double most = among.clarity;
   FollowingPoint off = polygon(reference, vertices, normal.normalized());
   for (const float height : kHeights) {

@@ -187,7 +187,7 @@ TEST(CappedClusters, NoPairThatTouchesIsDropped) {
 // as the sheet stays open. Once a corner of it is folded over, what it comes down on is not. Mutation: as
 // above.
 TEST(CappedClusters, ASheetIsClearUntilItIsFoldedOntoItself) {
-  const Shape flat = test::sheet(16);
+  const Shape flat = test::sheet(24);
   const TriangleMesh mesh = flat.mesh();
   const CutSurface cut =
       cut_surface(mesh, flat.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
