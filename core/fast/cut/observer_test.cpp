@@ -24,8 +24,7 @@ double seen_from(const Vec3& from, const TriangleMesh& mesh, std::span<const Vec
   return static_cast<double>(seen) / static_cast<double>(mesh.triangle_count());
 }
 
-// From a plane nothing of it can be seen, and vertices of small waves carry a point below them only with
-// large weights. Mutations: observers stay among the vertices; large weights are taken.
+// From a plane nothing of it can be seen. Mutation: observers stay among the vertices.
 TEST(Observer, StandsOffASheet) {
   for (const double wave : {0.0, 0.02, 0.2}) {
     test::Shape shape = test::sheet(25);
