@@ -1,4 +1,6 @@
 // The whole query of the fast engine on tiny meshes, open, torn and closed, against all pairs of features.
+#include <bit>
+#include <utility>
 #include <vector>
 
 #include "baselines/brute.h"
@@ -33,19 +35,51 @@ std::vector<Triangle> triangles_of(Numbers& numbers, std::size_t vertices) {
   return triangles;
 }
 
+// An interval of a mesh, and the pose in which the mesh is prepared.
+struct Step {
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> reference, start, end;
+};
+
+Step any_step(Numbers& numbers) {
+  const std::size_t vertices = 3 + numbers.byte() % (kMostVertices - 2);
+  Step step{triangles_of(numbers, vertices), {}, {}, {}};
+  const bool starts_in_reference = numbers.byte() % 2 == 0;
+  for (std::vector<Vec3>* pose : {&step.reference, &step.start, &step.end})
+    for (std::size_t v = 0; v < vertices; ++v) pose->push_back(numbers.point());
+  if (starts_in_reference) step.start = step.reference;
+  return step;
+}
+
+// A dented octahedron whose vertices go anywhere: few triangles drawn at random close a surface, and few
+// poses are embedded.
+Step closed_step(Numbers& numbers) {
+  Step step;
+  for (int face = 0; face < 8; ++face) {  // vertices 2 k and 2 k + 1 lie at both ends of axis k
+    Triangle corners;
+    for (int k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = VertexId{2 * k + (face >> k & 1)};
+    if (std::popcount(static_cast<unsigned>(face)) % 2 != 0) std::swap(corners[1], corners[2]);
+    step.triangles.push_back(corners);
+  }
+  for (int v = 0; v < 6; ++v) {
+    Vec3 p = Vec3::Zero();
+    p[v / 2] = v % 2 == 0 ? 200 : -200;
+    for (int k = 0; k < 3; ++k) p[k] += numbers.integer();
+    step.start.push_back(p);
+  }
+  step.reference = step.start;
+  for (int v = 0; v < 6; ++v) step.end.push_back(numbers.point());
+  return step;
+}
+
 }  // namespace
 
 void target(Bytes bytes) {
   Numbers numbers(bytes);
-  const std::size_t vertices = 3 + numbers.byte() % (kMostVertices - 2);
-  std::vector<Triangle> triangles = triangles_of(numbers, vertices);
+  const auto [triangles, reference, start, end] =
+      numbers.byte() % 2 == 0 ? any_step(numbers) : closed_step(numbers);
   if (triangles.empty()) return;
-  const TriangleMesh mesh(std::move(triangles), vertices);
-  std::vector<Vec3> reference(vertices), start(vertices), end(vertices);
-  const bool starts_in_reference = numbers.byte() % 2 == 0;
-  for (std::vector<Vec3>* pose : {&reference, &start, &end})
-    for (Vec3& p : *pose) p = numbers.point();
-  if (starts_in_reference) start = reference;
+  const TriangleMesh mesh(triangles, start.size());
   const Motion motion(start, end);
   const Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
   const ContactSet truth = sorted_contacts(*make_brute(setup).detector, motion);

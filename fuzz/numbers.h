@@ -24,6 +24,8 @@ class Numbers {
     bytes_ = bytes_.subspan(1);
     return first;
   }
+  // From -128 to 127, whatever the kind.
+  double integer() { return static_cast<double>(static_cast<std::int8_t>(byte())); }
   double coordinate() {
     switch (kind_) {
       case 0:
@@ -47,7 +49,6 @@ class Numbers {
   }
 
  private:
-  double integer() { return static_cast<double>(static_cast<std::int8_t>(byte())); }
   static double bounded(double x) { return std::isfinite(x) && std::abs(x) <= 1e15 ? x : 1; }
   template <class Word>
   Word word() {
