@@ -13,8 +13,10 @@
 namespace cscd::fuzz {
 namespace {
 
-constexpr int kMostVertices = 12, kMostTriangles = 16;
+constexpr int kMostVertices = 16, kMostTriangles = 24;
 constexpr std::size_t kMostCrossings = 10'000;
+
+constexpr int kAsked = 3;  // the second and third time, clusters have been cut anew for what is asked
 
 ContactSet sorted_contacts(Detector& detector, const Motion& motion) {
   ContactSet found;
@@ -85,8 +87,9 @@ void target(Bytes bytes) {
   const ContactSet truth = sorted_contacts(*make_brute(setup).detector, motion);
 
   const Prepared complete = make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-  if (digest(sorted_contacts(*complete.detector, motion)) != digest(truth))
-    broken("drvbc_fast_complete has other contacts than all pairs");
+  for (int asked = 0; asked < kAsked; ++asked)
+    if (digest(sorted_contacts(*complete.detector, motion)) != digest(truth))
+      broken("drvbc_fast_complete has other contacts than all pairs");
   ContactSet again;
   Crossings crossings;
   complete.detector->detect_and_see_start(motion, nullptr, again, kMostCrossings, crossings);
@@ -97,10 +100,13 @@ void target(Bytes bytes) {
     broken("drvbc_fast_complete sees other crossings than the plain test");
 
   if (!mesh.closed_and_oriented() || plain.total != 0) return;
-  const ContactSet first = sorted_contacts(*make_drvbc_fast(setup).detector, motion);
-  if (first.contacts.empty() != truth.contacts.empty()) broken("drvbc_fast loses the first contact");
-  if (!truth.contacts.empty() && first.contacts[0].time != truth.contacts[0].time)
-    broken("drvbc_fast is late");
+  const Prepared fast = make_drvbc_fast(setup);
+  for (int asked = 0; asked < kAsked; ++asked) {
+    const ContactSet first = sorted_contacts(*fast.detector, motion);
+    if (first.contacts.empty() != truth.contacts.empty()) broken("drvbc_fast loses the first contact");
+    if (!truth.contacts.empty() && first.contacts[0].time != truth.contacts[0].time)
+      broken("drvbc_fast is late");
+  }
 }
 
 }  // namespace cscd::fuzz

@@ -8,8 +8,11 @@
 #include <unistd.h>
 
 #include "bench/commands/command.h"
+#include "bench/rows/catalogue.h"
 #include "bench/testing/rule_case.h"
 #include "core/base/error.h"
+#include "core/detect/start/embedding.h"
+#include "core/detect/verify.h"
 #include "scenes/clip/clip.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
@@ -147,8 +150,11 @@ std::vector<std::uint64_t> counters(const Report& report) {
 
 // Mutations: MegaClusters::regrow does not reset its labels; `fits` accepts once the suspects have passed;
 // FeaturePairSet's epoch stays; finish_classes or the refit of the vertices happens once only.
+// For those that follow the surface: forget() leaves the clusters as they are.
 TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
-  const ElementaryTest& newton = elementary_test_named("newton");
+  const ElementaryTest &newton = elementary_test_named("newton"),
+                       &exact = elementary_test_named("filtered_exact");
+  std::size_t kept = 0;
   for (std::uint64_t seed = 1; seed <= 22; ++seed) {
     const scenes::RandomInterval random = scenes::make_random_interval(seed);
     const scenes::FrameView first = random.clip.frame(0), last = random.clip.frame(1);
@@ -166,8 +172,18 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
         bones.back().push_back({(1 - t) * first.bones[i].head + t * last.bones[i].head,
                                 (1 - t) * first.bones[i].tail + t * last.bones[i].tail});
     }
+    const cscd::Setup exactly{mesh, first.positions, &rig, exact};
+    const auto reference = complete_reference().make(exactly).detector;
+    EmbeddingTest embedding(mesh, first.positions);
+    const auto judged = [&](std::size_t from, std::size_t to) {
+      ContactSet truth;
+      reference->detect(Motion(poses[from], poses[to]), nullptr, truth);
+      truth.sort();
+      return std::pair{embedding.embedded(poses[from]), truth};
+    };
     for (const Strategy& strategy : strategies()) {
-      const cscd::Setup setup{mesh, first.positions, &rig, newton};
+      // A promise holds with a test that is right.
+      const cscd::Setup setup{mesh, first.positions, &rig, strategy.follows ? exact : newton};
       const auto ask = [&](Detector& detector, std::size_t from, std::size_t to) {
         const Rig::Interval pose{bones[from], bones[to]};
         ContactSet found;
@@ -179,11 +195,26 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
       std::mt19937 order(static_cast<unsigned>(seed));
       for (int visit = 0; visit < 8; ++visit) {
         const std::size_t from = order() % 4, to = order() % 4;
+        // What follows the surface is like a new detector once it has forgotten, and without that keeps its
+        // promise.
+        if (strategy.follows && visit % 2 == 0) {
+          const auto [embedded, truth] = judged(from, to);
+          ContactSet found;
+          const Rig::Interval pose{bones[from], bones[to]};
+          used->detect(Motion(poses[from], poses[to]), &pose, found);
+          found.sort();
+          kept += embedded && !truth.contacts.empty();
+          EXPECT_TRUE(verify(truth, found, strategy.guarantee, embedded).ok)
+              << strategy.name << ", seed " << seed << ", visit " << visit;
+          used->forget();
+        }
+        if (strategy.follows && visit % 2 != 0) used->forget();
         EXPECT_EQ(ask(*used, from, to), ask(*strategy.make(setup).detector, from, to))
             << strategy.name << ", seed " << seed << ", visit " << visit;
       }
     }
   }
+  EXPECT_GT(kept, 50u);
 }
 
 }  // namespace

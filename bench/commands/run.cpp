@@ -10,6 +10,7 @@
 #include "bench/measure/contestant.h"
 #include "bench/measure/footprint.h"
 #include "bench/measure/interval_choice.h"
+#include "bench/measure/lead.h"
 #include "bench/measure/timing.h"
 #include "bench/measure/verification.h"
 #include "bench/output/json_text.h"
@@ -112,6 +113,7 @@ StrategyRecord describe(const Contestant& contestant) {
   record.source = contestant.strategy->source;
   record.guarantee = to_string(contestant.strategy->guarantee);
   record.threads = contestant.threads;
+  if (contestant.strategy->follows) record.lead = kLead;
   record.preparation = contestant.preparation;
   return record;
 }

@@ -72,6 +72,13 @@ struct Subject {
     const scenes::ClipInterval interval = random.clip.interval(0);
     Result result;
     const Rig::Interval* const bones = interval.bones ? &*interval.bones : nullptr;
+    // What follows the surface has to be right whatever it was asked before: here, after it has cut its
+    // clusters for this interval, for the start at rest, or for both.
+    if (row.strategy->follows)
+      for (std::uint64_t k = 0; k < seed % 5; ++k)
+        detector->detect(
+            k % 2 == 1 ? Motion(interval.motion.start(), interval.motion.start()) : interval.motion, bones,
+            result.passed_on);
     result.report =
         row.strategy->sees_start
             ? detector->detect_and_see_start(interval.motion, bones, result.passed_on, kAll, result.start)

@@ -10,6 +10,7 @@
 #include <emmintrin.h>
 #endif
 
+#include "bench/measure/lead.h"
 #include "bench/output/progress.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
@@ -45,6 +46,13 @@ Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
   found.sort();
   const auto first = found.contacts.empty() ? std::nullopt : std::optional(found.contacts.front().time);
   return {report, digest(found), first};
+}
+
+// Reads more than the caches hold.
+void drive_from_caches() {
+  static const std::vector<std::uint64_t> much(std::size_t{1} << 23, 1);  // 64 MiB
+  [[maybe_unused]] const volatile std::uint64_t kept =
+      std::accumulate(much.begin(), much.end(), std::uint64_t{0});
 }
 
 // Whether rows that promise the same have answered the same.
@@ -90,7 +98,7 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
   ContactSet found;
   Crossings start;
   for (const std::size_t i : timed) {
-    const scenes::ClipInterval interval = input.clip->load(i);
+    scenes::ClipInterval interval = input.clip->load(i);
     stream_positions(interval.motion);
     const auto begin = std::chrono::steady_clock::now();
     const bool embedded = test.embedded(interval.motion.start());
@@ -101,6 +109,8 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
       if (strategy.guarantee == Guarantee::first_contact)
         append_time("embedding", taken.count(), records[c].ms, repetition);
       if (strategy.role != Role::stand_in) continue;
+      lead_up(strategy, *contestants[c].timed, *input.clip, i);
+      interval = input.clip->load(i);
       stream_positions(interval.motion);
       const Report report = contestants[c].timed->detect_and_see_start(
           interval.motion, interval.bones ? &*interval.bones : nullptr, found, 0, start);
@@ -146,8 +156,10 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
   ContactSet found;
   std::vector<Answer> answers(contestants.size());
   for (const std::size_t i : counted) {
-    const scenes::ClipInterval interval = input.clip->load(i);
+    scenes::ClipInterval interval = input.clip->load(i);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
+      lead_up(*contestants[c].strategy, *contestants[c].timed, *input.clip, i);
+      interval = input.clip->load(i);
       answers[c] = answer(contestants[c], interval, found);
       append_counts(answers[c].report, found, records[c].counts);
       records[c].digests.push_back(answers[c].digest);
@@ -181,11 +193,18 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   EmbeddingTest start_test = make_embedding_test(input.setup(elementary_test_named("exact")));
   ContactSet found;
   std::mt19937_64 random(plan.seed);
+  const bool leads =
+      std::ranges::any_of(contestants, [](const Contestant& c) { return c.strategy->follows; });
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition) {
     for (const std::size_t i : plan.timed) {
       const std::size_t row = place_of(i, warm_up.counted);
+      for (const Contestant& contestant : contestants)
+        lead_up(*contestant.strategy, *contestant.timed, *input.clip, i);
+      // A lead brings what its strategy works on into the caches, from where other strategies drive it
+      // otherwise.
+      if (leads) drive_from_caches();
       const scenes::ClipInterval interval = input.clip->load(i);
       shuffle(order, random);
       for (const std::size_t c : order) {

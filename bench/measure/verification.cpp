@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "bench/measure/lead.h"
 #include "bench/output/progress.h"
 #include "bench/rows/catalogue.h"
 
@@ -151,7 +152,7 @@ void Verifier::judge(std::span<const std::size_t> intervals) {
 }
 
 void Verifier::judge_one(std::size_t i) {
-  const scenes::ClipInterval interval = input_.clip->load(i);
+  scenes::ClipInterval interval = input_.clip->load(i);
   const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
   const bool starts_embedded = embedding_->embedded(interval.motion.start());
   if (!starts_embedded) record_.unembedded.push_back(i);
@@ -164,6 +165,9 @@ void Verifier::judge_one(std::size_t i) {
   for (std::size_t c = 0; c < contestants_.size(); ++c) {
     const Strategy& strategy = *contestants_[c].strategy;
     const bool itself = &contestants_[c] == reference_->used;
+    lead_up(strategy, *contestants_[c].judged, *input_.clip, i);
+    interval = input_.clip->load(i);
+    bones = interval.bones ? &*interval.bones : nullptr;
     reports.push_back(itself ? expected : contestants_[c].judged->detect(interval.motion, bones, answer));
     answer.sort();
     if (const auto own = own_tests_.find(c); own != own_tests_.end()) {

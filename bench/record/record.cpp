@@ -103,6 +103,7 @@ ordered_json to_json(const StrategyRecord& s) {
                       {"footprint", std::move(footprint)},
                       {"counts", s.counts},
                       {"digests", s.digests}};
+  if (s.lead > 0) out["lead"] = s.lead;
   if (!s.first_times.empty()) {
     ordered_json& times = out["first_times"] = ordered_json::array();
     for (const std::optional<double>& time : s.first_times)
@@ -140,6 +141,7 @@ StrategyRecord strategy_from(const ordered_json& s) {
   out.source = s.at("source");
   out.guarantee = s.at("guarantee");
   out.threads = s.value("threads", 1);
+  out.lead = s.value("lead", std::size_t{0});
   const ordered_json& preparation = s.at("preparation");
   if (preparation.contains("distance_and_heat_ms"))
     out.preparation.distance_and_heat_ms = preparation["distance_and_heat_ms"].get<std::vector<double>>();

@@ -40,6 +40,10 @@ constexpr Strategy seeing_start(Strategy row) {
   row.sees_start = true;
   return row;
 }
+constexpr Strategy following(Strategy row) {
+  row.follows = true;
+  return row;
+}
 // The paper's method, or what the paper compares it with: it can be made in the pipeline `published`.
 constexpr Strategy of_paper(Strategy row) {
   row.published = true;
@@ -76,15 +80,15 @@ constexpr std::array kStrategies = {
               [](const Setup& setup) { return make_rvbc(setup); }}),
     of_paper({"drvbc", "dynamic radial view based culling (Wong et al. 2014)", Guarantee::first_contact,
               kBones, [](const Setup& setup) { return make_drvbc(setup); }}),
-    Strategy{"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
-             kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }},
-    seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
+    following({"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
+             kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }}),
+    following(seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
                             Guarantee::complete, kAnySurface,
                             [](const Setup& setup) {
                               return make_drvbc_fast(setup,
                                                      {.name = "drvbc_fast_complete", .complete = true});
                             }},
-                           Role::stand_in)),
+                           Role::stand_in))),
 #ifdef CSCD_BASELINES_FCL
     in_library({"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
                 Guarantee::heuristic, kAnySurface, make_fcl, "checker", true}),
@@ -125,50 +129,65 @@ constexpr std::array kStrategies = {
          Guarantee::first_contact, kBones,
          [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
          kAblation}),
-    Strategy{"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
+    following({"drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
              Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
              },
-             kAblation},
-    Strategy{"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact,
+             kAblation}),
+    following({"drvbc_fast_two_covers", "drvbc_fast with at most two covers", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
              },
-             kAblation},
-    Strategy{"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
+             kAblation}),
+    following({"drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
              },
-             kAblation},
-    Strategy{"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact,
+             kAblation}),
+    following({"drvbc_fast_no_stars", "drvbc_fast without stars of vertices", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
              },
-             kAblation},
-    Strategy{"drvbc_fast_no_planes", "drvbc_fast without planes of triangles", Guarantee::first_contact,
+             kAblation}),
+    following({"drvbc_fast_no_planes", "drvbc_fast without planes of triangles", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
              },
+             kAblation}),
+    Strategy{"drvbc_fast_fixed_covers", "drvbc_fast with covers that stay as preparation cut them",
+             Guarantee::first_contact, kClosedMesh,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers", .follows = false});
+             },
              kAblation},
-    Strategy{"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
+    seeing_start({"drvbc_fast_complete_fixed_covers",
+                  "drvbc_fast_complete with covers that stay as preparation cut them", Guarantee::complete,
+                  kAnySurface,
+                  [](const Setup& setup) {
+                    return make_drvbc_fast(setup, {.name = "drvbc_fast_complete_fixed_covers",
+                                                   .follows = false,
+                                                   .complete = true});
+                  },
+                  kAblation}),
+    following({"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(
                    setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
              },
-             kAblation},
-    Strategy{"drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
+             kAblation}),
+    following({"drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
              Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones",
                                               .clusters = DrvbcFastOptions::Clusters::of_surface});
              },
-             kAblation},
+             kAblation}),
     of_paper({"drvbc_one_vertex", "drvbc with the paper's test of one vertex for segments",
               Guarantee::heuristic, kBones,
               [](const Setup& setup) {

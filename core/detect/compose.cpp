@@ -233,6 +233,7 @@ class ComposedDetector : public Detector {
     std::ranges::sort(start.pairs);
     return report;
   }
+  void forget() override { culler_->forget(); }
   RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:

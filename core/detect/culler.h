@@ -53,7 +53,8 @@ class TrianglePairSink {
 
 // A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions
 // are called three times an interval, never once per pair. A culler owns its scratch memory and reuses it;
-// its results depend on the interval alone (rule fresh-detector, core/soundness.md).
+// its results depend on the interval alone, unless the strategy follows the surface (rule fresh-detector,
+// core/soundness.md).
 class Culler {
  public:
   virtual ~Culler() = default;
@@ -66,6 +67,8 @@ class Culler {
   // Passes every triangle pair that is not proven apart to `sink` and returns the culling counters, except
   // pctp, which the caller takes from the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
+  // Forgets all intervals (Detector::forget).
+  virtual void forget() {}
   // The orientation of the surface in the last interval, for pictures.
   virtual RadialView radial_view() const { return {}; }
 };

@@ -62,6 +62,9 @@ class Detector {
                                       ContactSet& /*out*/, std::size_t /*most*/, Crossings& /*start*/) {
     throw std::logic_error("this detector does not see what crosses at a start");
   }
+  // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
+  // that follow the surface (Strategy::follows) have anything to forget.
+  virtual void forget() {}
   virtual RadialView radial_view() const { return {}; }
 };
 

@@ -88,6 +88,10 @@ struct Strategy {
   // Whether a detector allocates no memory once it has seen its largest interval. Strategies that hand the
   // work to a library do not promise it.
   bool settles = true;
+  // Whether its detectors cut their clusters anew as the surface moves. What such a strategy promises does
+  // not depend on the intervals that a detector has answered before; its counters do, and so do contacts
+  // later than the first where no more than that is promised (rule fresh-detector, core/soundness.md).
+  bool follows = false;
   // Whether its detectors say which triangles cross at the start (Detector::detect_and_see_start). For that,
   // a pair of triangles may be dropped only by a proof that, at any time of the interval, the two meet
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an

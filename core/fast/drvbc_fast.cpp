@@ -18,6 +18,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   StageClock clock;
   clock.enter(Stage::decomposition);
   fast::Candidate best = fast::best_candidate(setup, options, clock);
+  if (options.follows) best.culler->follow();
   clock.stop();
   Preparation preparation;
   if (clock.milliseconds(Stage::distance_and_heat) > 0)

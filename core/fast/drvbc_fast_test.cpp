@@ -34,14 +34,15 @@ struct Scene {
 TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
   for (const auto& [noise, complete] : {std::pair(0.0, false), {0.1, false}, {0.3, false}, {0.1, true}}) {
     const Scene scene(noise);
-    ContactSet alone, found;
-    Report report;
+    ContactSet alone[2], found;
+    Report reports[2];  // asked for the first time, and again, when clusters have been cut anew
     for (const int threads : {1, 2, 3, 7}) {
       const std::unique_ptr<Detector> detector =
           make_drvbc_fast(scene.setup(threads), {.complete = complete}).detector;
       for (int again = 0; again < 2; ++again) {
         const Report now = detector->detect(scene.motion(), nullptr, found);
-        if (threads == 1) alone = found, report = now;
+        if (threads == 1) alone[again] = found, reports[again] = now;
+        const Report& report = reports[again];
         EXPECT_EQ(now.cull.bvot, report.cull.bvot) << threads << " threads";
         EXPECT_EQ(now.cull.pctp, report.cull.pctp);
         EXPECT_EQ(now.cull.radial->positive, report.cull.radial->positive);
@@ -49,16 +50,17 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
         EXPECT_EQ(now.pairs.feature_pairs, report.pairs.feature_pairs);
         EXPECT_EQ(now.pairs.elementary_tests, report.pairs.elementary_tests);
         // Contacts come in the order of the descent.
-        ASSERT_EQ(found.contacts.size(), alone.contacts.size());
+        ASSERT_EQ(found.contacts.size(), alone[again].contacts.size());
         for (std::size_t i = 0; i < found.contacts.size(); ++i) {
-          ASSERT_EQ(found.contacts[i].pair, alone.contacts[i].pair) << threads << " threads, contact " << i;
-          ASSERT_EQ(found.contacts[i].time, alone.contacts[i].time);
+          ASSERT_EQ(found.contacts[i].pair, alone[again].contacts[i].pair)
+              << threads << " threads, contact " << i;
+          ASSERT_EQ(found.contacts[i].time, alone[again].contacts[i].time);
         }
       }
     }
-    EXPECT_GT(report.cull.bvot, 500u);
-    EXPECT_EQ(alone.contacts.size() > 1000, noise > 0.2);
-    EXPECT_EQ(alone.contacts.empty(), noise == 0);
+    EXPECT_GT(reports[0].cull.bvot, 500u);
+    EXPECT_EQ(alone[0].contacts.size() > 1000, noise > 0.2);
+    EXPECT_EQ(alone[0].contacts.empty(), noise == 0);
   }
 }
 

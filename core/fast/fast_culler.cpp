@@ -21,7 +21,9 @@ std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
 
 FastCuller::FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, std::size_t least_cell,
                        const DrvbcFastOptions& options)
-    : cut_(cut_surface(setup.mesh, setup.reference, cluster_of, least_cell)),
+    : mesh_(setup.mesh),
+      reference_(setup.reference),
+      cut_(cut_surface(setup.mesh, setup.reference, cluster_of, least_cell)),
       options_(options),
       positions_(setup.reference),
       certificates_(cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),
@@ -39,7 +41,8 @@ void FastCuller::refit(const Motion& motion) {
   grid_ = Grid(positions_.error());
 }
 
-bool FastCuller::classify(const Motion&, const Rig::Interval*) {
+bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
+  if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   certificates_.start(positions_);
   team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) look(p);
@@ -54,9 +57,15 @@ bool FastCuller::classify(const Motion&, const Rig::Interval*) {
 
 CullCounts FastCuller::cull(TrianglePairSink& sink) {
   CullCounts counts;
-  counts.bvot = descent_.run(bounds_, grid_, sink);
+  tests_ = descent_.run(bounds_, grid_, sink);
+  counts.bvot = *tests_;
   counts.radial = certificates_.counts();
   return counts;
+}
+
+void FastCuller::forget() {
+  if (following_) following_->forget(certificates_);
+  tests_.reset();
 }
 
 void FastCuller::look(std::size_t patch) {

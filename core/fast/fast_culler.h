@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/team.h"
@@ -8,6 +9,7 @@
 #include "core/detect/strategy.h"
 #include "core/fast/cut/cut_surface.h"
 #include "core/fast/descend/shared_descent.h"
+#include "core/fast/follow/following_cover.h"
 #include "core/fast/look/grid_bounds.h"
 #include "core/fast/options.h"
 #include "core/fast/prove/certificates.h"
@@ -25,6 +27,8 @@ class FastCuller : public Culler {
   FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, std::size_t least_cell,
              const DrvbcFastOptions& options);
 
+  // From the next interval on, the first cover follows the surface (follow/following_cover.h).
+  void follow() { following_.emplace(mesh_, reference_, cut_); }
   // From the next interval on, looks from the first `count` covers alone, at least one.
   void use_covers(std::size_t count) { certificates_.use_covers(count); }
 
@@ -33,6 +37,7 @@ class FastCuller : public Culler {
   // once for its bounds and its orientations. Returns true.
   bool classify(const Motion& motion, const Rig::Interval* bones) override;
   CullCounts cull(TrianglePairSink& sink) override;
+  void forget() override;
   RadialView radial_view() const override { return certificates_.view(); }
 
   std::size_t patch_count() const { return cut_.tree.patches.size(); }
@@ -43,6 +48,8 @@ class FastCuller : public Culler {
   void look(std::size_t patch);
   void fetch(std::size_t patch) const;
 
+  const TriangleMesh& mesh_;
+  std::span<const Vec3> reference_;
   CutSurface cut_;
   DrvbcFastOptions options_;
   LocalPositions positions_;
@@ -52,6 +59,8 @@ class FastCuller : public Culler {
   SharedDescent descent_;
   Grid grid_{1};
   std::vector<NodeBounds> bounds_;  // [nodes]
+  std::optional<FollowingCover> following_;
+  std::optional<std::uint64_t> tests_;  // that the last interval took; none before the first one
 };
 
 }  // namespace cscd::fast

@@ -9,8 +9,6 @@
 namespace cscd::fast {
 namespace {
 
-constexpr int kDescentSteps = 400;
-
 // By how much eight faces lack what is wanted, at the middle and along their normals. Unused lanes lack
 // nothing.
 struct Lacks {
@@ -43,7 +41,7 @@ Face face_of(const TriangleMesh& mesh, std::span<const Vec3> positions, Triangle
 
 // The sum of what the faces lack is convex in the point. Subgradient descent minimises that sum, and begins
 // at a point inside.
-Vec3 best_viewpoint(std::span<const Face> faces) {
+Vec3 best_viewpoint(std::span<const Face> faces, int steps) {
   Vec3 middle = Vec3::Zero();
   for (const Face& f : faces) middle += f.centre / static_cast<double>(faces.size());
   double size = 0;
@@ -59,7 +57,7 @@ Vec3 best_viewpoint(std::span<const Face> faces) {
   }
   Vec3 q = Vec3::Zero(), best = q;
   double least = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kDescentSteps; ++step) {
+  for (int step = 0; step < steps; ++step) {
     Lane8 lacks = {}, normals[3] = {};
     for (const Lacks& row : rows) row.add(q, lacks, normals);
     const double lack = sum_of(lacks);

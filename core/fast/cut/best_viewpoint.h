@@ -12,7 +12,7 @@ struct Face {
 Face face_of(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId triangle);
 
 // Returns a point that lies behind as many of the faces as possible, with room to spare. There has to be at
-// least one face.
-Vec3 best_viewpoint(std::span<const Face> faces);
+// least one face. The more steps, the better the point.
+Vec3 best_viewpoint(std::span<const Face> faces, int steps = 400);
 
 }  // namespace cscd::fast

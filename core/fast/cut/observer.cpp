@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/base/random.h"
@@ -25,14 +26,21 @@ constexpr double kEnough = 0.5;
 // cones of directions are too blunt to tell patches apart.
 constexpr float kHeights[] = {-0.5F, -1, -2, -4};
 
+// The number of times that vertices to follow are drawn.
+constexpr int kDraws = 50;
+// The same for a search in a hurry, its steps towards the best viewpoint, and the number of faces it looks
+// at.
+constexpr int kFewDraws = 8, kFewSteps = 60;
+constexpr std::size_t kFewFaces = 128;
+
 // Chooses a few of the vertices, with weights that make them the wanted point in the reference pose.
-FollowingPoint following(std::span<const Vec3> positions, std::vector<VertexId> vertices,
-                         const Vec3& wanted) {
+FollowingPoint following(std::span<const Vec3> positions, std::vector<VertexId> vertices, const Vec3& wanted,
+                         int draws) {
   const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
   std::mt19937 random(kPreparationSeed);
   FollowingPoint best;
   double least = std::numeric_limits<double>::infinity();
-  for (int draw = 0; draw < 50; ++draw) {
+  for (int draw = 0; draw < draws; ++draw) {
     for (std::size_t i = 0; i < count; ++i)
       std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
     const double n = static_cast<double>(count);
@@ -110,36 +118,79 @@ View view(std::span<const Face> faces, const Vec3& from) {
   return out;
 }
 
+// What an observer is chosen by.
+struct Looked {
+  std::vector<Face> faces;
+  std::vector<VertexId> vertices;
+  Vec3 normal = Vec3::Zero();  // the sum of all normals
+};
+Looked looked_at(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                 std::span<const TriangleId> triangles, std::size_t stride) {
+  Looked all;
+  for (std::size_t i = stride / 2; i < triangles.size(); i += stride) {
+    const TriangleId t = triangles[i];
+    all.faces.push_back(face_of(mesh, positions, t));
+    all.normal += all.faces.back().normal;
+    all.vertices.insert(all.vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
+  }
+  std::sort(all.vertices.begin(), all.vertices.end());
+  all.vertices.erase(std::unique(all.vertices.begin(), all.vertices.end()), all.vertices.end());
+  return all;
+}
+
+// The same in a hurry: few of the triangles, spread over all of them.
+Looked briefly_looked_at(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                         std::span<const TriangleId> triangles) {
+  return looked_at(mesh, positions, triangles, (triangles.size() + kFewFaces - 1) / kFewFaces);
+}
+
+// Calls take(observer, its view) for observers at several heights behind the cluster.
+template <class Take>
+void for_each_stand_off(const Looked& all, std::span<const Vec3> positions, const Take& take) {
+  if (!(all.normal.norm() > 0)) return;
+  FollowingPoint off = polygon(positions, all.vertices, all.normal.normalized());
+  for (const float height : kHeights) {
+    off.stand_off(height);
+    take(off, view(all.faces, off.at(positions)));
+  }
+}
+
 }  // namespace
 
 FollowingPoint observer_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            std::span<const TriangleId> triangles) {
-  std::vector<Face> faces;
-  std::vector<VertexId> vertices;
-  Vec3 normal = Vec3::Zero();
-  for (const TriangleId t : triangles) {
-    faces.push_back(face_of(mesh, reference, t));
-    normal += faces.back().normal;
-    vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-
-  FollowingPoint best = following(reference, vertices, best_viewpoint(faces));
-  const View among = view(faces, best.at(reference));
+  const Looked all = looked_at(mesh, reference, triangles, 1);
+  FollowingPoint best = following(reference, all.vertices, best_viewpoint(all.faces), kDraws);
+  const View among = view(all.faces, best.at(reference));
   // A cluster of a closed surface bends round its observer nearly always. The few that do not gained nothing
   // on characters in motion.
-  if (mesh.closed_and_oriented() || among.seen >= kEnough || !(normal.norm() > 0)) return best;
+  if (mesh.closed_and_oriented() || among.seen >= kEnough) return best;
   double most = among.clarity;
-  FollowingPoint off = polygon(reference, vertices, normal.normalized());
-  for (const float height : kHeights) {
-    off.stand_off(height);
-    const double clarity = view(faces, off.at(reference)).clarity;
-    if (clarity <= most) continue;
-    most = clarity;
+  for_each_stand_off(all, reference, [&](const FollowingPoint& off, const View& seen) {
+    if (seen.clarity <= most) return;
+    most = seen.clarity;
     best = off;
-  }
+  });
   return best;
+}
+
+Sight brief_sight_of(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                     std::span<const TriangleId> triangles) {
+  const Looked all = briefly_looked_at(mesh, positions, triangles);
+  Sight best{following(positions, all.vertices, best_viewpoint(all.faces, kFewSteps), kFewDraws), 0};
+  View most = view(all.faces, best.from.at(positions));
+  for_each_stand_off(all, positions, [&](const FollowingPoint& off, const View& seen) {
+    if (std::pair(seen.seen, seen.clarity) <= std::pair(most.seen, most.clarity)) return;
+    most = seen;
+    best.from = off;
+  });
+  best.seen = most.seen;
+  return best;
+}
+
+double brief_share_seen(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                        std::span<const TriangleId> triangles, const FollowingPoint& from) {
+  return view(briefly_looked_at(mesh, positions, triangles).faces, from.at(positions)).seen;
 }
 
 }  // namespace cscd::fast

@@ -2,12 +2,24 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace cscd::fast {
 namespace {
 
-constexpr int kFewUncertain = 4;       // the largest number of triangles of a cap that get a cone each
+constexpr int kFewUncertain = 4;       // the largest number of triangles of a patch that get a cone each
 constexpr std::size_t kFewCones = 16;  // up to so many cones, a cone about a whole patch spares no work
+
+// The triangles of a fan that have the apex as a corner, which is then their first one (caps.cpp).
+unsigned lanes_at_apex(const Patch& fan) {
+  unsigned lanes = 0;
+  for_each_lane(fan.lanes, [&](std::size_t lane) {
+    if (fan.corner[0][lane] == kLanes16 - 1) lanes |= 1U << lane;
+  });
+  return lanes;
+}
 
 // A triangle of a cluster as its observer sees it in the reference pose.
 struct Target {
@@ -16,50 +28,66 @@ struct Target {
   double size;     // six times the volume over its corners at distance one; negative if seen from outside
 };
 
-// Chooses triangles for rays to go through, for each cluster at most `most`. The first is the one that is
-// seen largest, because its neighbours are far from its middle. Each further one lies as far as possible from
+// Chooses triangles of a cluster for rays to go through, at most `most`. The first is the one that is seen
+// largest, because its neighbours are far from its middle. Each further one lies as far as possible from
 // those before it, so that few things that block one ray block another.
-std::vector<std::vector<Triangle>> targets_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                                              const Cover& cover, std::size_t most) {
-  std::vector<Vec3> from;
-  for (const FollowingPoint& observer : cover.observers) from.push_back(observer.at(reference));
-  std::vector<std::vector<Target>> seen(from.size());
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (cover.cluster_of[t] == kNone) continue;
-    const auto cluster = static_cast<std::size_t>(cover.cluster_of[t]);
-    const Triangle& corners = mesh.triangles()[t];
+std::vector<Triangle> targets_of(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                 std::span<const TriangleId> triangles, const Vec3& from, std::size_t most) {
+  std::vector<Target> seen;
+  for (const TriangleId t : triangles) {
+    const Triangle& corners = mesh.corners(t);
     Vec3 ray[3];
-    for (std::size_t k = 0; k < 3; ++k) ray[k] = (reference[+corners[k]] - from[cluster]).normalized();
-    seen[cluster].push_back(
-        {corners, (ray[0] + ray[1] + ray[2]).normalized(), ray[0].dot(ray[1].cross(ray[2]))});
+    for (std::size_t k = 0; k < 3; ++k) ray[k] = (positions[+corners[k]] - from).normalized();
+    seen.push_back({corners, (ray[0] + ray[1] + ray[2]).normalized(), ray[0].dot(ray[1].cross(ray[2]))});
   }
-  std::vector<std::vector<Triangle>> chosen(from.size());
-  for (std::size_t cluster = 0; cluster < from.size(); ++cluster) {
-    std::vector<Target>& left = seen[cluster];
-    auto next = std::ranges::max_element(left, {}, &Target::size);
-    std::vector<double> nearest(left.size(), -1);  // the cosine of the angle to the nearest chosen target
-    while (true) {
-      chosen[cluster].push_back(next->corners);
-      if (chosen[cluster].size() == most) break;
-      const Vec3 taken = next->direction;
-      for (std::size_t i = 0; i < left.size(); ++i)
-        nearest[i] = std::max(nearest[i], left[i].size > 0 ? left[i].direction.dot(taken) : 1.0);
-      const auto farthest = std::ranges::min_element(nearest);
-      if (!(*farthest < 0.999)) break;
-      next = left.begin() + (farthest - nearest.begin());
-    }
+  std::vector<Triangle> chosen;
+  auto next = std::ranges::max_element(seen, {}, &Target::size);
+  std::vector<double> nearest(seen.size(), -1);  // the cosine of the angle to the nearest chosen target
+  while (true) {
+    chosen.push_back(next->corners);
+    if (chosen.size() == most) return chosen;
+    const Vec3 taken = next->direction;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      nearest[i] = std::max(nearest[i], seen[i].size > 0 ? seen[i].direction.dot(taken) : 1.0);
+    const auto farthest = std::ranges::min_element(nearest);
+    if (!(*farthest < 0.999)) return chosen;
+    next = seen.begin() + (farthest - nearest.begin());
   }
-  return chosen;
 }
 
 }  // namespace
 
 CappedClusters::CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover,
                                std::size_t number)
-    : number_(number),
-      caps_(caps_of(mesh, reference, cover)),
-      targets_(targets_of(mesh, reference, cover, kRays)),
-      state_(targets_.size()) {}
+    : number_(number) {
+  resize(cover.observers.size());
+  std::vector<std::vector<TriangleId>> members(cover.observers.size());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    if (cover.cluster_of[t] != kNone)
+      members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
+          TriangleId{static_cast<std::int32_t>(t)});
+  CapBuilder builder(mesh);
+  for (std::size_t i = 0; i < members.size(); ++i)
+    cut(i, builder, mesh, members[i], members[i], reference, cover.observers[i]);
+}
+
+void CappedClusters::resize(std::size_t count) {
+  caps_.resize(count);
+  targets_.resize(count);
+  state_.resize(count);
+}
+
+void CappedClusters::rename_last(std::size_t cluster) {
+  caps_[cluster] = std::move(caps_.back());
+  targets_[cluster] = std::move(targets_.back());
+}
+
+void CappedClusters::cut(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
+                         std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
+                         std::span<const Vec3> positions, const FollowingPoint& observer) {
+  caps_[cluster] = builder.caps_of(triangles, positions, observer);
+  targets_[cluster] = targets_of(mesh, positions, targets, observer.at(positions), kRays);
+}
 
 void CappedClusters::start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints) {
   positions_ = &positions;
@@ -72,8 +100,8 @@ void CappedClusters::start(const LocalPositions& positions, std::span<const View
     state.ray_decides = state.cones_known = true;
     state.has_other_ray = false;
     state.uncertain.clear();
+    for (const Cap& cap : caps_[i]) take(cap, i);
   }
-  for (const Cap& cap : caps_) take(cap);
 }
 
 Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) const {
@@ -84,11 +112,10 @@ Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) con
   return {viewpoints_[cluster], middle, positions_->error()};
 }
 
-int CappedClusters::look(const Cap& cap) {
-  const Viewpoint &from = viewpoints_[cap.cluster], towards = placed(cap.towards, positions_->records());
+void CappedClusters::look(const Cap& cap, std::size_t cluster) {
+  const Viewpoint &from = viewpoints_[cluster], towards = placed(cap.towards, positions_->records());
   loop_.clear();
   positive_.clear();
-  int uncertain = 0;
   for (const Patch& fan : cap.fans) {
     PatchLanes lanes = load(positions_->records(), fan.vertex);
     for (int end = 0; end < 2; ++end)
@@ -98,21 +125,50 @@ int CappedClusters::look(const Cap& cap) {
       }
     const Signs signs = orientation(lanes, fan, from, positions_->error());
     positive_.push_back(signs.positive & fan.lanes);
-    uncertain += std::popcount(static_cast<unsigned>(fan.lanes & ~positive_.back()));
     loop_.push_back(lanes);
   }
-  return uncertain;
 }
 
-// Where many triangles of a cap are not positive, one cone about the whole loop is narrower than their cones
-// together.
-void CappedClusters::take(const Cap& cap) {
-  if (look(cap) > kFewUncertain)
-    if (const auto cone = cone_of(loop_, viewpoints_[cap.cluster], positions_->error())) {
-      state_[cap.cluster].add(*cone);
-      return;
-    }
-  for (std::size_t i = 0; i < cap.fans.size(); ++i) take(cap.fans[i], loop_[i], positive_[i], cap.cluster);
+void CappedClusters::take(const Cap& cap, std::size_t cluster) {
+  look(cap, cluster);
+  State& state = state_[cluster];
+  for (std::size_t i = 0; i < cap.fans.size(); ++i) {
+    const Patch& fan = cap.fans[i];
+    state.count(fan, loop_[i], positive_[i]);
+    const unsigned uncertain = fan.lanes & ~static_cast<unsigned>(positive_[i]);
+    const unsigned at_apex = uncertain & lanes_at_apex(fan);
+    if ((uncertain & ~at_apex) != 0)
+      add_cones(uncertain & ~at_apex, cones_of(loop_[i], fan, viewpoints_[cluster], positions_->error()),
+                state);
+    if (at_apex != 0) take_in_slices(fan, loop_[i], at_apex, cluster);
+  }
+}
+
+// From the observer, the triangles of a fan reach from the contour to the opposite side. One cone about such
+// a triangle would hold half of everything, so each is cut into slices between the contour and the apex.
+void CappedClusters::take_in_slices(const Patch& fan, const PatchLanes& lanes, unsigned triangles,
+                                    std::size_t cluster) {
+  constexpr float kSlices[] = {0, 1.F / 16, 1.F / 8, 1.F / 4, 3.F / 8, 1.F / 2, 5.F / 8, 3.F / 4, 1};
+  float farthest = 0;
+  for (const auto& end : lanes.at)
+    for (const Float16& axis : end) farthest = std::max(farthest, std::abs(axis[kLanes16 - 1]));
+  const float error = 6 * positions_->error() + 0x1p-21F * farthest;
+  PatchLanes near = lanes, far;
+  for (std::size_t k = 1; k < std::size(kSlices); ++k) {
+    for (int end = 0; end < 2; ++end)
+      for (int i = 0; i < 3; ++i) {
+        const Float16 apex = all_lanes(lanes.at[end][i][kLanes16 - 1]);
+        far.at[end][i] = lanes.at[end][i] + kSlices[k] * (apex - lanes.at[end][i]);
+      }
+    add_cones(triangles, cones_of_strips(near, far, fan, viewpoints_[cluster], error), state_[cluster]);
+    near = far;
+  }
+}
+
+void CappedClusters::add_cones(unsigned triangles, const Cones& cones, State& state) {
+  if ((triangles & ~cones.known) != 0) state.cones_known = false;
+  for (; triangles != 0 && state.cones_known; triangles &= triangles - 1)
+    state.add(cones[static_cast<std::size_t>(std::countr_zero(triangles))]);
 }
 
 void CappedClusters::take(const Patch& patch, Mask16 positive) {
@@ -131,10 +187,7 @@ void CappedClusters::take(const Patch& triangles, const PatchLanes& lanes, Mask1
       state.add(*cone);
       return;
     }
-  const Cones cones = cones_of(lanes, triangles, viewpoints_[cluster], positions_->error());
-  if ((uncertain & ~cones.known) != 0) state.cones_known = false;
-  for (; uncertain != 0 && state.cones_known; uncertain &= uncertain - 1)
-    state.add(cones[static_cast<std::size_t>(std::countr_zero(uncertain))]);
+  add_cones(uncertain, cones_of(lanes, triangles, viewpoints_[cluster], positions_->error()), state);
 }
 
 void CappedClusters::State::count(const Patch& triangles, const PatchLanes& lanes, Mask16 positive) {
@@ -159,15 +212,13 @@ bool CappedClusters::choose_other_rays() {
       state.crossings = 0;
       any = state.ray_decides = state.has_other_ray = true;
     }
-  }
-  if (!any) return false;
-  for (const Cap& cap : caps_) {
-    State& state = state_[cap.cluster];
     if (!state.has_other_ray) continue;
-    look(cap);
-    for (std::size_t i = 0; i < cap.fans.size(); ++i) state.count(cap.fans[i], loop_[i], positive_[i]);
+    for (const Cap& cap : caps_[i]) {
+      look(cap, i);
+      for (std::size_t f = 0; f < cap.fans.size(); ++f) state.count(cap.fans[f], loop_[f], positive_[f]);
+    }
   }
-  return true;
+  return any;
 }
 
 void CappedClusters::count(const Patch& patch, Mask16 positive) {

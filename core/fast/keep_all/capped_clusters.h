@@ -32,6 +32,16 @@ class CappedClusters {
   CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover,
                  std::size_t number);
 
+  // From the next interval on there are `count` clusters. One that is new has to be cut before.
+  void resize(std::size_t count);
+  // The last cluster takes the number of another one.
+  void rename_last(std::size_t cluster);
+  // Gives a cluster other triangles and another observer, placed in the pose `positions`. Rays will go
+  // through some of `targets`.
+  void cut(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
+           std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
+           std::span<const Vec3> positions, const FollowingPoint& observer);
+
   // An interval is one call of `start`, then one call of `take` for each patch that may matter, in any order.
   // Then, while choose_other_rays() returns true, one call of `count` for each patch of the clusters that
   // have another ray. Then follows any number of questions.
@@ -74,13 +84,15 @@ class CappedClusters {
     void count(const Patch& triangles, const PatchLanes& lanes, Mask16 positive);
   };
   Ray ray_through(std::size_t cluster, const Triangle& target) const;
-  // Fills `loop_` and `positive_`, and returns the number of triangles of the cap that are not positive.
-  int look(const Cap& cap);
-  void take(const Cap& cap);
+  // Fills `loop_` and `positive_`.
+  void look(const Cap& cap, std::size_t cluster);
+  void take(const Cap& cap, std::size_t cluster);
+  void take_in_slices(const Patch& fan, const PatchLanes& lanes, unsigned triangles, std::size_t cluster);
+  void add_cones(unsigned triangles, const Cones& cones, State& state);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);
 
   std::size_t number_;
-  std::vector<Cap> caps_;
+  std::vector<std::vector<Cap>> caps_;  // [clusters]
   // [clusters]: the triangles that a ray of the cluster may go through, the best one first
   std::vector<std::vector<Triangle>> targets_;
   std::vector<State> state_;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
+#include <utility>
 
 namespace cscd::fast {
 namespace {
@@ -157,8 +158,7 @@ std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const
 }
 
 // Chooses the apex of a loop. `all` are the vertices of the cluster.
-Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const Vec3> reference,
-        const Vec3& from) {
+Cap cap(const Loop& loop, const Loop& all, std::span<const Vec3> reference, const Vec3& from) {
   Cap best{};
   Vec3 apex;
   std::ptrdiff_t most = -1;
@@ -169,7 +169,7 @@ Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const 
     if (count <= most) continue;
     most = count;
     apex = candidate;
-    best = {cluster, towards, opposite, {}};
+    best = {towards, opposite, {}};
   }
   best.fans = packed(Fan(loop, reference, from, apex).triangles());
   return best;
@@ -177,31 +177,32 @@ Cap cap(std::size_t cluster, const Loop& loop, const Loop& all, std::span<const 
 
 }  // namespace
 
-std::vector<Cap> caps_of(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover) {
-  // For each cluster: how much more often its triangles go along an edge from its first end than from its
-  // second. That is 0 inside a cluster, and whatever is left is a sum of loops, on any surface.
-  std::map<std::int32_t, std::map<std::pair<VertexId, VertexId>, int>> passed;
-  std::map<std::int32_t, Loop> vertices;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const std::int32_t own = cover.cluster_of[t];
-    if (own == kNone) continue;
-    const Triangle& corners = mesh.triangles()[t];
-    vertices[own].push_back(corners[0]);
+std::vector<Cap> CapBuilder::caps_of(std::span<const TriangleId> triangles, std::span<const Vec3> positions,
+                                     const FollowingPoint& observer) {
+  Loop all;
+  contour_.clear();
+  for (const TriangleId t : triangles) {
+    const Triangle& corners = mesh_.corners(t);
+    all.push_back(corners[0]);
     for (std::size_t k = 0; k < 3; ++k) {
-      const VertexId from = corners[k], to = corners[(k + 1) % 3];
-      passed[own][std::minmax(from, to)] += from < to ? 1 : -1;
+      const EdgeId edge = mesh_.edges_of(t)[k];
+      if (passed_[+edge] == 0) contour_.push_back(edge);
+      passed_[+edge] += corners[k] < corners[(k + 1) % 3] ? 1 : -1;
     }
   }
-  std::vector<Cap> caps;
-  for (const auto& [number, edges] : passed) {
-    std::multimap<VertexId, VertexId> contour;
-    for (const auto& [edge, times] : edges)
-      for (int i = 0; i < std::abs(times); ++i)
-        contour.emplace(times > 0 ? edge.first : edge.second, times > 0 ? edge.second : edge.first);
-    const auto cluster = static_cast<std::size_t>(number);
-    for (const Loop& loop : chained(std::move(contour)))
-      caps.push_back(cap(cluster, loop, vertices[number], reference, cover.observers[cluster].at(reference)));
+  // The sum is 0 inside a cluster, and whatever is left is a sum of loops, on any surface.
+  std::multimap<VertexId, VertexId> edges;
+  std::erase_if(contour_, [&](EdgeId e) { return passed_[+e] == 0; });
+  std::ranges::sort(contour_, {}, [&](EdgeId e) { return std::pair(mesh_.ends(e), e); });
+  for (const EdgeId e : contour_) {
+    const Edge& ends = mesh_.ends(e);
+    const int times = std::exchange(passed_[+e], 0);  // an edge that is listed again then counts as zero
+    for (int i = 0; i < std::abs(times); ++i)
+      edges.emplace(times > 0 ? ends[0] : ends[1], times > 0 ? ends[1] : ends[0]);
   }
+  std::vector<Cap> caps;
+  for (const Loop& loop : chained(std::move(edges)))
+    caps.push_back(cap(loop, all, positions, observer.at(positions)));
   return caps;
 }
 

@@ -34,28 +34,30 @@ Directions directions(const PatchLanes& lanes, const Viewpoint& viewpoint) {
   return out;
 }
 
-}  // namespace
-
-Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
-  const auto [direction, nearness] = directions(lanes, viewpoint);
+// A corner of sixteen triangles, or of sixteen quadrilaterals: where the vertices are and which one it is.
+struct Corner {
+  const Directions& of;
+  const Places16& place;
+};
+template <std::size_t kCorners>
+Cones cones_about(const Corner (&corners)[kCorners], float error) {
   Cones cones;
   for (int i = 0; i < 3; ++i) {
-    const Float16 both = direction.at[0][i] + direction.at[1][i];
-    cones.axis[i] =
-        permuted(both, patch.corner[0]) + permuted(both, patch.corner[1]) + permuted(both, patch.corner[2]);
+    cones.axis[i] = Float16{};
+    for (const Corner& c : corners) cones.axis[i] += permuted(c.of.to.at[0][i] + c.of.to.at[1][i], c.place);
   }
   const Float16 reciprocal = 1 / square_root(dot(cones.axis, cones.axis));
   for (Float16& component : cones.axis) component *= reciprocal;
 
   cones.known = 0xffff;
   cones.cosine = all_lanes(1);
-  for (const Places16& corner : patch.corner) {
-    const Float16 near = permuted(nearness, corner);
+  for (const Corner& c : corners) {
+    const Float16 near = permuted(c.of.nearness, c.place);
     const Float16 slack = 4.1F * error * near + kRounding;
     cones.known &= above(all_lanes(1 / (kLeastLength * error)), near);
     for (int end = 0; end < 2; ++end) {
       Float16 r[3];
-      for (int i = 0; i < 3; ++i) r[i] = permuted(direction.at[end][i], corner);
+      for (int i = 0; i < 3; ++i) r[i] = permuted(c.of.to.at[end][i], c.place);
       cones.cosine = smaller(cones.cosine, dot(cones.axis, r) - slack);
     }
   }
@@ -63,6 +65,21 @@ Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& vie
   // This is not a number where an axis vanishes, and then compares as false.
   cones.known &= above(cones.cosine, all_lanes(kLeastCosine));
   return cones;
+}
+
+}  // namespace
+
+Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
+  const Directions to = directions(lanes, viewpoint);
+  return cones_about({{to, patch.corner[0]}, {to, patch.corner[1]}, {to, patch.corner[2]}}, error);
+}
+
+Cones cones_of_strips(const PatchLanes& one, const PatchLanes& other, const Patch& patch,
+                      const Viewpoint& viewpoint, float error) {
+  const Directions to = directions(one, viewpoint), also_to = directions(other, viewpoint);
+  return cones_about(
+      {{to, patch.corner[1]}, {to, patch.corner[2]}, {also_to, patch.corner[1]}, {also_to, patch.corner[2]}},
+      error);
 }
 
 std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& viewpoint, float error) {

@@ -30,6 +30,10 @@ struct Cones {
 // Returns the cones of a patch's triangles. `error` bounds the error of every coordinate but the viewpoint's.
 Cones cones_of(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error);
 
+// The same for quadrilaterals, each with the second and the third corner of a triangle in both sets of lanes.
+Cones cones_of_strips(const PatchLanes& one, const PatchLanes& other, const Patch& patch,
+                      const Viewpoint& viewpoint, float error);
+
 // Returns one cone that holds all corners at both ends, or nothing where they are too far apart.
 std::optional<Cone> cone_of(std::span<const PatchLanes> lanes, const Viewpoint& viewpoint, float error);
 

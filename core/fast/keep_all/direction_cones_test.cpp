@@ -29,6 +29,10 @@ struct Thrown {
   }
   // Returns the direction in which a point of a triangle is seen at time t. `weights` are barycentric.
   Vec3 seen(std::size_t lane, const Vec3& weights, double t) const {
+    return point(lane, weights, t).normalized();
+  }
+  // Returns where that point is, from the viewpoint.
+  Vec3 point(std::size_t lane, const Vec3& weights, double t) const {
     Vec3 sum = Vec3::Zero();
     for (int i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -38,7 +42,7 @@ struct Thrown {
       }
       sum[i] -= (1 - t) * static_cast<double>(from.at[0][i]) + t * static_cast<double>(from.at[1][i]);
     }
-    return sum.normalized();
+    return sum;
   }
 };
 
@@ -76,6 +80,40 @@ TEST(DirectionCones, HoldATriangleAtEveryTimeWithRoomForTheError) {
     }
   }
   EXPECT_GT(known, 1000u);
+}
+
+// A strip is what the second and third corner of a triangle sweep on their way to where they are in other
+// lanes. Mutations: the corners of one set of lanes are left out; the first corner is taken too.
+TEST(DirectionCones, HoldAStripAtEveryTime) {
+  std::mt19937 random(4);
+  std::size_t known = 0, narrower = 0;
+  for (int round = 0; round < 200; ++round) {
+    const Thrown thrown(random, 0.3F);
+    Thrown moved = thrown;
+    for (int end = 0; end < 2; ++end)
+      for (int i = 0; i < 3; ++i)
+        moved.lanes.at[end][i] += 0.2F * (thrown.from.at[end][i] - thrown.lanes.at[end][i]) + 0.05F;
+    const Cones cones = cones_of_strips(thrown.lanes, moved.lanes, thrown.patch, thrown.from, kError);
+    const Cones whole = cones_of(thrown.lanes, thrown.patch, thrown.from, kError);
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      if ((cones.known >> l & 1) == 0) continue;
+      ++known;
+      narrower += cones[l].cosine > whole[l].cosine;
+      for (int sample = 0; sample < 20; ++sample) {
+        Vec3 weights = random_weights(random);
+        weights[0] = 0;
+        if (!(weights.sum() > 0)) continue;
+        weights /= weights.sum();
+        const double t = (random() % 101) / 100.0, way = (random() % 101) / 100.0;
+        // Directions lie in one cone if the points themselves lie in it, seen from the viewpoint.
+        const Vec3 one = thrown.point(l, weights, t), other = moved.point(l, weights, t);
+        EXPECT_GT(cosine(cones[l], ((1 - way) * one + way * other).normalized()),
+                  cones[l].cosine + kError / 2);
+      }
+    }
+  }
+  EXPECT_GT(known, 1000u);
+  EXPECT_GT(narrower, known / 4);
 }
 
 // Compares apart() with the angles in double precision: the cones of all triangles against the cone of each.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <cstring>
 
 // Nearly all triangles are positive, so the certificates of positive triangles are kept by exception: a
 // triangle that is not positive takes the certificate from all triangles around it. Negative triangles are
@@ -16,8 +15,6 @@ std::uint64_t count(unsigned mask) {
   return static_cast<std::uint64_t>(std::popcount(mask));
 }
 
-constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states that are looked at together
-
 }  // namespace
 
 Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped)
@@ -27,6 +24,7 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       single_triangle_signs_(tree.patches.size()),
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
+      one_is_enough_(capped.empty() ? 0 : 1),
       capped_(std::move(capped)),
       may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle; `look` relies on that.
@@ -51,6 +49,27 @@ void Certificates::use_covers(std::size_t count) {
 void Certificates::forget() {
   std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
   std::fill_n(state_.begin(), cell_.size(), State::spoiled);
+}
+
+void Certificates::resize_first_cover() {
+  const std::size_t count = covers_[0].observers.size();
+  counts_.clusters += count - viewpoint_[0].size();
+  viewpoint_[0].resize(count);
+  if (!capped_.empty()) capped_[0].resize(count);
+}
+
+void Certificates::relabel(std::size_t first, std::size_t last) {
+  for (std::size_t p = first; p < last; ++p) {
+    cell_[p].cluster[0] = tree_.patches[p].cluster[0];
+    state_[p] = State::spoiled;
+  }
+}
+
+void Certificates::cut(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
+                       std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
+                       std::span<const Vec3> positions) {
+  if (!capped_.empty())
+    capped_[0].cut(cluster, builder, mesh, triangles, targets, positions, covers_[0].observers[cluster]);
 }
 
 std::size_t Certificates::looks_per_interval() const {
@@ -125,17 +144,6 @@ void Certificates::make_usual(std::size_t p) {
     certified_[p][c].positive = capped_.empty()                ? cell_[p].inside[c]
                                 : cell_[p].cluster[c] != kNone ? cell_[p].lanes
                                                                : Mask16{0};
-}
-
-template <class Take>
-void Certificates::for_each_unusual(const Take& take) const {
-  for (std::size_t first = 0; first < state_.size(); first += kTogether) {
-    std::uint64_t states = 0;
-    std::memcpy(&states, &state_[first], sizeof states);
-    if (states == 0) continue;
-    for (std::size_t p = first; p < first + kTogether; ++p)
-      if (state_[p] != State::usual) take(p);
-  }
 }
 
 void Certificates::certify_all_round() {
@@ -213,10 +221,10 @@ void Certificates::label_nodes() {
     Label label = Label{} + kNone;
     for (std::size_t c = 0; c < kCovers; ++c) {
       const Signs& signs = certified_[p][c];
-      label[c] = patch.cluster[c] == kNone       ? kNone
-                 : signs.positive == patch.lanes ? 2 * patch.cluster[c]
-                 : signs.negative == patch.lanes ? 2 * patch.cluster[c] + 1
-                                                 : kNone;
+      label[c] = patch.cluster[c] == kNone                              ? kNone
+                 : signs.positive == patch.lanes                        ? 2 * patch.cluster[c]
+                 : signs.negative == patch.lanes || one_is_enough_ != 0 ? 2 * patch.cluster[c] + 1
+                                                                        : kNone;
       some |= signs.positive | signs.negative;
     }
     label_[static_cast<std::size_t>(tree_.leaf[p])] = label;
@@ -229,7 +237,7 @@ void Certificates::label_nodes() {
   // and this pass brings them into the cache.
   tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
-    label_[n] = left == right ? left : Label{} + kNone;
+    label_[n] = (left ^ right) >> one_is_enough_ == 0 ? left | right : Label{} + kNone;
   });
 }
 

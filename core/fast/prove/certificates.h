@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/detect/counts.h"
@@ -32,6 +33,22 @@ class Certificates {
   // observer of one cover.
   std::size_t looks_per_interval() const;
 
+  // What follows between two intervals, when the first cover and the tree have been changed.
+  //
+  // The first cover has as many observers as it has now.
+  void resize_first_cover();
+  // Patches [first, last) of the tree belong to another cluster of the first cover than before.
+  void relabel(std::size_t first, std::size_t last);
+  // A cluster of the first cover has other triangles or another observer, placed in the pose `positions`
+  // (CappedClusters::cut).
+  void cut(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
+           std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
+           std::span<const Vec3> positions);
+  // The last cluster of the first cover takes the number of another one.
+  void rename_last(std::size_t cluster) {
+    if (!capped_.empty()) capped_[0].rename_last(cluster);
+  }
+
   // An interval is one call of `start`, then one call of `look` for every patch, in any order and from any
   // thread, then one call of `finish`.
   void start(const LocalPositions& positions);
@@ -41,7 +58,9 @@ class Certificates {
   // Whether no triangle below node `a` has to be held against a triangle below node `b`; for a == b, whether
   // no pair below the node has to be.
   bool skip(std::size_t a, std::size_t b) const {
-    const Label both = (label_[a] == label_[b]) & (label_[a] != kNone);
+    const Label one = label_[a], other = label_[b];
+    const Label both =
+        ((one ^ other) >> one_is_enough_ == 0) & (one != kNone) & ((one & other & one_is_enough_) == 0);
     const auto any = reinterpret_cast<Halves>(both);
     return (any[0] | any[1]) != 0;
   }
@@ -74,13 +93,28 @@ class Certificates {
       }
     return sets;
   }
+  // Visits the patches with triangles that no cover certified in the last interval.
+  template <class Take>  // (patch, those triangles)
+  void for_each_uncertified(const Take& take) const {
+    for_each_unusual([&](std::size_t p) {
+      unsigned some = 0;
+      for (const Signs& signs : certified_[p]) some |= signs.positive | signs.negative;
+      unsigned negative = certified_[p][0].negative;
+      for (std::size_t c = 1; c < kCovers; ++c)
+        negative &= ~static_cast<unsigned>(certified_[p][c].positive | certified_[p][c].negative);
+      if (const unsigned rest = cell_[p].lanes & ~some; (rest | negative) != 0)
+        take(p, static_cast<Mask16>(rest), static_cast<Mask16>(negative));
+    });
+  }
   // The numbers of triangles that the first cover certifies, and of those that no cover certifies.
   const RadialCounts& counts() const { return counts_; }
   // How the covers in use saw the surface; who is positive is said of the first cover alone.
   RadialView view() const;
 
  private:
-  // Cluster and sign of everything below a node in each cover, or kNone, with all covers in one register.
+  // What is known of everything below a node, in each cover, with all covers in one register: twice the
+  // cluster for positive triangles and one more for negative ones, or kNone. With capped clusters it is twice
+  // the cluster for triangles that are all clear, one more for others of that cluster.
   using Label = std::int32_t __attribute__((vector_size(16)));
   using Halves = std::int64_t __attribute__((vector_size(16)));
   static_assert(kCovers <= sizeof(Label) / sizeof(std::int32_t));
@@ -103,8 +137,17 @@ class Certificates {
     spoiled,     // all positive by itself, but not certified because of triangles around it
     seen         // not all positive by itself
   };
-  template <class Take>  // (patch)
-  void for_each_unusual(const Take& take) const;
+  static constexpr std::size_t kTogether = sizeof(std::uint64_t);  // states that are looked at together
+  template <class Take>                                            // (patch)
+  void for_each_unusual(const Take& take) const {
+    for (std::size_t first = 0; first < state_.size(); first += kTogether) {
+      std::uint64_t states = 0;
+      std::memcpy(&states, &state_[first], sizeof states);
+      if (states == 0) continue;
+      for (std::size_t p = first; p < first + kTogether; ++p)
+        if (state_[p] != State::usual) take(p);
+    }
+  }
 
   struct Cell {  // [patches]: what is needed of every patch, side by side in memory
     std::array<std::int32_t, kCovers> cluster;
@@ -126,6 +169,8 @@ class Certificates {
   std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch
   std::vector<State> state_;  // [patches], padded with usual ones to a whole word
   std::vector<Label> label_;  // of each node
+  std::int32_t
+      one_is_enough_;  // 1 with capped clusters, for then one clear triangle of two is enough, else 0
   std::vector<CappedClusters> capped_;
   std::vector<std::uint8_t>
       may_cross_ray_;  // [patches]: the covers whose ray the patch may cross, a bit each
