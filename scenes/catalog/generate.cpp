@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/clip/digest.h"
-#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/effects/sequence.h"
-#include "scenes/shape/rows.h"
 #include "scenes/shape/subdivide.h"
 
 namespace cscd::scenes {
@@ -26,7 +26,7 @@ std::vector<EffectCall> calls_of(const Scene& scene, Pace pace) {
   std::vector<EffectCall> calls;
   for (const EffectCall& call : scene.effects) {
     const EffectRow* row = row_of(call);
-    if (row && row->predicts)
+    if (row && (row->predicts || row->of_surface))
       throw InputError("scene " + scene.name + ": its effect " + call.name +
                        " changes the motion by the surface; name a scene without it");
     if (!row || row->pace == pace) calls.push_back(call);  // the sequence refuses an unknown effect

@@ -13,8 +13,8 @@
 #include "core/base/error.h"
 #include "core/base/output_target.h"
 #include "scenes/catalog/expected_text.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/clip/digest.h"
-#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {

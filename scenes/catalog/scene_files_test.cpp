@@ -11,7 +11,7 @@
 #include "core/drvbc/drvbc.h"
 #include "core/elementary/catalogue.h"
 #include "scenes/catalog/scene_cache.h"
-#include "scenes/shape/rows.h"
+#include "scenes/catalog/shapes.h"
 
 namespace cscd::scenes {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/catalog/test_scenes.h"
 #include "scenes/clip/digest.h"
-#include "scenes/shape/rows.h"
 
 namespace cscd::scenes {
 namespace {

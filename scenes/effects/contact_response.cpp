@@ -24,7 +24,8 @@ class ContactResponse final : public Effect {
       : where_(p.where()),
         pull_(p.number("pull", 0.3)),
         mesh_(shape.triangles, shape.positions.size(), p.where()),
-        setup_{mesh_, shape.positions, &shape.rig, *find_elementary_test("filtered_exact")},
+        setup_{mesh_, shape.positions, shape.rig.parent.empty() ? nullptr : &shape.rig,
+               *find_elementary_test("filtered_exact")},
         embedding_(mesh_, shape.positions),
         step_(mesh_, shape.positions, first(setup_),
               compose(std::make_unique<PlainCuller<Kdop16>>(setup_), setup_, {.relative_boxes = true}),
@@ -97,20 +98,23 @@ std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, cons
 }
 
 EffectRow contact_response_row() {
-  return {"contact_response",
-          "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
-          "short, "
-          "pushes apart",
-          Pace::frame,
-          kRows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
-            // follows.
-            return make_contact_response(parameters, shape, [](const Setup& setup) {
-              return make_drvbc(setup, {.division = radial::Division::none}).detector;
-            });
-          },
-          true};
+  return {
+      "contact_response",
+      "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
+      "short, "
+      "pushes apart",
+      Pace::frame,
+      kRows,
+      [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+        // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
+        // follows.
+        return make_contact_response(parameters, shape, [](const Setup& setup) -> std::unique_ptr<Detector> {
+          if (!setup.rig)
+            return compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});
+          return make_drvbc(setup, {.division = radial::Division::none}).detector;
+        });
+      },
+      true};
 }
 
 }  // namespace cscd::scenes

@@ -49,7 +49,8 @@ struct EffectRow {
   Pace pace;
   std::span<const ParameterRow> parameters;
   std::unique_ptr<Effect> (*make)(const Parameters& parameters, const Shape& shape);
-  bool predicts = false;  // each step leaves a prediction in the state beside the corrected positions
+  bool predicts = false;    // each step leaves a prediction in the state beside the corrected positions
+  bool of_surface = false;  // moves the vertices by their own masses, so that no skeleton carries the motion
 };
 
 // All effects that a scene file can name.

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
-#include "scenes/shape/rows.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/shape/test_shapes.h"
 
 namespace cscd::scenes {

@@ -13,7 +13,8 @@
 
 namespace cscd::scenes {
 
-// The weights with which at most four bones move a vertex. Weights are not negative and sum to 1. Unused
+// The weights with which at most four bones move a vertex. Weights are not negative and sum to 1, or
+// are all 0 without bones. Unused
 // places come last and have bone -1 and weight 0.
 struct JointWeights {
   static constexpr std::size_t most = 4;
@@ -21,7 +22,8 @@ struct JointWeights {
   std::array<double, most> weight{};
 };
 
-// A skinned character at rest: a closed surface, oriented outward, with its skeleton.
+// A character at rest: a consistently oriented surface with its skeleton. The surface of a shape with bones
+// is closed and faces outward. A shape without bones has empty weights, and its surface may have a border.
 struct Shape {
   std::vector<Vec3> positions;        // [vertices]
   std::vector<Triangle> triangles;    // [triangles]

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "scenes/shape/rows.h"
+#include "scenes/catalog/shapes.h"
 #include "scenes/shape/test_shapes.h"
 
 namespace cscd::scenes {

@@ -1,8 +1,10 @@
-#include "scenes/shape/rows.h"
+#include "scenes/catalog/shapes.h"
 
 #include <string>
 
 #include "core/base/error.h"
+#include "scenes/cloth/ball.h"
+#include "scenes/cloth/sheet.h"
 #include "scenes/shape/box.h"
 #include "scenes/shape/limbed_sphere.h"
 #include "scenes/shape/tube.h"
@@ -10,7 +12,7 @@
 namespace cscd::scenes {
 
 std::span<const ShapeRow> shapes() {
-  static const ShapeRow rows[] = {tube_row(), box_row(), limbed_sphere_row()};
+  static const ShapeRow rows[] = {tube_row(), box_row(), limbed_sphere_row(), sheet_row(), ball_row()};
   return rows;
 }
 
