@@ -13,6 +13,7 @@ EffectRow chain_dynamics_row();
 EffectRow skinning_linear_row();
 
 // Each of these is null if the program holds no such function.
+[[gnu::weak]] EffectRow cloth_dynamics_row();
 [[gnu::weak]] EffectRow contact_response_row();
 [[gnu::weak]] EffectRow keyframes_row();
 [[gnu::weak]] EffectRow skinning_dual_quaternion_row();
@@ -30,9 +31,9 @@ namespace {
 
 TEST(Alone, HasNoOtherEffectsCode) {
   using Row = EffectRow (*)();
-  for (const Row row :
-       {Row{contact_response_row}, Row{keyframes_row}, Row{skinning_dual_quaternion_row},
-        Row{spring_follow_row}, Row{travelling_wave_row}, Row{twist_row}, Row{volume_bulge_row}})
+  for (const Row row : {Row{cloth_dynamics_row}, Row{contact_response_row}, Row{keyframes_row},
+                        Row{skinning_dual_quaternion_row}, Row{spring_follow_row}, Row{travelling_wave_row},
+                        Row{twist_row}, Row{volume_bulge_row}})
     EXPECT_EQ(row, nullptr);
 }
 

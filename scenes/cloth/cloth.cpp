@@ -53,11 +53,10 @@ void Cloth::step(std::vector<Vec3>& positions, double h, std::span<const Led> le
     push_apart(positions);
     limit_speed(positions);
   }
-  backwards_ = !backwards_;
 }
 
-// Moves the vertices by inertia, drag, viscosity and gravity, and the led ones to their places. The velocity of
-// a vertex contains all of its motion in the last step.
+// Moves the vertices by inertia, drag, viscosity and gravity, and the led ones to their places. The velocity
+// of a vertex contains all of its motion in the last step.
 void Cloth::predict(std::vector<Vec3>& positions, double h, std::span<const Led> led) {
   if (before_.empty()) before_ = positions;
   const double kept = last_h_ > 0 ? std::max(0.0, 1 - options_.drag * h) * h / last_h_ : 0;
@@ -83,20 +82,16 @@ void Cloth::predict(std::vector<Vec3>& positions, double h, std::span<const Led>
 
 void Cloth::restore(std::vector<Vec3>& positions, const std::vector<Distance>& distances,
                     double softness) const {
-  const auto restore_one = [&](const Distance& distance) {
+  for (const Distance& distance : distances) {
     const auto a = static_cast<std::size_t>(distance.a), b = static_cast<std::size_t>(distance.b);
     const double mass = inverse_mass_[a] + inverse_mass_[b];
     const Vec3 between = positions[b] - positions[a];
     const double length = between.norm();
-    if (mass == 0 || length == 0) return;
+    if (mass == 0 || length == 0) continue;
     const Vec3 move = (length - distance.rest) / ((mass + softness) * length) * between;
     positions[a] += inverse_mass_[a] * move;
     positions[b] -= inverse_mass_[b] * move;
-  };
-  if (backwards_)
-    for (std::size_t i = distances.size(); i-- > 0;) restore_one(distances[i]);
-  else
-    for (const Distance& distance : distances) restore_one(distance);
+  }
 }
 
 void Cloth::restore_volume(std::vector<Vec3>& positions, double volume, double softness) {
@@ -129,15 +124,16 @@ void Cloth::find_close_vertices(const std::vector<Vec3>& positions) {
   close_.assign(found.begin(), found.end());
 }
 
-// Moves close pairs of vertices to the thickness. Where a pair was too close at the start of the step already,
-// that part of the move counts as no motion, so that it does not fling the two apart in the steps that follow.
+// Moves close pairs of vertices to the thickness. Where a pair was too close at the start of the step
+// already, that part of the move counts as no motion, so that it does not fling the two apart in the steps
+// that follow.
 void Cloth::push_apart(std::vector<Vec3>& positions) {
   const double limit = options_.thickness * options_.thickness;
-  const auto push_pair = [&](const std::pair<int, int>& pair) {
-    const auto a = static_cast<std::size_t>(pair.first), b = static_cast<std::size_t>(pair.second);
+  for (const auto& [first, second] : close_) {
+    const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
     const Vec3 gap = positions[b] - positions[a];
     const double squared = gap.squaredNorm(), mass = inverse_mass_[a] + inverse_mass_[b];
-    if (squared >= limit || squared == 0 || mass == 0) return;
+    if (squared >= limit || squared == 0 || mass == 0) continue;
     const double distance = std::sqrt(squared), depth = options_.thickness - distance;
     const Vec3 normal = gap / distance;
     const Vec3 gap_before = before_[b] - before_[a];
@@ -149,11 +145,7 @@ void Cloth::push_apart(std::vector<Vec3>& positions) {
     const Vec3 motionless = old_depth / mass * normal;
     before_[a] -= inverse_mass_[a] * motionless;
     before_[b] += inverse_mass_[b] * motionless;
-  };
-  if (backwards_)
-    for (std::size_t i = close_.size(); i-- > 0;) push_pair(close_[i]);
-  else
-    for (const auto& pair : close_) push_pair(pair);
+  }
 }
 
 void Cloth::keep_outside(std::vector<Vec3>& positions, std::span<const MovingBall> balls) const {

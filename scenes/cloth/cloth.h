@@ -18,9 +18,9 @@ struct ClothOptions {
   double stretch_compliance = 0;  // stretch of an edge under a force of 1; 0 for edges that keep their length
   double bend_compliance = 0;     // the same for the distance of the two corners across an edge
   double volume_compliance = 0;   // change of the enclosed volume under a pressure of 1
-  double thickness = 0;         // least distance of vertices that share no edge; 0 lets the cloth pass itself
-  double friction = 0;          // Coulomb's coefficient, with itself and with obstacles
-  std::optional<double> floor;  // height below which no vertex gets
+  double thickness = 0;  // least distance of vertices that share no edge; 0 lets the cloth pass itself
+  double friction = 0;   // Coulomb's coefficient, with itself and with obstacles
+  std::optional<double> floor = {};  // height below which no vertex gets
 };
 
 // A ball that moves, at the start and the end of a step. No vertex gets into it.
@@ -43,7 +43,8 @@ struct MovingBall {
 // So a surface whose vertices are all more than 0.764 L apart is embedded. Triangles should be about
 // equilateral for this reason, and the thickness a little less than their edge.
 //
-// The sweeps run in a fixed order, so the results have the same bits with every compiler.
+// The sweeps run in one fixed order, so the results have the same bits with every compiler. Sweeps whose
+// direction turns from step to step would feed motion into the cloth, until it boils.
 class Cloth {
  public:
   // `rest` [vertices] is the shape in which no constraint is violated. The mesh must outlive the object.
@@ -87,7 +88,6 @@ class Cloth {
   std::vector<double> inverse_mass_;        // [vertices]: 0 for a vertex that is led, otherwise 1
   std::vector<Vec3> gradient_;              // [vertices]: of the volume
   double last_h_ = 0;
-  bool backwards_ = false;  // sweeps change their direction from step to step, so that none is preferred
 };
 
 }  // namespace cscd::scenes
