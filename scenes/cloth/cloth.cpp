@@ -53,12 +53,14 @@ void Cloth::step(std::vector<Vec3>& positions, double h, std::span<const Led> le
     push_apart(positions);
     limit_speed(positions);
   }
+  left_ = positions;
 }
 
 // Moves the vertices by inertia, drag, viscosity and gravity, and the led ones to their places. The velocity
 // of a vertex contains all of its motion in the last step.
 void Cloth::predict(std::vector<Vec3>& positions, double h, std::span<const Led> led) {
-  if (before_.empty()) before_ = positions;
+  if (before_.empty()) before_ = left_ = positions;
+  for (std::size_t v = 0; v < positions.size(); ++v) before_[v] += (1 - h) * (positions[v] - left_[v]);
   const double kept = last_h_ > 0 ? std::max(0.0, 1 - options_.drag * h) * h / last_h_ : 0;
   moved_.resize(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) moved_[v] = kept * (positions[v] - before_[v]);

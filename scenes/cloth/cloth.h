@@ -56,7 +56,8 @@ class Cloth {
     Vec3 place;
   };
   // Moves the positions [vertices] through one step of the length `h` in frames. `volume` is the volume that
-  // a closed surface is held to, or nullopt.
+  // a closed surface is held to, or nullopt. Where somebody has moved vertices since the last step, such as a
+  // response to contacts, the cloth goes on from there, and the move counts as motion during one frame.
   void step(std::vector<Vec3>& positions, double h, std::span<const Led> led,
             std::span<const MovingBall> balls, std::optional<double> volume);
 
@@ -84,6 +85,7 @@ class Cloth {
   std::vector<std::pair<int, int>> close_;  // pairs that may come closer than the thickness
   std::vector<Vec3> searched_;              // [vertices]: positions when close_ was found; empty at first
   std::vector<Vec3> before_;                // [vertices]: positions at the start of the step
+  std::vector<Vec3> left_;                  // [vertices]: positions at the end of the last step
   std::vector<Vec3> moved_;                 // [vertices]: the way that inertia takes a vertex in the step
   std::vector<double> inverse_mass_;        // [vertices]: 0 for a vertex that is led, otherwise 1
   std::vector<Vec3> gradient_;              // [vertices]: of the volume

@@ -128,6 +128,18 @@ TEST(Cloth, FallsFreelyAsAPointDoes) {
   EXPECT_NEAR(edge_lengths(mesh, positions).longest, 1, 1e-9);
 }
 
+TEST(Cloth, GoesOnFromWhereItWasMoved) {
+  const Shape shape = lying();
+  const TriangleMesh mesh(shape.triangles, shape.positions.size());
+  Cloth cloth(mesh, shape.positions, {.thickness = 0.9});
+  std::vector<Vec3> positions = shape.positions;
+  constexpr double h = 1.0 / 16;
+  cloth.step(positions, h, {}, {}, std::nullopt);
+  for (Vec3& position : positions) position.z() += 1;
+  for (int i = 0; i < 8; ++i) cloth.step(positions, h, {}, {}, std::nullopt);
+  EXPECT_NEAR(mean_of(positions).z(), 1 + 8 * h, 1e-9) << "a move of 1 is a speed of 1 per frame";
+}
+
 TEST(Cloth, HangsWithoutStretchingFromTheVerticesThatAreLed) {
   const Shape shape = hanging();
   const TriangleMesh mesh(shape.triangles, shape.positions.size());
