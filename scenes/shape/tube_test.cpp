@@ -106,7 +106,8 @@ TEST(Shapes, AreFoundByName) {
     make_shape("teapot", Parameters("here", values));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "here: unknown shape teapot; known are: tube, box, limbed_sphere");
+    EXPECT_STREQ(error.what(),
+                 "here: unknown shape teapot; known are: tube, box, limbed_sphere, sheet, ball");
   }
 }
 
