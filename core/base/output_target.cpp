@@ -2,7 +2,10 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
@@ -17,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;  // the system's own limit
+constexpr char kUnfinished[] = ".cscd-unfinished-";
 
 fs::path follow_links(const fs::path& named) {
   fs::path path = named;
@@ -37,6 +41,18 @@ bool rename_to_new(const char* from, const char* to) {
   if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
   return link(from, to) == 0 && unlink(from) == 0;
+}
+
+// Waits until the disk has the names of a folder's files. Some file systems have no such operation on
+// folders, which counts as success.
+bool sync_folder(const fs::path& folder) {
+  const int handle = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) return errno == EACCES;  // a folder that may be written to but not read
+  const bool good = fsync(handle) == 0 || errno == EINVAL || errno == ENOTSUP;
+  const int reason = errno;
+  close(handle);
+  errno = reason;
+  return good;
 }
 
 }  // namespace
@@ -77,8 +93,7 @@ void UnfinishedFile::make() {
   // The file has a short name of its own, because the target's name may already be as
   // long as the file system allows.
   static std::atomic<unsigned> serial{0};
-  path_ = target_.parent_path() /
-          (".cscd-unfinished-" + std::to_string(getpid()) + "-" + std::to_string(serial++));
+  path_ = target_.parent_path() / (kUnfinished + std::to_string(getpid()) + "-" + std::to_string(serial++));
   registered_.emplace(path_);  // before the file exists, so that no signal comes in between
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file_ < 0) fail("created");
@@ -104,14 +119,28 @@ void UnfinishedFile::finish() {
   registered_.reset();
   close(file_);
   file_ = -1;
+  if (!sync_folder(target_.parent_path())) fail("named");
 }
 
 void UnfinishedFile::fail(const char* what) const {
   const int reason = errno;
   const bool full = reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
-  throw InputError(
+  throw OutputError(
       "output " + target_.string() + ": cannot be " + what + " (" + std::strerror(reason) + "); " +
-      (full ? "make room or choose another disk" : "choose a folder that exists and can be written to"));
+          (full ? "make room or choose another disk" : "choose a folder that exists and can be written to"),
+      reason);
+}
+
+void remove_forsaken_files(const fs::path& folder) {
+  const auto an_hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(kUnfinished)) continue;
+    const int owner = std::atoi(name.c_str() + std::strlen(kUnfinished));
+    const bool is_gone = owner > 0 && kill(owner, 0) != 0 && errno == ESRCH;
+    if (is_gone && entry.last_write_time(ignored) < an_hour_ago) fs::remove(entry.path(), ignored);
+  }
 }
 
 bool write_all(int descriptor, std::string_view text) {

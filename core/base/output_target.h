@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "core/base/error.h"
 #include "core/base/temporaries.h"
 
 namespace cscd {
@@ -20,12 +22,20 @@ struct OutputTarget {
 // read, and, unless `force` is true, for a regular file that exists.
 OutputTarget find_output_target(const std::filesystem::path& path, bool force);
 
+// Thrown where the system does not take an output. `reason` is the system's number for it (errno), for
+// callers that tell a full disk from a folder that is read-only.
+class OutputError : public InputError {
+ public:
+  OutputError(const std::string& text, int reason) : InputError(text), reason(reason) {}
+  int reason;
+};
+
 // A file in the folder of its target that is given the target's name when it is complete. Until then the file
 // is a temporary (temporaries.h), and the destructor removes it.
 class UnfinishedFile {
  public:
   // Creates the file, empty. If `force` is true and the target exists, the new file takes over its
-  // permissions. All members that fail throw an InputError that names `target`.
+  // permissions. All members that fail throw an OutputError that names `target`.
   UnfinishedFile(std::filesystem::path target, bool force);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
@@ -33,7 +43,8 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return path_; }
   void write(std::string_view content);
-  // Waits until the disk has the whole content, then gives the file its target's name. Without `force`, it
+  // Waits until the disk has the whole content, gives the file its target's name, and waits until the disk
+  // has that name, too: after a power failure the file is there whole or not at all. Without `force`, it
   // throws if a file of that name has appeared in the meantime, and leaves that file as it is.
   void finish();
 
@@ -45,6 +56,10 @@ class UnfinishedFile {
   int file_ = -1;
   std::optional<Temporary> registered_;
 };
+
+// Removes the unfinished files of a folder whose process is gone and that are older than an hour: processes
+// that were killed leave them. The hour spares files of processes on other machines that share the folder.
+void remove_forsaken_files(const std::filesystem::path& folder);
 
 // Writes all of `text` to a file descriptor. Returns false, and leaves the reason in errno, if the
 // descriptor does not take all of it.

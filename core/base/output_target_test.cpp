@@ -1,5 +1,7 @@
 #include "core/base/output_target.h"
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <functional>
@@ -79,6 +81,41 @@ TEST_F(Output, DoesNotReplaceWhatCameInBetween) {
   put(folder / "a", "came first");
   EXPECT_THROW(file.finish(), InputError);
   EXPECT_EQ(text_of(folder / "a"), "came first");
+}
+
+TEST_F(Output, TellsWhyTheSystemRefuses) {
+  const auto reason = [&](const fs::path& target) {
+    try {
+      UnfinishedFile(target, false).finish();
+    } catch (const OutputError& error) {
+      return error.reason;
+    }
+    return 0;
+  };
+  EXPECT_EQ(reason(folder / "a"), 0);
+  EXPECT_EQ(reason(folder / "a"), EEXIST);
+  EXPECT_EQ(reason(folder / "no" / "such"), ENOENT);
+}
+
+TEST_F(Output, RemovesWhatKilledProcessesLeftLongAgo) {
+  const pid_t killed = fork();
+  if (killed == 0) {
+    static UnfinishedFile old(folder / "a", false), fresh(folder / "b", false);
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(killed, nullptr, 0);
+  const UnfinishedFile own(folder / "c", false);
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  fs::last_write_time(own.path(), long_ago);
+  fs::path left;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path() != own.path()) left = entry.path();
+  fs::last_write_time(left, long_ago);
+  ASSERT_EQ(files(), 3u);
+  remove_forsaken_files(folder);
+  EXPECT_EQ(files(), 2u);
+  EXPECT_TRUE(fs::exists(own.path()));
+  EXPECT_FALSE(fs::exists(left));
 }
 
 TEST_F(Output, FollowsLinksAndLeavesThem) {
