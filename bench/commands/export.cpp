@@ -3,7 +3,7 @@
 
 #include "bench/commands/command.h"
 #include "bench/commands/export_glb.h"
-#include "bench/commands/model_options.h"
+#include "bench/options/model_options.h"
 #include "bench/exchange/export_files.h"
 #include "bench/input/input.h"
 #include "bench/output/output_format.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/command.h"
-#include "bench/commands/model_options.h"
+#include "bench/options/model_options.h"
 #include "bench/input/input.h"
 #include "bench/output/output.h"
 #include "bench/output/report_json.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/command.h"
-#include "bench/commands/model_options.h"
+#include "bench/options/model_options.h"
 #include "bench/input/input.h"
 #include "bench/measure/interval_choice.h"
 #include "bench/output/json_text.h"

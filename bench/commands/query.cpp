@@ -10,7 +10,7 @@
 #include "bench/answer/answer.h"
 #include "bench/answer/answer_json.h"
 #include "bench/answer/answer_summary.h"
-#include "bench/commands/answer_options.h"
+#include "bench/options/answer_options.h"
 #include "bench/commands/command.h"
 #include "bench/input/input.h"
 #include "bench/output/output.h"

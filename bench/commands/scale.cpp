@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "bench/commands/command.h"
-#include "bench/commands/model_options.h"
+#include "bench/options/model_options.h"
 #include "bench/output/data.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"

@@ -9,7 +9,7 @@
 #include "bench/answer/answer_json.h"
 #include "bench/answer/surface_names.h"
 #include "bench/command_line/version.h"
-#include "bench/commands/answer_options.h"
+#include "bench/options/answer_options.h"
 #include "bench/commands/command.h"
 #include "bench/commands/view_page.h"
 #include "bench/input/input.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/commands/answer_options.h"
+#include "bench/options/answer_options.h"
 
 namespace cscd::bench {
 

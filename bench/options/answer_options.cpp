@@ -1,4 +1,4 @@
-#include "bench/commands/answer_options.h"
+#include "bench/options/answer_options.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "bench/commands/model_options.h"
+#include "bench/options/model_options.h"
 
 #include <CLI/App.hpp>
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "bench/answer/answer.h"
-#include "bench/commands/model_options.h"
 #include "bench/input/watchdog.h"
+#include "bench/options/model_options.h"
 
 namespace cscd::bench {
 
