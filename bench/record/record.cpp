@@ -198,18 +198,20 @@ ordered_json to_json(const Record& record) {
                              {"triangles", scene.triangles}, {"bones", scene.bones},
                              {"frames", scene.frames},       {"effects", std::move(effects)}};
   if (!scene.path.empty()) scene_json["path"] = scene.path;
-  return {{"schema", kRunSchema},
-          {"environment", record.environment},
-          {"command", record.command},
-          {"seed", record.seed},
-          {"scene", std::move(scene_json)},
-          {"pipeline", to_string(record.pipeline)},
-          {"elementary", record.elementary},
-          {"intervals", record.intervals},
-          {"counted_intervals", record.counted_intervals},
-          {"timed_intervals", record.timed_intervals},
-          {"verification", to_json(record.verification)},
-          {"strategies", std::move(strategies)}};
+  ordered_json out = {{"schema", kRunSchema},
+                      {"environment", record.environment},
+                      {"command", record.command},
+                      {"seed", record.seed},
+                      {"scene", std::move(scene_json)},
+                      {"pipeline", to_string(record.pipeline)},
+                      {"elementary", record.elementary},
+                      {"intervals", record.intervals},
+                      {"counted_intervals", record.counted_intervals},
+                      {"timed_intervals", record.timed_intervals},
+                      {"verification", to_json(record.verification)},
+                      {"strategies", std::move(strategies)}};
+  if (record.processes > 1) out["processes"] = record.processes;
+  return out;
 }
 
 Record parse_record(const std::string& text, const std::string& where) {
@@ -243,6 +245,7 @@ Record parse_record(const std::string& text, const std::string& where) {
     out.verification = verification_from(document.at("verification"));
     for (const ordered_json& strategy : document.at("strategies"))
       out.strategies.push_back(strategy_from(strategy));
+    out.processes = document.value("processes", std::size_t{1});
     require_whole(out);
     return out;
   } catch (const nlohmann::json::exception& error) {

@@ -113,6 +113,7 @@ struct Record {
   std::vector<std::size_t> timed_intervals;    // those of these that were timed, ascending
   VerificationRecord verification;
   std::vector<StrategyRecord> strategies;
+  std::size_t processes = 1;  // that measured it, each some of the intervals
 
   const StrategyRecord* strategy(std::string_view name) const;  // null when it was not run
 };

@@ -138,7 +138,9 @@ std::string provenance(const Record& record) {
   out += std::to_string(timed) + " of " + std::to_string(record.intervals) + " intervals timed, " +
          (verified == timed ? "all of them" : std::to_string(verified) + " of them") + " verified and " +
          std::to_string(timed_and(v.colliding, record)) + " with contacts, " +
-         std::to_string(repetitions(record)) + " repetitions, interleaved; counters of " +
+         std::to_string(repetitions(record)) + " repetitions, interleaved" +
+         (record.processes > 1 ? ", by " + std::to_string(record.processes) + " processes" : "") +
+         "; counters of " +
          (record.counted_intervals.size() == record.intervals
               ? "all"
               : std::to_string(record.counted_intervals.size())) +
