@@ -20,6 +20,8 @@ void add_view(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_elementary(CLI::App& app);
 void add_run(CLI::App& app);
+void add_plan(CLI::App& app);
+void add_merge(CLI::App& app);
 void add_tables(CLI::App& app);
 void add_report(CLI::App& app);
 void add_compare(CLI::App& app);

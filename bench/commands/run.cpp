@@ -3,17 +3,25 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
+#include <new>
+#include <sys/mman.h>
 
 #include "bench/commands/command.h"
 #include "bench/input/input.h"
 #include "bench/measure/replay.h"
+#include "bench/options/cell_limits.h"
 #include "bench/options/replay_options.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/record/record.h"
+#include "bench/shards/cell_run.h"
+#include "bench/shards/code_version.h"
+#include "bench/shards/shard.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
+#include "core/base/output_target.h"
 #include "scenes/catalog/scene_cache.h"
+#include "scenes/sandbox/run_limited.h"
 
 namespace cscd::bench {
 namespace {
@@ -23,6 +31,9 @@ struct RunOptions {
   ReplayRequest request;
   std::string output;
   bool force = false;
+  // Instead of a request: cells of a plan.
+  std::string plan, shard = "1/1", cell, into;
+  CellLimits limits;
 };
 
 void print(const VerificationRecord& v, const std::string& timed) {
@@ -93,7 +104,72 @@ bool run_all(const RunOptions& options) {
   return ok;
 }
 
+void require_same_code(const Plan& plan, const std::string& file) {
+  if (const nlohmann::ordered_json here = code_version(); here != plan.code)
+    throw InputError("plan " + file + ": was made by " + plan.code.dump() + ", and this program is " +
+                     here.dump() + "; make the plan anew, or run the program that made it");
+}
+
+// Whether the process has met a limit on its memory. Libraries that it calls may not say so: HDF5 takes a
+// lack of memory for a damaged file.
+bool is_out_of_memory() {
+  constexpr std::size_t kProbe = std::size_t{8} << 20;
+  void* const probe = mmap(nullptr, kProbe, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (probe == MAP_FAILED) return true;
+  munmap(probe, kProbe);
+  return false;
+}
+
+// The process of one cell tells by its exit status why there is no result.
+void run_one_cell(const Plan& plan, const RunOptions& options) {
+  const auto cell = std::ranges::find(plan.cells, options.cell, &PlanCell::id);
+  if (cell == plan.cells.end())
+    throw InputError("--cell " + options.cell + ": is none of plan " + options.plan + "; its cells have ids");
+  CellStatus status = CellStatus::done;
+  try {
+    if (options.limits.memory_mib) scenes::limit_memory(*options.limits.memory_mib << 20);
+    if (!run_cell(plan, *cell, options.into)) status = CellStatus::broken_promise;
+  } catch (const OutputError& error) {
+    std::fprintf(stderr, "cscd: %s\n", error.what());
+    status = status_of_refusal(error.reason);
+  } catch (const std::bad_alloc&) {
+    status = CellStatus::memory_limit;
+  } catch (const InputError&) {
+    if (!is_out_of_memory()) throw;
+    status = CellStatus::memory_limit;
+  }
+  if (status == CellStatus::memory_limit)
+    std::fprintf(stderr, "cscd: out of memory; raise --cell-memory, or use a machine with more\n");
+  if (status != CellStatus::done) throw ExitStatus{exit_status(status)};
+}
+
+void run_plan(const RunOptions& options) {
+  if (options.into.empty()) throw CLI::RequiredError("--into");
+  const Plan plan = read_plan(options.plan);
+  require_same_code(plan, options.plan);
+  std::error_code error;
+  std::filesystem::create_directories(options.into, error);
+  if (error)
+    throw InputError("folder " + options.into + ": cannot be made: " + error.message() +
+                     "; choose another with --into");
+  if (!options.cell.empty()) return run_one_cell(plan, options);
+  const std::vector<CellState> states =
+      run_shard(plan, options.plan, parse_shard(options.shard), options.into, options.limits);
+  const auto count = [&](CellStatus status) {
+    return std::ranges::count(states, status, &CellState::status);
+  };
+  const auto done = count(CellStatus::done), broken = count(CellStatus::broken_promise);
+  if (const auto left = std::ssize(states) - done - broken; left > 0)
+    throw InputError("shard " + options.shard + ": " + std::to_string(left) + " of " +
+                     std::to_string(states.size()) +
+                     " cells have no result, for the reasons above; the same command measures them again");
+  std::printf("shard %s: all %zu cells have results\n", options.shard.c_str(), states.size());
+  if (broken > 0) throw kVerificationFailed;
+}
+
 void run(const RunOptions& options) {
+  if (!options.plan.empty()) return run_plan(options);
+  if (options.output.empty()) throw CLI::RequiredError("--json");
   require_sound(options.request);  // before anything is opened
   if (options.request.scene == kAllScenes) {
     if (!run_all(options)) throw kVerificationFailed;
@@ -128,9 +204,28 @@ void add_run(CLI::App& app) {
   add_replay_options(*command, options->request);
   command->add_option(
       "--json", options->output,
-      "where the record goes, - is standard output; with --scene all, the folder of the records")
-      ->required();
+      "where the record goes, - is standard output; with --scene all, the folder of the records");
   command->add_flag("--force", options->force, "replace the output if it exists");
+  // A plan says what is measured, and in which files results go.
+  std::vector<CLI::Option*> of_requests;
+  for (CLI::Option* option : command->get_options())
+    if (option->get_name() != "--help") of_requests.push_back(option);
+  CLI::Option* plan = command->add_option("--plan", options->plan, "measure cells of this plan (cscd plan)");
+  for (CLI::Option* option : of_requests) plan->excludes(option);
+  command->add_option("--shard", options->shard, "I/N, the I-th of N parts of the cells")
+      ->capture_default_str();
+  command->add_option("--into", options->into, "the folder of the results");
+  add_cell_limits(*command, options->limits);
+  command->add_option(
+      "--cell", options->cell,
+      "one cell alone, by its id, in this process; exit status 4 a full disk, 5 a folder that "
+      "is\nread-only, 6 out of memory");
+  for (CLI::Option* option : command->get_options()) {
+    if (option->get_name() == "--help" || std::ranges::find(of_requests, option) != of_requests.end())
+      continue;
+    option->group("Cells of a plan");
+    if (option != plan) option->needs(plan);
+  }
   command->callback([options] { run(*options); });
 }
 
