@@ -22,6 +22,7 @@ void add_elementary(CLI::App& app);
 void add_run(CLI::App& app);
 void add_plan(CLI::App& app);
 void add_merge(CLI::App& app);
+void add_submit(CLI::App& app);
 void add_tables(CLI::App& app);
 void add_report(CLI::App& app);
 void add_compare(CLI::App& app);

@@ -263,5 +263,44 @@ TEST_F(Shards, NeedWhatTheyAreTold) {
   expect_refused(run(std::string(kPlan) + "--out plan.json"), "exists");
 }
 
+TEST_F(Shards, AreSubmittedToWorkersHere) {
+  plan_counts();
+  ASSERT_EQ(
+      run("cscd run --plan plan.json --into one && cscd merge --plan plan.json one --out one.json").status,
+      0);
+  const Ran ran = run("cscd submit --plan plan.json --into cells --workers 3");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(statuses("cells", "3-of-3"), "done");
+  ASSERT_EQ(merged("merged.json").status, 0);
+  EXPECT_EQ(text("one.json"), text("merged.json"));
+  EXPECT_EQ(run("cscd submit --plan plan.json --into late --workers 2 --cell-seconds 0.001").status, 2);
+}
+
+// Slurm itself is not at hand. Its place is taken by a program that runs the tasks of the script that it
+// reads.
+TEST_F(Shards, AreSubmittedToSlurm) {
+  plan_counts();
+  expect_refused(run("cscd submit --plan plan.json --into cells --workers 2 --executor slurm"),
+                 "sbatch: did not take");
+  const Ran sent = run(R"sh(mkdir bin; cat >bin/sbatch <<'TEXT'
+#!/bin/bash
+cat >job
+tasks=$(sed -n 's/^#SBATCH --array=1-//p' job)
+for ((task = 1; task <= tasks; task++)); do SLURM_ARRAY_TASK_ID=$task bash job || exit 1; done
+TEXT
+chmod +x bin/sbatch
+PATH=$PWD/bin:$PATH cscd submit --plan plan.json --into cells --workers 2 --executor slurm --cell-seconds 600)sh");
+  EXPECT_EQ(sent.status, 0) << sent.errors;
+  EXPECT_EQ(statuses("cells", "1-of-2"), "done done done");
+  EXPECT_EQ(merged("merged.json").status, 0);
+  ASSERT_EQ(run("cscd submit --plan plan.json --into cells --workers 2 --executor slurm --script job.sbatch "
+                "--cell-seconds 600")
+                .status,
+            0);
+  EXPECT_EQ(text("job.sbatch"), text("job"));
+  expect_refused(run("cscd submit --plan plan.json --into cells --script job.sbatch"),
+                 "is of --executor slurm");
+}
+
 }  // namespace
 }  // namespace cscd::bench
