@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/command.h"
-#include "bench/options/model_options.h"
 #include "bench/input/input.h"
+#include "bench/options/model_options.h"
 #include "bench/output/output.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"

@@ -3,9 +3,9 @@
 
 #include "bench/commands/command.h"
 #include "bench/commands/export_glb.h"
-#include "bench/options/model_options.h"
 #include "bench/exchange/export_files.h"
 #include "bench/input/input.h"
+#include "bench/options/model_options.h"
 #include "bench/output/output_format.h"
 #include "core/base/error.h"
 #include "core/base/output_target.h"

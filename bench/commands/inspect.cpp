@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/command.h"
-#include "bench/options/model_options.h"
 #include "bench/input/input.h"
+#include "bench/options/model_options.h"
 #include "bench/output/output.h"
 #include "bench/output/report_json.h"
 #include "bench/rows/applicable.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/commands/command.h"
-#include "bench/options/model_options.h"
 #include "bench/input/input.h"
 #include "bench/measure/interval_choice.h"
+#include "bench/options/model_options.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
