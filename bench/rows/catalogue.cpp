@@ -165,11 +165,11 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers", .follows = false});
              },
              kAblation},
-    seeing_start({"drvbc_fast_complete_fixed_covers",
+    seeing_start({"drvbc_fast_fixed_covers_complete",
                   "drvbc_fast_complete with covers that stay as preparation cut them", Guarantee::complete,
                   kAnySurface,
                   [](const Setup& setup) {
-                    return make_drvbc_fast(setup, {.name = "drvbc_fast_complete_fixed_covers",
+                    return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers_complete",
                                                    .follows = false,
                                                    .complete = true});
                   },

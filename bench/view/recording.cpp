@@ -136,9 +136,11 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
 }
 
 // Asks the observers. A cluster goes by the first of its atomic clusters, so that it keeps its number from
-// one interval to the next.
+// one interval to the next. A page has the same atomic clusters in every interval, so it shows those of a
+// strategy that follows the surface as preparation cut them.
 void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   ContactSet ignored;
+  prepared_.detector->forget();
   const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
   const Report report = prepared_.detector->detect(interval.motion, bones, ignored);
   const RadialView view = prepared_.detector->radial_view();
