@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/answer/answer.h"
@@ -20,6 +22,7 @@
 #include "bench/view/html.h"
 #include "bench/view/recording.h"
 #include "core/base/error.h"
+#include "scenes/catalog/scene.h"
 
 namespace cscd::bench {
 namespace {
@@ -49,6 +52,18 @@ std::vector<std::uint16_t> places_of_triangles(const TriangleMesh& mesh, const S
     places.push_back(texts.number_of(parts ? names.part_of(triangle) : names.place_of(triangle)));
   }
   return places;
+}
+
+// The axis against which things fall, such as "z" or "-y"; none where no effect of the scene has gravity.
+std::optional<std::string> up_of(const scenes::Scene& scene) {
+  for (const scenes::EffectCall& effect : scene.effects) {
+    if (!effect.parameters.has("gravity")) continue;
+    const Vec3 gravity = effect.parameters.vector("gravity");
+    int axis = 0;
+    if (gravity.cwiseAbs().maxCoeff(&axis) == 0) continue;
+    return std::string(gravity[axis] < 0 ? "" : "-") + "xyz"[axis];
+  }
+  return std::nullopt;
 }
 
 struct Contestant {
@@ -131,6 +146,8 @@ std::string view_page(const ViewRequest& options) {
                  {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
+  if (header["kind"] == "scene")
+    if (const auto up = up_of(scenes::load_scene(options.input))) header["up"] = *up;
   return viewer_with(header, sections);
 }
 

@@ -85,9 +85,10 @@ export class Framing {
   }
 }
 
-// The axis that points up. Models say y, and so do most caches. A scene stands along the longest side of its box, with the
-// side up that holds more of the surface.
+// The axis that points up. Models say y, and so do most caches. A scene in which things fall says so itself. Another one stands
+// along the longest side of its box, with the side up that holds more of the surface.
 export function upAxis({ header, clip, places }) {
+  if (header.up) return header.up;
   if (header.kind !== "scene") return "y";
   const sides = [0, 1, 2].map((axis) => {
     let low = 65535, high = 0, sum = 0;
