@@ -13,8 +13,10 @@ constexpr std::uint64_t kUnsettled = 4;
 // A cluster is cut anew if more than one in kFailing of its triangles is certified by no cover.
 constexpr std::uint32_t kFailing = 5;
 // A cluster of fewer triangles is not halved: more seams would cost more than it could win. One that
-// preparation made so small stays as it is.
-constexpr std::uint32_t kLeastHalved = 512;
+// preparation made so small stays as it is. Small surfaces have smaller ones.
+std::uint32_t least_halved(const TriangleMesh& mesh) {
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(mesh.triangle_count() / 8, 32, 512));
+}
 // Two halves may be joined unless more than one in kHopeless of their triangles is certified by no cover.
 // Often it is the ragged contour between them that keeps triangles from being certified.
 constexpr std::uint32_t kHopeless = 2;
@@ -47,6 +49,7 @@ FollowingCover::FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> r
       prepared_observers_(cut.covers[0].observers),
       builder_(mesh),
       below_(cut.tree.nodes.size()),
+      least_halved_(least_halved(mesh)),
       budget_(kMostSaved) {
   const PatchTree& tree = cut_.tree;
   std::vector<std::int32_t> own(below_.size());  // the cluster of everything below a node, or kNone
@@ -125,7 +128,7 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
     Cluster& cluster = clusters_[c];
     const std::uint32_t triangles = below_[cluster.node].triangles;
-    const bool prepared_small = cluster.renewed == 0 && triangles < kLeastHalved;
+    const bool prepared_small = cluster.renewed == 0 && triangles < least_halved_;
     if (prepared_small || cluster.uncertified * kFailing <= triangles) continue;
     failing_.push_back(c);
     if (cluster.renewed == 0) continue;
@@ -139,7 +142,7 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
 void FollowingCover::cut_failing() {
   for (std::size_t next = 0; next < failing_.size() && budget_ > 0; ++next) {
     const std::size_t c = failing_[next], node = clusters_[c].node;
-    const bool large = below_[node].triangles >= kLeastHalved;
+    const bool large = below_[node].triangles >= least_halved_;
     if (!clusters_[c].failed) {
       const Sight sight = sight_of(node);
       const double seen = brief_share_seen(mesh_, positions_, triangles_, cut_.covers[0].observers[c]);

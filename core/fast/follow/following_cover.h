@@ -72,6 +72,7 @@ class FollowingCover {
   CapBuilder builder_;
   std::vector<Below> below_;       // [nodes]
   std::vector<Cluster> clusters_;  // of the first cover
+  std::uint32_t least_halved_;     // the fewest triangles of a cluster that is halved
   bool begun_ = false;             // whether the surface has left the pose it was cut in
   std::uint64_t interval_ = 0;
   std::size_t next_to_join_ = 0;
