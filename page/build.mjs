@@ -63,6 +63,9 @@ ${literal(page)};
 writeFileSync(
   out,
   `// Made by page/build.mjs.
+// The standard asks compilers for literals of 65536 characters; those in use take longer ones.
+#pragma GCC diagnostic ignored "-Woverlength-strings"
+
 #include "bench/view/viewer_page.h"
 namespace cscd::bench {
 ${functionOf("viewer_page", await pageOf("view", "main.js", "three"))}
