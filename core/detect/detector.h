@@ -46,7 +46,8 @@ struct Report {
 };
 
 // Finds the contacts of one interval after another. A detector whose strategy promises it (Strategy::settles)
-// allocates no memory once it has seen its largest interval.
+// allocates no memory once it has seen its largest interval, unless it cuts clusters anew
+// (Strategy::follows).
 class Detector {
  public:
   virtual ~Detector() = default;

@@ -86,7 +86,7 @@ struct Strategy {
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
   Role role = Role::none;
   // Whether a detector allocates no memory once it has seen its largest interval. Strategies that hand the
-  // work to a library do not promise it.
+  // work to a library do not promise it. One that follows the surface allocates while it cuts clusters anew.
   bool settles = true;
   // Whether its detectors cut their clusters anew as the surface moves. What such a strategy promises does
   // not depend on the intervals that a detector has answered before; its counters do, and so do contacts

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <utility>
 
 namespace cscd::fast {
@@ -12,10 +13,10 @@ namespace {
 constexpr std::uint64_t kUnsettled = 4;
 // A cluster is cut anew if more than one in kFailing of its triangles is certified by no cover.
 constexpr std::uint32_t kFailing = 5;
-// A cluster of fewer triangles is not halved: more seams would cost more than it could win. One that
-// preparation made so small stays as it is. Small surfaces have smaller ones.
+// Returns the fewest triangles of a cluster that is halved. Halving smaller ones makes more seams, which cost
+// more than is won. A single patch is always smaller, because it has no halves.
 std::uint32_t least_halved(const TriangleMesh& mesh) {
-  return static_cast<std::uint32_t>(std::clamp<std::size_t>(mesh.triangle_count() / 8, 32, 512));
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(mesh.triangle_count() / 8, kLanes16 + 1, 512));
 }
 // Two halves may be joined unless more than one in kHopeless of their triangles is certified by no cover.
 // Often it is the ragged contour between them that keeps triangles from being certified.
@@ -26,17 +27,17 @@ constexpr double kWellSeen = 0.97;
 constexpr double kBetter = 0.03;
 // A cluster that fails again after so few intervals is halved, however well its observer seems to see it.
 constexpr std::uint64_t kSoon = 8;
-// What is done takes at most one in kShare of the time of all intervals. It is counted in overlap tests of
-// bounding volumes: so many for a search for an observer, and for a triangle of a cluster that is cut. What
-// an interval leaves over is saved up to a limit, and what it takes too much is owed.
+// Following may take one in kShare of what the descents take. Both are counted in overlap tests of bounding
+// volumes: a search for an observer costs kSearch of them, and a cluster that is cut costs kTriangle for each
+// of its triangles. What an interval leaves over is saved, up to kMostSaved; what it spends too much is owed.
 constexpr std::int64_t kShare = 2, kSearch = 5000, kTriangle = 3;
 constexpr std::int64_t kMostSaved = 20 * kSearch;
-// A ray may go through so many triangles of a cluster.
+// So many triangles of a cluster are offered to its rays as targets.
 constexpr std::size_t kMostTargets = 128;
-// Joining two halves is put off for so many intervals after it has failed, twice as many each time, and as
-// few as at first where the whole has lasted for kLasting intervals. After as many, another observer is
-// looked for again where none was to be had.
+// Once joining two halves has failed, it is put off for kFirstWait intervals, and for twice as many each
+// further time.
 constexpr std::uint32_t kFirstWait = 8, kLongestWait = 1024;
+// Where no better observer was found, one is looked for again after so many intervals.
 constexpr std::uint64_t kLasting = 64;
 
 }  // namespace
@@ -52,19 +53,23 @@ FollowingCover::FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> r
       least_halved_(least_halved(mesh)),
       budget_(kMostSaved) {
   const PatchTree& tree = cut_.tree;
-  std::vector<std::int32_t> own(below_.size());  // the cluster of everything below a node, or kNone
-  for (std::size_t n = below_.size(); n-- > 0;) {
+  std::vector<std::int32_t> own(below_.size());    // the cluster of everything below a node, or kNone
+  for (std::size_t n = below_.size(); n-- > 0;) {  // children come after their parents
     Below& below = below_[n];
+    below.wait = kFirstWait;
     const PatchTree::Node node = tree.nodes[n];
     if (node.is_leaf()) {
       const std::size_t p = node.patch();
-      below = {p, p + 1,     static_cast<std::uint32_t>(tree.triangles_of(p).size()), kNone, kNone,
-               0, kFirstWait};
+      below.first = p;
+      below.last = p + 1;
+      below.triangles = static_cast<std::uint32_t>(tree.triangles_of(p).size());
       own[n] = tree.patches[p].cluster[0];
       continue;
     }
     const Below &left = below_[node.left()], &right = below_[node.right()];
-    below = {left.first, right.last, left.triangles + right.triangles, kNone, kNone, 0, kFirstWait};
+    below.first = left.first;
+    below.last = right.last;
+    below.triangles = left.triangles + right.triangles;
     own[n] = own[node.left()] == own[node.right()] ? own[node.left()] : kNone;
     for (const std::size_t child : {node.left(), node.right()})
       if (own[n] != kNone) below_[child].parent = static_cast<std::int32_t>(n);
@@ -113,6 +118,7 @@ void FollowingCover::follow(std::span<const Vec3> positions, std::uint64_t tests
   join_halves();
 }
 
+// Counts what is not certified, and collects the clusters that fail, the one with most to win first.
 void FollowingCover::count_uncertified(const Certificates& certificates) {
   for (Cluster& cluster : clusters_) cluster.uncertified = cluster.negative = 0;
   certificates.for_each_uncertified([&](std::size_t p, Mask16 uncertain, Mask16 negative) {
@@ -120,6 +126,7 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
     cluster.uncertified += static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(uncertain)));
     cluster.negative += static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(negative)));
   });
+  // Positive and negative triangles of one cluster are not dropped against each other.
   for (Cluster& cluster : clusters_) {
     const std::uint32_t positive = below_[cluster.node].triangles - cluster.uncertified - cluster.negative;
     cluster.uncertified += std::min(positive, cluster.negative);
@@ -135,10 +142,10 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
     const std::uint64_t age = interval_ - cluster.renewed;
     cluster.failed = age <= kSoon || (cluster.failed && age <= kLasting);
   }
-  std::ranges::stable_sort(failing_, {}, [&](std::size_t c) { return ~clusters_[c].uncertified; });
+  std::ranges::stable_sort(failing_, std::greater{}, [&](std::size_t c) { return clusters_[c].uncertified; });
 }
 
-// Cuts clusters anew, the one with most to win first.
+// Gives failing clusters other observers or halves them, as long as the budget lasts.
 void FollowingCover::cut_failing() {
   for (std::size_t next = 0; next < failing_.size() && budget_ > 0; ++next) {
     const std::size_t c = failing_[next], node = clusters_[c].node;
@@ -161,7 +168,6 @@ void FollowingCover::halve(std::size_t cluster) {
   const std::size_t node = clusters_[cluster].node;
   const std::size_t left = cut_.tree.nodes[node].left(), right = cut_.tree.nodes[node].right();
   below_[node].cluster = kNone;
-  if (interval_ - clusters_[cluster].renewed > kLasting) below_[node].wait = kFirstWait;
   put_off(below_[node]);
   const Sight left_sight = sight_of(left), right_sight = sight_of(right);
   assign(cluster, left, left_sight.from);

@@ -37,18 +37,21 @@ class FollowingCover {
  private:
   struct Cluster {
     std::size_t node;
-    std::uint64_t renewed;      // the interval before which it got its observer, or none better was found
-    bool failed;                // no better observer is to be hoped for
-    std::uint32_t negative;     // the number of its triangles that it alone certifies, as negative
-    std::uint32_t uncertified;  // the number of its triangles that no cover certified in the last interval
+    std::uint64_t renewed;   // the interval before which it got its observer or kept it for want of a better
+                             // one; 0 with the observer of the preparation
+    bool failed;             // whether no better observer is to be hoped for
+    std::uint32_t negative;  // how many triangles the first cover alone certified, as negative
+    // How many triangles no cover certified in the last interval, with those of the rarer sign.
+    std::uint32_t uncertified;
   };
   struct Below {              // what lies below a node of the tree
     std::size_t first, last;  // its patches
     std::uint32_t triangles;
-    std::int32_t parent;       // kNone for a node that may be no cluster, and for the topmost ones that may
-    std::int32_t cluster;      // the cluster that is this node, or kNone
-    std::uint64_t not_before;  // the interval before which joining the halves is not tried again
-    std::uint32_t wait;        // for how many intervals that is put off the next time
+    // Its parent, where that lies in one prepared cluster too, or kNone.
+    std::int32_t parent = kNone;
+    std::int32_t cluster = kNone;  // the cluster that is this node, or kNone
+    std::uint64_t not_before = 0;  // the interval before which joining the halves is not tried again
+    std::uint32_t wait;            // for how many intervals joining is put off the next time
   };
 
   void count_uncertified(const Certificates& certificates);
@@ -76,7 +79,7 @@ class FollowingCover {
   bool begun_ = false;             // whether the surface has left the pose it was cut in
   std::uint64_t interval_ = 0;
   std::size_t next_to_join_ = 0;
-  std::int64_t budget_;
+  std::int64_t budget_;  // in overlap tests; negative for what is owed
   // While follow() runs:
   std::span<const Vec3> positions_;
   Certificates* certificates_ = nullptr;

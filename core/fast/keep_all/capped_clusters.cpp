@@ -152,6 +152,7 @@ void CappedClusters::take_in_slices(const Patch& fan, const PatchLanes& lanes, u
   float farthest = 0;
   for (const auto& end : lanes.at)
     for (const Float16& axis : end) farthest = std::max(farthest, std::abs(axis[kLanes16 - 1]));
+  // Three roundings of a difference, a product and a sum, each of at most 2^-24 of the two coordinates.
   const float error = 6 * positions_->error() + 0x1p-21F * farthest;
   PatchLanes near = lanes, far;
   for (std::size_t k = 1; k < std::size(kSlices); ++k) {

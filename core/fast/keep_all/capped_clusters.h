@@ -32,9 +32,9 @@ class CappedClusters {
   CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> reference, const Cover& cover,
                  std::size_t number);
 
-  // From the next interval on there are `count` clusters. One that is new has to be cut before.
+  // Makes it `count` clusters from the next interval on. A new one has to be cut before that.
   void resize(std::size_t count);
-  // The last cluster takes the number of another one.
+  // Gives the last cluster the number of another one.
   void rename_last(std::size_t cluster);
   // Gives a cluster other triangles and another observer, placed in the pose `positions`. Rays will go
   // through some of `targets`.

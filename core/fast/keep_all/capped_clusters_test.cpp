@@ -115,8 +115,8 @@ TEST(CappedClusters, AnOpenSpiralThatIsSqueezedIsNotClear) {
   }
 }
 
-// The same strip sinks onto itself from a start that is embedded. Nothing is ever seen from in front, so a rule
-// about signs would drop every pair, the first contact too.
+// The same strip sinks onto itself from a start that is embedded. Nothing is ever seen from in front, so a
+// rule about signs would drop every pair, the first contact too.
 TEST(CappedClusters, SignsAloneLoseTheFirstContactOfAnOpenSpiral) {
   const OneCluster ramp(test::ramp(24, 1.75, 1, 2, 1), {-1.2, -0.5, -2});
   std::vector<Vec3> end = ramp.shape.positions;
@@ -129,8 +129,9 @@ TEST(CappedClusters, SignsAloneLoseTheFirstContactOfAnOpenSpiral) {
   local.update(motion);
   const Viewpoint from = placed(ramp.cut.covers[0].observers[0], local.records());
   for (const Patch& patch : ramp.cut.tree.patches)
-    EXPECT_EQ(orientation(load(local.records(), patch.vertex), patch, from, local.error()).positive & patch.lanes,
-              patch.lanes);
+    EXPECT_EQ(
+        orientation(load(local.records(), patch.vertex), patch, from, local.error()).positive & patch.lanes,
+        patch.lanes);
 }
 
 // A tube goes round twice before it closes. The tube and its caps face the observer in the middle everywhere.

@@ -33,18 +33,19 @@ class Certificates {
   // observer of one cover.
   std::size_t looks_per_interval() const;
 
-  // What follows between two intervals, when the first cover and the tree have been changed.
+  // The next four are called between two intervals, after whoever owns the first cover and the tree has
+  // changed them (follow/following_cover.h).
   //
-  // The first cover has as many observers as it has now.
+  // Takes over how many clusters the first cover has.
   void resize_first_cover();
-  // Patches [first, last) of the tree belong to another cluster of the first cover than before.
+  // Takes over the clusters of patches [first, last) of the tree, and forgets what was certified of them.
   void relabel(std::size_t first, std::size_t last);
-  // A cluster of the first cover has other triangles or another observer, placed in the pose `positions`
+  // Takes over that a cluster of the first cover has other triangles or another observer
   // (CappedClusters::cut).
   void cut(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
            std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
            std::span<const Vec3> positions);
-  // The last cluster of the first cover takes the number of another one.
+  // Gives the last cluster of the first cover the number of another one.
   void rename_last(std::size_t cluster) {
     if (!capped_.empty()) capped_[0].rename_last(cluster);
   }
@@ -93,8 +94,9 @@ class Certificates {
       }
     return sets;
   }
-  // Visits the patches with triangles that no cover certified in the last interval.
-  template <class Take>  // (patch, those triangles)
+  // Visits the patches with triangles that no cover certified in the last interval, or that the first cover
+  // alone certified, as negative.
+  template <class Take>  // (patch, triangles without a certificate, those negative triangles)
   void for_each_uncertified(const Take& take) const {
     for_each_unusual([&](std::size_t p) {
       unsigned some = 0;

@@ -150,7 +150,7 @@ class CSCD_EXPORT SelfCollision {
 
   // Returns contacts of the earliest time, at least one where anything touches. The second form uses the
   // memory of `out` again: after the largest step so far, a step that starts where a free step ended
-  // allocates nothing.
+  // allocates nothing, unless the surface has left the poses that its clusters were cut for.
   Answer first_contact(const Positions& start, const Positions& end) {
     Answer out;
     first_contact(start, end, out);
