@@ -50,8 +50,8 @@ struct Footprint {
 struct StrategyRecord {
   std::string name, source, guarantee;
   int threads = 1;
-  // So many intervals are played to the strategy before each measured one (bench/measure/lead.h); 0 for a strategy
-  // whose counters do not depend on what it was asked before.
+  // So many intervals are played to the strategy before each measured one (bench/measure/lead.h); 0 for a
+  // strategy whose counters do not depend on what it was asked before.
   std::size_t lead = 0;
   PreparationRecord preparation;
   Footprint footprint;
