@@ -47,7 +47,9 @@ class Interval {
     for (std::size_t p = 0; p < tree.patches.size(); ++p)
       for (std::size_t q = 0; q < tree.patches.size(); ++q)
         for (std::size_t i = 0; i < tree.triangles_of(p).size(); ++i) {
-          const Mask16 needed = certificates_.shared(p, q).needed(i);
+          const bool all = certificates_.skip(static_cast<std::size_t>(tree.leaf[p]),
+                                              static_cast<std::size_t>(tree.leaf[q]));
+          const Mask16 needed = all ? Mask16{0} : certificates_.shared(p, q).needed(i);
           for (std::size_t j = 0; j < tree.triangles_of(q).size(); ++j)
             if (const TriangleId a = tree.triangles[p][i], b = tree.triangles[q][j];
                 a < b && (needed >> j & 1) == 0)
