@@ -57,8 +57,15 @@ class Interval {
         }
     return pairs;
   }
-  // Patches, triangles and clusters name each other.
+  // Patches, triangles and clusters name each other, and labels drop nothing between two clusters.
   void expect_partition() const {
+    const PatchTree& tree = cut_.tree;
+    for (std::size_t p = 0; p < tree.patches.size(); ++p)
+      for (std::size_t q = 0; q < tree.patches.size(); ++q)
+        if (certificates_.skip(static_cast<std::size_t>(tree.leaf[p]),
+                               static_cast<std::size_t>(tree.leaf[q]))) {
+          ASSERT_TRUE(share_a_cluster(tree.patches[p], tree.patches[q])) << p << ", " << q;
+        }
     for (std::size_t p = 0; p < cut_.tree.patches.size(); ++p) {
       const std::int32_t cluster = cut_.tree.patches[p].cluster[0];
       ASSERT_GE(cluster, 0);
@@ -68,6 +75,11 @@ class Interval {
   }
 
  private:
+  static bool share_a_cluster(const Patch& p, const Patch& q) {
+    for (std::size_t c = 0; c < kCovers; ++c)
+      if (p.cluster[c] == q.cluster[c] && p.cluster[c] != kNone) return true;
+    return false;
+  }
   static constexpr std::uint64_t kTests =
       200'000;  // that a descent might have made: leave to cut a few clusters
 
@@ -98,7 +110,8 @@ std::vector<Vec3> folded(std::vector<Vec3> flat, double turn) {
   return flat;
 }
 
-// Mutations: count_uncertified() counts nothing; join_halves() joins nothing.
+// Mutations: count_uncertified() counts nothing; join_halves() joins nothing; certificates keep what they
+// knew of patches that have another cluster.
 TEST(FollowingCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
   const test::Shape flat = test::sheet(40);
   const TriangleMesh mesh = flat.mesh();
@@ -146,7 +159,6 @@ TEST(FollowingCover, AnswersLikeANewOneOnceItHasForgotten) {
 }
 
 // A sheet is crumpled by random waves until it touches itself, in an order that jumps forwards and backwards.
-// Mutation: relabel() leaves the certificates as they were.
 TEST(FollowingCover, DropsNoPairThatTouchesInAnyOrderOfIntervals) {
   const test::Shape flat = test::sheet(20);
   const TriangleMesh mesh = flat.mesh();
