@@ -110,8 +110,7 @@ std::vector<Vec3> folded(std::vector<Vec3> flat, double turn) {
   return flat;
 }
 
-// Mutations: count_uncertified() counts nothing; join_halves() joins nothing; certificates keep what they
-// knew of patches that have another cluster.
+// Mutations: count_uncertified() counts nothing; join_halves() joins nothing.
 TEST(FollowingCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
   const test::Shape flat = test::sheet(40);
   const TriangleMesh mesh = flat.mesh();
