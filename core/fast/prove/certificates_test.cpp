@@ -362,6 +362,36 @@ TEST(Certificates, AreShownAsTheyAre) {
   }
 }
 
+// A sphere is one cluster, all of it positive. Half of its patches then become a cluster of their own, seen
+// from the same place. Mutation: relabel() leaves patches as they were, with a label that names the old
+// cluster.
+TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
+  const test::Shape sphere = test::icosphere(3);
+  const TriangleMesh mesh = sphere.mesh();
+  CutSurface cut = cut_surface(mesh, sphere.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  Certificates certificates(cut.tree, cut.covers);
+  LocalPositions local(sphere.positions);
+  local.update(Motion(sphere.positions, sphere.positions));
+  const auto certify = [&] {
+    certificates.start(local);
+    for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
+      certificates.look(p, load(local.records(), cut.tree.patches[p].vertex));
+    certificates.finish();
+  };
+  const std::size_t first = static_cast<std::size_t>(cut.tree.leaf.front()),
+                    last = static_cast<std::size_t>(cut.tree.leaf.back());
+  certify();
+  ASSERT_TRUE(certificates.skip(first, last));
+  const std::size_t half = cut.tree.patches.size() / 2;
+  cut.covers[0].observers.push_back(cut.covers[0].observers[0]);
+  for (std::size_t p = half; p < cut.tree.patches.size(); ++p) cut.tree.patches[p].cluster[0] = 1;
+  certificates.resize_first_cover();
+  certificates.relabel(half, cut.tree.patches.size());
+  certify();
+  EXPECT_FALSE(certificates.skip(first, last));
+  EXPECT_TRUE(certificates.skip(last, last));
+}
+
 TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
   Scene scene(0.01, 1, 1);
   for (Vec3& p : scene.start) p *= 1e10;  // changes no sign, but leaves the range
