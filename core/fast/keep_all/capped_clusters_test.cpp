@@ -134,6 +134,53 @@ TEST(CappedClusters, SignsAloneLoseTheFirstContactOfAnOpenSpiral) {
         patch.lanes);
 }
 
+// A disc with a notch. Its two lobes on both sides of the notch lean over each other, and one sinks through
+// the other. All triangles are positive, and only the cap, which turns back along the sides of the notch,
+// says that some directions are covered twice. Mutation: triangles of a cap that are not positive get no
+// cone, or all slices of them but one.
+TEST(CappedClusters, LobesThatLeanOverEachOtherAreNotClear) {
+  constexpr int kRings = 8, kSectors = 72;
+  // Where a vertex is when the lobes lean by so many radians at the rim, and one is so much higher.
+  const auto place = [](int ring, int sector, double lean, double height) {
+    const double angle = 2 * std::numbers::pi * sector / kSectors, off = angle - std::numbers::pi;
+    const double degrees = std::abs(off) * 180 / std::numbers::pi;
+    const double radius = std::clamp(0.45 + 0.55 * (degrees - 10) / 20, 0.45, 1.0) * ring / kRings;
+    const double bend = 2 * std::max(0.0, radius - 0.5) * std::clamp((90 - degrees) / 60, 0.0, 1.0);
+    const double turned = angle - std::copysign(lean * bend, off);
+    return Vec3(radius * std::cos(turned), radius * std::sin(turned), off < 0 ? height * bend : 0.0);
+  };
+  const auto disc = [&](double lean, double height) {
+    std::vector<Vec3> positions = {Vec3::Zero()};
+    for (int ring = 1; ring <= kRings; ++ring)
+      for (int sector = 0; sector < kSectors; ++sector)
+        positions.push_back(place(ring, sector, lean, height));
+    return positions;
+  };
+  Shape flat{disc(0, 0), {}};
+  const auto at = [](int ring, int sector) {
+    return ring == 0 ? 0 : 1 + (ring - 1) * kSectors + sector % kSectors;
+  };
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int sector = 0; sector < kSectors; ++sector) {
+      if (ring > 0)
+        flat.triangles.push_back(test::corners(at(ring, sector), at(ring + 1, sector), at(ring, sector + 1)));
+      flat.triangles.push_back(
+          test::corners(at(ring, sector + 1), at(ring + 1, sector), at(ring + 1, sector + 1)));
+    }
+  const Vec3 from(0.01, 0.02, -1);
+  const OneCluster cluster(flat, from);
+  for (const double lean : {0.0, 0.7}) {
+    std::vector<Vec3> start = disc(lean, 0.1), end = disc(lean, -0.1);
+    start.push_back(from), end.push_back(from);
+    const Motion motion(start, end);
+    const Seen seen = cluster.seen(motion);
+    const auto pairs = touching(cluster.mesh, motion);
+    EXPECT_EQ(pairs.empty(), lean == 0);
+    EXPECT_GT(seen.clear(), cluster.mesh.triangle_count() / 2);
+    for (const auto& [a, b] : pairs) EXPECT_FALSE(seen.dropped(a, b)) << +a << ", " << +b;
+  }
+}
+
 // A tube goes round twice before it closes. The tube and its caps face the observer in the middle everywhere.
 // Mutation: crossings are not counted.
 TEST(CappedClusters, ATubeThatGoesRoundTwiceIsNotClear) {
