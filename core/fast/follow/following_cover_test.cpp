@@ -138,7 +138,7 @@ TEST(FollowingCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
   EXPECT_EQ(interval.uncertain(), 0u);
 }
 
-// Mutations: forget() leaves the observers, the caps, or the savings as they are.
+// Mutations: forget() leaves the observers or the caps as they are.
 TEST(FollowingCover, AnswersLikeANewOneOnceItHasForgotten) {
   const test::Shape flat = test::sheet(30);
   const TriangleMesh mesh = flat.mesh();

@@ -136,8 +136,8 @@ TEST(CappedClusters, SignsAloneLoseTheFirstContactOfAnOpenSpiral) {
 
 // A disc with a notch. Its two lobes on both sides of the notch lean over each other, and one sinks through
 // the other. All triangles are positive, and only the cap, which turns back along the sides of the notch,
-// says that some directions are covered twice. Mutation: triangles of a cap that are not positive get no
-// cone, or all slices of them but one.
+// says that some directions are covered twice. Mutations: triangles of a cap that are not positive
+// get no cone, or one about the slice next to the apex alone.
 TEST(CappedClusters, LobesThatLeanOverEachOtherAreNotClear) {
   constexpr int kRings = 8, kSectors = 72;
   // Where a vertex is when the lobes lean by so many radians at the rim, and one is so much higher.
