@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <utility>
 
 namespace cscd::fast {
@@ -142,7 +141,12 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
     const std::uint64_t age = interval_ - cluster.renewed;
     cluster.failed = age <= kSoon || (cluster.failed && age <= kLasting);
   }
-  std::ranges::stable_sort(failing_, std::greater{}, [&](std::size_t c) { return clusters_[c].uncertified; });
+  // A stable sort would allocate memory in every interval.
+  std::ranges::sort(failing_, [&](std::size_t a, std::size_t b) {
+    return clusters_[a].uncertified != clusters_[b].uncertified
+               ? clusters_[a].uncertified > clusters_[b].uncertified
+               : a < b;
+  });
 }
 
 // Gives failing clusters other observers or halves them, as long as the budget lasts.
