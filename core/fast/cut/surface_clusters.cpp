@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
+#include <cmath>
 #include <limits>
 #include <map>
-#include <queue>
 #include <set>
 
 #include "core/fast/cut/best_viewpoint.h"
@@ -37,6 +36,18 @@ class Pieces {
       faces_.push_back(face_of(mesh, positions, all_[t]));
       piece_[t] = mesh.component(all_[t]);
     }
+    std::size_t steps = 0;
+    double lengths = 0;
+    for (const TriangleId t : all_) {
+      first_step_.push_back(steps_.size());
+      for (const EdgeId e : mesh.edges_of(t))
+        for (const TriangleId next : mesh.triangles_at(e))
+          if (next != t) steps_.push_back({next, (faces_[+next].centre - faces_[+t].centre).norm()});
+    }
+    first_step_.push_back(steps_.size());
+    for (const Step& step : steps_)
+      if (std::isfinite(step.length)) lengths += step.length, ++steps;
+    bucket_width_ = steps > 0 && lengths > 0 ? lengths / static_cast<double>(steps) : 1;
   }
 
   // Halves pieces along their length, until enough of each piece is seen well or it is small.
@@ -163,35 +174,51 @@ class Pieces {
   // Computes the lengths of shortest paths from the seeds. `reached` are the triangles that can be reached.
   // Without `take`, paths stay within one piece. With `take`, they go over all of these triangles, which then
   // belong to the piece of their seed.
+  //
+  // Paths wait in buckets by their length. A bucket is about one step wide, and within it no order is kept: a
+  // triangle that is reached on a shorter path later is looked at again. That takes less time than a heap,
+  // and ends at the same lengths.
   void flood(const Triangles& reached, const Triangles& seeds, bool take) {
     for (const TriangleId t : reached) path_[+t] = std::numeric_limits<double>::infinity();
-    using Step = std::pair<double, TriangleId>;
-    std::priority_queue<Step, std::vector<Step>, std::greater<>> queue;
-    for (const TriangleId seed : seeds) {
-      path_[+seed] = 0;
-      queue.emplace(0, seed);
-    }
-    while (!queue.empty()) {
-      const auto [length, t] = queue.top();
-      queue.pop();
-      if (length > path_[+t]) continue;
-      for (const EdgeId e : mesh_.edges_of(t))
-        for (const TriangleId next : mesh_.triangles_at(e)) {
-          if (!take && piece_[+next] != piece_[+t]) continue;
-          const double through = length + (faces_[+next].centre - faces_[+t].centre).norm();
-          if (!(through < path_[+next])) continue;
-          path_[+next] = through;
-          if (take) piece_[+next] = piece_[+t];
-          queue.emplace(through, next);
+    const auto put = [&](TriangleId t, double length) {
+      path_[+t] = length;
+      const auto bucket = static_cast<std::size_t>(std::min(length / bucket_width_, kMostBuckets));
+      if (bucket >= buckets_.size()) buckets_.resize(bucket + 1);
+      buckets_[bucket].push_back({t, length});
+    };
+    for (const TriangleId seed : seeds) put(seed, 0);
+    for (std::size_t bucket = 0; bucket < buckets_.size(); ++bucket) {
+      for (std::size_t i = 0; i < buckets_[bucket].size(); ++i) {
+        const auto [t, length] = buckets_[bucket][i];
+        if (length > path_[+t]) continue;
+        for (std::size_t s = first_step_[+t]; s < first_step_[+t + 1]; ++s) {
+          const Step& step = steps_[s];
+          if (!take && piece_[+step.to] != piece_[+t]) continue;
+          const double through = length + step.length;
+          if (!(through < path_[+step.to])) continue;
+          if (take) piece_[+step.to] = piece_[+t];
+          put(step.to, through);
         }
+      }
+      buckets_[bucket].clear();
     }
   }
+
+  static constexpr double kMostBuckets = 1 << 16;
 
   const TriangleMesh& mesh_;
   Triangles all_;
   std::vector<Face> faces_;
   std::vector<std::int32_t> piece_;  // [triangles]: the piece of each
   std::vector<double> path_;         // [triangles]: length of the shortest path in the last flood
+  struct Step {
+    TriangleId to;
+    double length;
+  };
+  std::vector<std::size_t> first_step_;  // [triangles + 1]
+  std::vector<Step> steps_;              // from each triangle over its edges
+  double bucket_width_ = 1;
+  std::vector<std::vector<Step>> buckets_;  // the triangles to go on from, with the length of the path there
 };
 
 }  // namespace
