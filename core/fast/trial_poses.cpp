@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/base/random.h"
+#include "core/geometry/lanes16.h"
 
 namespace cscd::fast {
 namespace {
@@ -35,30 +36,56 @@ Transforms turned(const Rig& rig, std::span<const Vec3> axes, double angle) {
   return transforms;
 }
 
-std::vector<Vec3> moved(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                        std::span<const BoneId> bone_of, const Transforms& transforms) {
-  std::vector<Vec3> shift(reference.size(), Vec3::Zero());
-  for (std::size_t v = 0; v < shift.size(); ++v) {
+// How far a vertex is moved at both ends of a trial: x, y, z and an unused number each.
+using Shift = Float8;
+
+// Turns each vertex by the mean of the turns of the bones that the triangles at it follow.`bones_at`,
+// [vertices], holds those bones.
+std::vector<Shift> turned_shifts(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                                 std::span<const BoneId> bone_of, const std::array<Transforms, 2>& turns) {
+  std::vector<Shift> shifts(reference.size());
+  for (std::size_t v = 0; v < shifts.size(); ++v) {
     const auto around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
-    for (const TriangleId t : around)
-      shift[v] +=
-          (transforms[+bone_of[+t]] * reference[v] - reference[v]) / static_cast<double>(around.size());
+    for (std::size_t end = 0; end < 2; ++end) {
+      Vec3 sum = Vec3::Zero(), one = Vec3::Zero();
+      BoneId last{-1};
+      for (const TriangleId t : around) {
+        if (bone_of[+t] != last) one = turns[end][+bone_of[+t]] * reference[v] - reference[v];
+        last = bone_of[+t];
+        sum += one / static_cast<double>(around.size());
+      }
+      for (std::size_t i = 0; i < 3; ++i)
+        shifts[v][4 * end + i] = static_cast<float>(sum[static_cast<int>(i)]);
+    }
   }
-  std::vector<Vec3> sum(mesh.triangle_count());  // [triangles]: the sum over its corners
+  return shifts;
+}
+
+// Replaces every shift by the mean over the corners of the triangles at the vertex, again and again. On a
+// closed and oriented surface each neighbour is a corner of two of these triangles, and comes behind the
+// vertex in one of them.
+void smooth(const TriangleMesh& mesh, std::vector<Shift>& shifts) {
+  std::vector<std::int32_t> behind;  // the vertices behind each vertex, one after the other
+  std::vector<std::size_t> first{0};
+  for (std::size_t v = 0; v < shifts.size(); ++v) {
+    const VertexId vertex{static_cast<std::int32_t>(v)};
+    for (const TriangleId t : mesh.triangles_at(vertex)) {
+      const Triangle& c = mesh.corners(t);
+      behind.push_back(+c[c[0] == vertex ? 1 : c[1] == vertex ? 2 : 0]);
+    }
+    first.push_back(behind.size());
+  }
+  std::vector<Shift> before(shifts.size());
   for (int i = 0; i < kSmoothed; ++i) {
-    for (std::size_t t = 0; t < sum.size(); ++t) {
-      const Triangle& c = mesh.triangles()[t];
-      sum[t] = shift[+c[0]] + shift[+c[1]] + shift[+c[2]];
-    }
-    for (std::size_t v = 0; v < shift.size(); ++v) {
-      const auto around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
-      if (around.empty()) continue;
-      shift[v].setZero();
-      for (const TriangleId t : around) shift[v] += sum[+t] / static_cast<double>(3 * around.size());
+    before.swap(shifts);
+    for (std::size_t v = 0; v < shifts.size(); ++v) {
+      Shift sum{};
+      for (std::size_t k = first[v]; k < first[v + 1]; ++k)
+        sum += before[static_cast<std::size_t>(behind[k])];
+      const std::size_t count = first[v + 1] - first[v];
+      shifts[v] = count == 0 ? before[v] : (before[v] + sum * (2 / static_cast<float>(count))) / 3.0F;
     }
   }
-  for (std::size_t v = 0; v < shift.size(); ++v) shift[v] += reference[v];
-  return shift;
 }
 
 }  // namespace
@@ -75,9 +102,14 @@ std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> r
       for (int k = 0; k < 3; ++k) axis[k] = dice();
       axes.push_back(axis.squaredNorm() > 0 ? axis.normalized() : Vec3(Vec3::UnitX()));
     }
+    std::vector<Shift> shifts = turned_shifts(
+        mesh, reference, bone_of, {turned(rig, axes, kTurned), turned(rig, axes, kTurned + kFurther)});
+    smooth(mesh, shifts);
     Trial& trial = trials.emplace_back();
     for (std::size_t end = 0; end < 2; ++end)
-      trial[end] = moved(mesh, reference, bone_of, turned(rig, axes, kTurned + (end == 0 ? 0 : kFurther)));
+      for (std::size_t v = 0; v < shifts.size(); ++v)
+        trial[end].push_back(reference[v] +
+                             Vec3(shifts[v][4 * end], shifts[v][4 * end + 1], shifts[v][4 * end + 2]));
   }
   return trials;
 }
