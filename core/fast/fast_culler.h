@@ -22,10 +22,9 @@ namespace cscd::fast {
 // apart (cull), all three on as many threads as the set-up asks for.
 class FastCuller : public Culler {
  public:
-  // Cuts the surface along the seams of `cluster_of`, [triangles], into cells of at least `least_cell`
-  // triangles (cut/cut_surface.h). The mesh of the set-up must outlive the culler.
-  FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, std::size_t least_cell,
-             const DrvbcFastOptions& options);
+  // Cuts the surface along the seams of `cluster_of`, [triangles] (cut/cut_surface.h). The mesh of the set-up
+  // must outlive the culler.
+  FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, const DrvbcFastOptions& options);
 
   // From the next interval on, the first cover follows the surface (follow/following_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }

@@ -1,8 +1,11 @@
 #include "core/fast/trial.h"
 
 #include <algorithm>
+#include <array>
+#include <exception>
 #include <limits>
 
+#include "core/base/team.h"
 #include "core/fast/cut/surface_clusters.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
@@ -24,7 +27,8 @@ class CountingSink : public TrianglePairSink {
 // is left for the elementary test.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
 constexpr std::size_t kTrials = 6;
-constexpr std::size_t kLeastCoarseCell = 96;  // `least_cell` that cuts short limbs into fewer patches
+// The trial poses are not the motion to come, so small differences between candidates say nothing.
+constexpr std::uint64_t kClose = 64;
 
 // Returns the work of all trials. Stops early, and returns a sum above `most`, once the work is more than
 // `most`.
@@ -43,33 +47,37 @@ std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint6
   return tests;
 }
 
-Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options,
-               std::size_t least_cell = kLeastCell) {
-  auto culler = std::make_unique<FastCuller>(setup, cluster_of, least_cell, options);
-  return {std::move(cluster_of), least_cell, std::move(culler)};
+Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
+  auto culler = std::make_unique<FastCuller>(setup, cluster_of, options);
+  return {std::move(cluster_of), std::move(culler)};
 }
 
 // Keeps the candidate that makes the least work.
 class Choice {
  public:
-  explicit Choice(std::vector<Trial> trials) : trials_(std::move(trials)) {}
+  // `trials` must outlive the choice.
+  explicit Choice(std::span<const Trial> trials) : trials_(trials) {}
 
-  // Tries the candidate with three covers, two and one.
+  // Tries the candidate with three covers, two and one. It has to be better than those before it by more than
+  // one in kClose.
   void consider(Candidate candidate) {
+    std::uint64_t least = least_ - (best_.culler ? least_ / kClose : 0);
     bool better = false;
     for (std::size_t count = kCovers; count > 0; --count) {
       candidate.culler->use_covers(count);
-      const std::uint64_t needed = work(*candidate.culler, trials_, least_);
-      if (needed >= least_) continue;
-      better = true, covers_ = count, least_ = needed;
+      const std::uint64_t needed = work(*candidate.culler, trials_, least);
+      if (needed >= least) continue;
+      better = true, covers_ = count, least = needed;
     }
-    if (better) best_ = std::move(candidate);
+    if (!better) return;
+    least_ = least;
+    best_ = std::move(candidate);
   }
   Candidate& best() { return best_; }
   std::size_t covers() const { return covers_; }
 
  private:
-  std::vector<Trial> trials_;
+  std::span<const Trial> trials_;
   Candidate best_;
   std::size_t covers_ = 0;
   std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
@@ -81,19 +89,36 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
   using Clusters = DrvbcFastOptions::Clusters;
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
-  const std::vector<BoneId> bone_of = radial::bones_of_triangles(setup, {}, clock);
-  std::vector<std::int32_t> of_bones = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-  if (options.clusters == Clusters::of_bones) return made(setup, std::move(of_bones), options);
 
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.
   const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
-  Choice choice(trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials));
-  choice.consider(made(setup, std::move(of_bones), whole));
-  choice.consider(made(setup, surface_clusters(setup.mesh, setup.reference), whole));
-  choice.consider(made(setup, choice.best().cluster_of, whole, kLeastCoarseCell));
+  std::vector<Trial> trials;
+  const auto of_bones = [&] {
+    const std::vector<BoneId> bone_of = radial::bones_of_triangles(setup, {}, clock);
+    std::vector<std::int32_t> cluster_of = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
+    if (options.clusters == Clusters::of_bones) return made(setup, std::move(cluster_of), options);
+    trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
+    return made(setup, std::move(cluster_of), whole);
+  };
+  if (options.clusters == Clusters::of_bones) return of_bones();
+
+  // The candidates are prepared side by side. The caller's thread learns of what was thrown.
+  std::array<Candidate, 2> candidates;
+  std::array<std::exception_ptr, 2> thrown;
+  Team(setup.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
+    try {
+      candidates[i] = i == 0 ? of_bones() : made(setup, surface_clusters(setup.mesh, setup.reference), whole);
+    } catch (...) {
+      thrown[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& exception : thrown)
+    if (exception) std::rethrow_exception(exception);
+  Choice choice(trials);
+  for (Candidate& candidate : candidates) choice.consider(std::move(candidate));
   Candidate best = std::move(choice.best());
-  if (options != whole) best = made(setup, std::move(best.cluster_of), options, best.least_cell);
+  if (options != whole) best = made(setup, std::move(best.cluster_of), options);
   best.culler->use_covers(std::min(choice.covers(), options.covers));
   return best;
 }

@@ -12,14 +12,14 @@ namespace cscd::fast {
 // A prepared culler, and the cluster of each triangle that its surface was cut along.
 struct Candidate {
   std::vector<std::int32_t> cluster_of;  // [triangles]
-  std::size_t least_cell = kLeastCell;
   std::unique_ptr<FastCuller> culler;
 };
 
 // Prepares several cullers and returns the one that makes the least work in a few trial poses
-// (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, into more or fewer
-// cells, and look from one, two or three covers. Without bones, on an open surface, or where the options name
-// the clusters, there is one candidate and no trial. Leaves the clock in the stage `decomposition`.
+// (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, and look from one,
+// two or three covers. They are prepared side by side on the threads of the set-up. Without bones, on an open
+// surface, or where the options name the clusters, there is one candidate and no trial. Leaves the clock in
+// the stage `decomposition`.
 Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
 
 }  // namespace cscd::fast

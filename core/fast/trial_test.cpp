@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/cut/test_body.h"
 #include "core/fast/drvbc_fast.h"
@@ -82,24 +83,27 @@ TEST(Trial, DecidesHowManyCoversAreUsed) {
   EXPECT_GT(observers(tube.shape, tube.rig, {}), observers(tube.shape, tube.rig, {.covers = 1}));
 }
 
-// Where limbs are short, seams of the second cover cut them into too many patches. Mutations: all candidates
-// have the same least cell; the candidate with the larger least cell is not tried.
-TEST(Trial, DecidesHowMuchSeamsCut) {
-  const Spikes spikes(12);
-  const TriangleMesh mesh = spikes.shape.mesh();
-  std::vector<Vec3> end;
-  for (const Vec3& p : spikes.shape.positions)
-    end.push_back(p + 0.05 * Vec3(std::sin(3 * p.y()), std::sin(2 * p.z()), std::sin(4 * p.x())));
-  const auto tests = [&](DrvbcFastOptions options) {
-    const cscd::Setup setup{mesh, spikes.shape.positions, &spikes.rig, elementary_tests().front()};
-    ContactSet found;
-    return *make_drvbc_fast(setup, options)
-                .detector->detect(Motion(spikes.shape.positions, end), nullptr, found)
-                .cull.bvot;
-  };
-  using Clusters = DrvbcFastOptions::Clusters;
-  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_bones}));
-  EXPECT_LT(tests({}), tests({.clusters = Clusters::of_surface}));
+Prepared prepared(const test::Body& body, const Rig& rig, int threads) {
+  return make_drvbc_fast({body.mesh, body.shape.positions, &rig, elementary_tests().front(), threads}, {});
+}
+
+// Mutation: the candidate that is ready first is taken.
+TEST(Trial, TakesTheSameOnAnyNumberOfThreads) {
+  const test::Body tube(0, 0);
+  for (const int bones : {1, 15}) {
+    const Rig rig = test::straight_chain(bones, {0.5, 0, 0}, {14.5, 0, 0});
+    const Preparation alone = prepared(tube, rig, 1).preparation, both = prepared(tube, rig, 2).preparation;
+    EXPECT_EQ(alone.atomic_cluster, both.atomic_cluster);
+    EXPECT_TRUE(both.distance_and_heat_ms.has_value());
+  }
+}
+
+// Mutation: what a thread throws is lost.
+TEST(Trial, SaysWhatAThreadCouldNotPrepare) {
+  test::Body tube(0, 0);
+  const Rig rig = test::straight_chain(15, {0.5, 0, 0}, {14.5, 0, 0});
+  tube.shape.positions[7].x() = std::numeric_limits<double>::infinity();
+  for (const int threads : {1, 2}) EXPECT_THROW(prepared(tube, rig, threads), InputError);
 }
 
 }  // namespace

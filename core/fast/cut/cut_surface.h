@@ -25,7 +25,7 @@ struct CutSurface {
 // The least number of triangles in a cell (patches.h) that a seam of the second cover cuts out of a cluster
 // of the first cover. Where a seam would make a smaller cell, the seam gives way to whole patches. A larger
 // number makes fewer patches, but leaves more of them in no cluster of the second cover.
-inline constexpr std::size_t kLeastCell = 40;
+inline constexpr std::size_t kLeastCell = 96;
 
 // Cuts a surface along the seams of its clusters, and makes the three covers. `cluster_of`, [triangles],
 // names the cluster of each triangle: clusters of bones (core/radial/atomic_clusters.h) or clusters of the

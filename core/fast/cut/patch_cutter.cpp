@@ -186,36 +186,38 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   };
   seek(triangle, 0);
   bool found = false;
-  for (std::size_t at = 0; at < std::min(seeking_.size(), kMostSeeking) && !found; ++at)
-    for (const std::int32_t p : patches_beside(seeking_[at].triangle)) {
+  for (std::size_t at = 0; at < std::min(seeking_.size(), kMostSeeking) && !found; ++at) {
+    find_patches_beside(seeking_[at].triangle);
+    for (const std::int32_t p : beside_) {
       if (is_left(p, at)) continue;
-      const Room room = room_for(seeking_[at].triangle, patches[index(p)]);
-      if (room.is_free) {
+      if (find_room(seeking_[at].triangle, patches[index(p)])) {
         move_all(at, p, patches);
         found = true;
         break;
       }
-      for (const TriangleId other : room.in_place_of)
+      for (const TriangleId other : in_place_of_)
         if (!seeks_[+other]) seek(other, at);
     }
+  }
   for (const Seeking& s : seeking_) seeks_[+s.triangle] = false;
   seeking_.clear();
   return found;
 }
 
-// Returns the patches of the cell on the other side of the triangle's edges, at most kMostBeside.
-std::vector<std::int32_t> PatchCutter::patches_beside(TriangleId triangle) const {
-  std::vector<std::int32_t> found;
+// Finds the patches of the cell on the other side of the triangle's edges, at most kMostBeside.
+void PatchCutter::find_patches_beside(TriangleId triangle) {
+  beside_.clear();
   for (const EdgeId e : mesh_.edges_of(triangle))
     for (const TriangleId t : mesh_.triangles_at(e)) {
       const std::int32_t patch = patch_of_[+t];
-      if (found.size() == kMostBeside) return found;
-      if (patch >= 0 && std::find(found.begin(), found.end(), patch) == found.end()) found.push_back(patch);
+      if (beside_.size() == kMostBeside) return;
+      if (patch >= 0 && std::ranges::find(beside_, patch) == beside_.end()) beside_.push_back(patch);
     }
-  return found;
 }
 
-PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const TriangleId> patch) {
+// Returns whether a triangle has room in a patch. If not, finds the triangles of the patch that would give it
+// room by leaving.
+bool PatchCutter::find_room(TriangleId triangle, std::span<const TriangleId> patch) {
   std::size_t vertices = 0;
   const auto enter = [&](TriangleId t) {
     for (const VertexId v : mesh_.corners(t)) vertices += uses_[+v]++ == 0;
@@ -225,16 +227,17 @@ PatchCutter::Room PatchCutter::room_for(TriangleId triangle, std::span<const Tri
   };
   const auto only_its_own = [&](TriangleId t) {
     const Triangle& c = mesh_.corners(t);
-    return static_cast<std::size_t>(std::ranges::count_if(c, [&](VertexId v) { return uses_[+v] == 1; }));
+    return std::size_t{uses_[+c[0]] == 1} + std::size_t{uses_[+c[1]] == 1} + std::size_t{uses_[+c[2]] == 1};
   };
   enter(triangle);
   std::ranges::for_each(patch, enter);
-  Room room{patch.size() < most_ && vertices <= most_, {}};
+  const bool is_free = patch.size() < most_ && vertices <= most_;
+  in_place_of_.clear();
   for (const TriangleId t : patch)
-    if (vertices - only_its_own(t) <= most_) room.in_place_of.push_back(t);
+    if (!is_free && vertices - only_its_own(t) <= most_) in_place_of_.push_back(t);
   forget(triangle);
   std::ranges::for_each(patch, forget);
-  return room;
+  return is_free;
 }
 
 // Whether a triangle of the patch is among those that move if this one does.

@@ -29,12 +29,8 @@ class PatchCutter {
   void join(Patches& patches) const;
   void empty_small(Patches& patches);
   bool move(TriangleId triangle, Patches& patches);
-  std::vector<std::int32_t> patches_beside(TriangleId triangle) const;
-  struct Room {
-    bool is_free;
-    std::vector<TriangleId> in_place_of;  // triangles of the patch, one of which would have to leave
-  };
-  Room room_for(TriangleId triangle, std::span<const TriangleId> patch);
+  void find_patches_beside(TriangleId triangle);
+  bool find_room(TriangleId triangle, std::span<const TriangleId> patch);
   bool is_left(std::int32_t patch, std::size_t at) const;
   void move_all(std::size_t at, std::int32_t to, Patches& patches);
 
@@ -57,10 +53,12 @@ class PatchCutter {
     std::size_t for_whom;  // index in `seeking_` of the triangle that gets its room; 0 for the first, which
                            // wants none
   };
-  std::vector<std::int32_t> patch_of_;  // [triangles]: its patch, or -1
-  std::vector<Seeking> seeking_;        // triangles that look for room one after the other
-  std::vector<bool> seeks_;             // [triangles]: whether it is in `seeking_`
-  std::vector<std::uint8_t> uses_;      // [vertices]: by how many triangles of one patch it is used
+  std::vector<std::int32_t> patch_of_;   // [triangles]: its patch, or -1
+  std::vector<Seeking> seeking_;         // triangles that look for room one after the other
+  std::vector<bool> seeks_;              // [triangles]: whether it is in `seeking_`
+  std::vector<std::uint8_t> uses_;       // [vertices]: by how many triangles of one patch it is used
+  std::vector<std::int32_t> beside_;     // what find_patches_beside() found
+  std::vector<TriangleId> in_place_of_;  // what find_room() found
 };
 
 }  // namespace cscd::fast
