@@ -159,6 +159,12 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
              },
              kAblation}),
+    following({"drvbc_fast_whole_steps", "drvbc_fast without parts of long steps", Guarantee::first_contact,
+             kClosedMesh,
+             [](const Setup& setup) {
+               return make_drvbc_fast(setup, {.name = "drvbc_fast_whole_steps", .long_descent = DrvbcFastOptions::kNever});
+             },
+             kAblation}),
     Strategy{"drvbc_fast_fixed_covers", "drvbc_fast with covers that stay as preparation cut them",
              Guarantee::first_contact, kClosedMesh,
              [](const Setup& setup) {

@@ -1,12 +1,18 @@
 #include "core/fast/fast_culler.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kRange = 32;  // the number of patches that is worth another thread
-constexpr std::size_t kAhead = 2;   // positions are fetched so many patches before the look
+constexpr std::size_t kRange = 32;     // the number of patches that is worth another thread
+constexpr std::size_t kAhead = 2;      // positions are fetched so many patches before the look
+constexpr std::size_t kSampled = 256;  // about so many patches are asked how far they move
+constexpr float kFar = 1;              // widths of a patch
+// A pair of triangles that is passed on costs as much as so many overlap tests.
+constexpr std::uint64_t kTestsOfPair = 40;
+constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
                                    const DrvbcFastOptions& options) {
@@ -37,11 +43,17 @@ FastCuller::FastCuller(const Setup& setup, std::span<const std::int32_t> cluster
 }
 
 void FastCuller::refit(const Motion& motion) {
+  motion_ = motion;
   positions_.update(motion, team_);
   grid_ = Grid(positions_.error());
 }
 
 bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
+  look_at(motion);
+  return true;
+}
+
+void FastCuller::look_at(const Motion& motion) {
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   certificates_.start(positions_);
   team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
@@ -52,15 +64,101 @@ bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
   });
   certificates_.finish();
   if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
-  return true;
 }
 
 CullCounts FastCuller::cull(TrianglePairSink& sink) {
   CullCounts counts;
-  tests_ = descent_.run(bounds_, grid_, sink);
-  counts.bvot = *tests_;
   counts.radial = certificates_.counts();
+  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known() && moves_far()) {
+    counts.bvot = cull_parts(sink);
+  } else {
+    tests_ = descent_.run(bounds_, grid_, sink);
+    counts.bvot = *tests_;
+  }
   return counts;
+}
+
+// Whether places of the surface move apart by more than the width of a patch, on the average.
+bool FastCuller::moves_far() const {
+  const auto at = [&](std::int32_t vertex, std::size_t end) {
+    const float* const p = &positions_.records()[static_cast<std::size_t>(vertex)].at[4 * end];
+    return Eigen::Vector3f(p[0], p[1], p[2]);
+  };
+  const auto moved = [&](std::size_t p) {
+    const std::int32_t v = cut_.tree.patches[p].vertex[0];
+    return Eigen::Vector3f(at(v, 1) - at(v, 0));
+  };
+  const std::size_t stride = patch_count() / kSampled + 1;
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  float samples = 0, way = 0, width = 0;
+  for (std::size_t p = 0; p < patch_count(); p += stride) mean += moved(p), ++samples;
+  mean /= samples;
+  for (std::size_t p = 0; p < patch_count(); p += stride) {
+    const auto& vertex = cut_.tree.patches[p].vertex;
+    way += (moved(p) - mean).norm();
+    width += (at(vertex.back(), 0) - at(vertex.front(), 0)).norm();
+  }
+  return way > kFar * width;
+}
+
+// The parts pass on a pair of triangles again and again, so pairs are collected first.
+std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
+  // A position in between, start + t (end - start), rounds three times.
+  off_ = 0x1p-50 * positions_.largest_in_scene();
+  found_.pairs.clear();
+  std::uint64_t tests = cull_part({0, kFinest});
+  if (found_.pairs.size() > kMostCollected) {
+    begin({0, kFinest});
+    found_.pairs.clear();
+    return tests + *(tests_ = descent_.run(bounds_, grid_, sink));
+  }
+  for (TrianglePair& pair : found_.pairs)
+    if (pair.b < pair.a) std::swap(pair.a, pair.b);
+  const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
+  std::ranges::sort(found_.pairs, {}, ends);
+  const auto again = std::ranges::unique(found_.pairs, {}, ends);
+  found_.pairs.erase(again.begin(), again.end());
+  for (const TrianglePair& pair : found_.pairs) sink.add(pair.a, pair.b);
+  return tests;
+}
+
+// Collects the pairs of a part that has been looked at, and returns the number of overlap tests. A part in
+// which the surface moves far is halved if its descent and its pairs cost too much.
+std::uint64_t FastCuller::cull_part(const Part& part) {
+  if (found_.pairs.size() > kMostCollected) return 0;
+  const bool can_split = part.last - part.first > 1 && moves_far();
+  const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
+  const std::size_t before = found_.pairs.size();
+  found_.restart();
+  tests_ = descent_.run(bounds_, grid_, found_, most);
+  found_.flush();
+  if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) return *tests_;
+  found_.pairs.resize(before);
+  std::uint64_t tests = std::min(*tests_, most);  // how many more were made depends on the number of threads
+  tests_.reset();
+  const unsigned middle = (part.first + part.last) / 2;
+  for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
+    begin(half);
+    tests += cull_part(half);
+  }
+  return tests;
+}
+
+// Looks at a part of the interval.
+void FastCuller::begin(const Part& part) {
+  const std::span<const Vec3> start = motion_->start(), end = motion_->end();
+  const auto at = [&](unsigned time, std::vector<Vec3>& positions) {
+    if (time == 0) return start;
+    if (time == kFinest) return end;
+    positions.resize(start.size());
+    const double t = static_cast<double>(time) / kFinest;
+    for (std::size_t v = 0; v < start.size(); ++v) positions[v] = start[v] + t * (end[v] - start[v]);
+    return std::span<const Vec3>(positions);
+  };
+  const Motion motion(at(part.first, part_start_), at(part.last, part_end_));
+  positions_.update(motion, team_, off_);
+  grid_ = Grid(positions_.error());
+  look_at(motion);
 }
 
 void FastCuller::forget() {

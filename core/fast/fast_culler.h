@@ -20,6 +20,11 @@ namespace cscd::fast {
 // The culler behind `drvbc_fast` and `drvbc_fast_complete`. An interval takes one pass over all vertices
 // (refit), one pass over all patches (classify), and a descent to the pairs of triangles that nothing proves
 // apart (cull), all three on as many threads as the set-up asks for.
+//
+// In a long step, in which the surface moves far, hardly a triangle faces its observer throughout, and most
+// boxes overlap. Such a step is looked at in parts: a pair of triangles that does not touch in any of them
+// does not touch ("Theorem: an interval in parts" in core/soundness.md). Parts are halved as long as the
+// surface moves far in them and their descents are long. All of that is part of cull.
 class FastCuller : public Culler {
  public:
   // Cuts the surface along the seams of `cluster_of`, [triangles] (cut/cut_surface.h). The mesh of the set-up
@@ -37,6 +42,7 @@ class FastCuller : public Culler {
   bool classify(const Motion& motion, const Rig::Interval* bones) override;
   CullCounts cull(TrianglePairSink& sink) override;
   void forget() override;
+  // Of a step in parts, the view is that of the last part.
   RadialView radial_view() const override { return certificates_.view(); }
 
   std::size_t patch_count() const { return cut_.tree.patches.size(); }
@@ -44,6 +50,26 @@ class FastCuller : public Culler {
   std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
 
  private:
+  // A part of the interval, from t = first / kFinest to last / kFinest.
+  struct Part {
+    unsigned first, last;
+  };
+  static constexpr unsigned kFinest = 64;
+  class Found : public TrianglePairSink {
+   public:
+    std::vector<TrianglePair> pairs;
+
+   private:
+    void take(const std::vector<TrianglePair>& block) override {
+      pairs.insert(pairs.end(), block.begin(), block.end());
+    }
+  };
+
+  bool moves_far() const;
+  std::uint64_t cull_parts(TrianglePairSink& sink);
+  std::uint64_t cull_part(const Part& part);
+  void begin(const Part& part);
+  void look_at(const Motion& motion);
   void look(std::size_t patch);
   void fetch(std::size_t patch) const;
 
@@ -59,7 +85,12 @@ class FastCuller : public Culler {
   Grid grid_{1};
   std::vector<NodeBounds> bounds_;  // [nodes]
   std::optional<FollowingCover> following_;
-  std::optional<std::uint64_t> tests_;  // that the last interval took; none before the first one
+  std::optional<std::uint64_t> tests_;  // that the last interval or part took; none before the first one
+  std::optional<Motion> motion_;
+  // Of long steps alone: the ends of a part, and what its descents have found.
+  std::vector<Vec3> part_start_, part_end_;
+  double off_ = 0;  // by how much positions in between are off
+  Found found_;
 };
 
 }  // namespace cscd::fast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace cscd {
@@ -8,12 +9,16 @@ namespace cscd {
 // Options of `drvbc_fast`: which of its ideas it uses, and which contacts it promises to keep.
 struct DrvbcFastOptions {
   std::string_view name = "drvbc_fast";  // begins error texts
-  // Each row of the ablation leaves out one of the next five ideas, or fixes the choice of clusters.
+  // Each row of the ablation leaves out one of the next six ideas, or fixes the choice of clusters.
   std::size_t covers = 3;   // the largest number of covers to look from
   bool time_linear = true;  // bounds at both ends of the interval (look/grid_bounds.h); false: swept bounds
   bool stars = true;        // prove/stars.h
   bool planes = true;       // prove/parting.h
   bool follows = true;      // follow/following_cover.h
+  // A step in which the surface moves far is looked at in parts from so many overlap tests for each patch on
+  // (fast_culler.h). kNever: it never is.
+  std::uint32_t long_descent = 288;
+  static constexpr std::uint32_t kNever = 0xffffffff;
   enum class Clusters { by_trial, of_bones, of_surface };  // the clusters that the covers are made from
   Clusters clusters = Clusters::by_trial;
   // Keeps every contact, on any surface and from any start, by the contour test of capped clusters.

@@ -31,6 +31,7 @@ STRATEGIES = {  # colour and dash by name; a family has one colour
     "drvbc_fast": (RED, "-"), "drvbc_fast_complete": (RED, "--"), "drvbc_fast_one_cover": (OLIVE, "-"),
     "drvbc_fast_two_covers": (OLIVE, "--"), "drvbc_fast_swept_bounds": (OLIVE, ":"), "drvbc_fast_no_stars": (OLIVE, "-."),
     "drvbc_fast_no_planes": (OLIVE, (0, (5, 1, 1, 1))), "drvbc_fast_bones": (RED, "-."), "drvbc_fast_no_bones": (RED, ":"),
+    "drvbc_fast_whole_steps": (OLIVE, (0, (1, 2))),
     "drvbc_fast_fixed_covers": (OLIVE, (0, (3, 1, 1, 1, 1, 1))), "drvbc_fast_fixed_covers_complete": (RED, (0, (5, 1, 1, 1))),
 }
 TESTS = {  # elementary tests

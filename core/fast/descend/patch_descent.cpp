@@ -13,8 +13,9 @@ PatchDescent::PatchDescent(const DescentInput& input)
       star_(input.positions.records().size()),
       triangle_bounds_(input.tree.patches.size()) {}
 
-void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid) {
+void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid, std::uint64_t most) {
   bounds_ = bounds;
+  most_tests_ = most;
   grid_ = grid;
   tests_ = 0;
   triangle_bounds_.start_interval();
@@ -37,6 +38,7 @@ void PatchDescent::split(NodePair at, std::vector<NodePair>& below) {
 template <PatchDescent::Depth kDepth>
 void PatchDescent::visit(NodePair at) {
   const auto [a, b] = at;
+  if (tests_ > most_tests_) return;
   if (a == b) return visit_self<kDepth>(a);
   const PatchTree::Node first = nodes_[a], second = nodes_[b];
   if (!first.is_leaf() && !second.is_leaf()) return step<kDepth, 2, 2>(first.left(), second.left());
@@ -79,7 +81,7 @@ void PatchDescent::found(NodePair below) {
 
 // Passes on pairs of triangles inside one patch.
 inline void PatchDescent::inside(std::size_t p) {
-  if (sink_->closed()) return;
+  if (sink_->closed() || tests_ > most_tests_) return;
   const Certificates::Shared shared = input_.certificates.shared(p, p);
   const Common* common = input_.tree.common_of(p, p);
   const Mask16 lanes = patches_[p].lanes;
@@ -90,7 +92,7 @@ inline void PatchDescent::inside(std::size_t p) {
 // Passes on pairs between the patches of two leaves. Only triangles that meet the bounds of the other patch
 // are held against each other.
 inline void PatchDescent::between(std::size_t a, std::size_t b) {
-  if (sink_->closed()) return;
+  if (sink_->closed() || tests_ > most_tests_) return;
   std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
   Certificates::Shared shared = input_.certificates.shared(p, q);
   Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;

@@ -84,7 +84,8 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   explicit PatchDescent(const DescentInput& input);
 
   // `bounds`, [nodes] in steps of `grid`, must stay until the last descent of the interval.
-  void start_interval(std::span<const NodeBounds> bounds, const Grid& grid);
+  // A descent that has made more than `most` overlap tests stops, and has then passed on only some pairs.
+  void start_interval(std::span<const NodeBounds> bounds, const Grid& grid, std::uint64_t most);
   // Passes on the pairs of triangles below two nodes that are not proven apart.
   void descend(NodePair at, TrianglePairSink& sink);
   // Whether one of the two nodes has children.
@@ -132,7 +133,7 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   PairLanes waiting_vertices_;
   std::size_t waiting_count_ = 0;
   std::vector<NodePair>* split_into_ = nullptr;
-  std::uint64_t tests_ = 0;
+  std::uint64_t tests_ = 0, most_tests_ = 0;
 };
 
 }  // namespace cscd::fast

@@ -21,10 +21,10 @@ SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
   if (team.threads() > 1) kept_.resize(kRangesAThread * team.threads());
 }
 
-std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid& grid,
-                                 TrianglePairSink& sink) {
+std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
+                                 std::uint64_t most) {
   team_.each(by_thread_.size(),
-             [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid); });
+             [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
   if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) bring_near();
   subtrees_.assign(1, {0, 0});
   if (kept_.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 
 #include "core/base/team.h"
 #include "core/fast/descend/patch_descent.h"
@@ -17,8 +18,10 @@ class SharedDescent {
   SharedDescent(const DescentInput& input, const Team& team);
 
   // Runs the descent of one interval and returns the number of overlap tests. `bounds`, [nodes], are in steps
-  // of `grid`.
-  std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink);
+  // of `grid`. A descent that takes more than `most` tests may stop, and has then passed on only some pairs.
+  std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
+                    std::uint64_t most = kAnyNumber);
+  static constexpr std::uint64_t kAnyNumber = std::numeric_limits<std::uint64_t>::max();
 
  private:
   class KeptPairs : public TrianglePairSink {

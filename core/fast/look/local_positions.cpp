@@ -11,7 +11,7 @@
 
 // A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
 // is exact (or far below 1e-37), and the conversion rounds by 2^-24 of itself. With M the largest result, the
-// error is below 2^-24 (1 + 2^-20) M + 1e-37.
+// error is below 2^-24 (1 + 2^-20) M + 1e-37. What the coordinates are off themselves, `off`, comes on top.
 namespace cscd::fast {
 namespace {
 
@@ -27,7 +27,7 @@ LocalPositions::LocalPositions(std::span<const Vec3> reference) : scale_(1), rec
   if (std::isnormal(size) && size < 1e300 && size > 1e-300) scale_ = std::ldexp(1.0, -std::ilogb(size));
 }
 
-void LocalPositions::update(const Motion& motion, const Team& team) {
+void LocalPositions::update(const Motion& motion, const Team& team, double off) {
   const std::size_t count = records_.size();
   origin_ = motion.start()[0];
   largest_.resize(team.ranges_of(count, kRange));
@@ -35,8 +35,12 @@ void LocalPositions::update(const Motion& motion, const Team& team) {
     largest_[part] = convert(motion, first, last);
   });
   const auto largest = std::bit_cast<float>(*std::max_element(largest_.begin(), largest_.end()));
-  known_ = largest <= kLargest;
-  error_ = 0x1.00002p-24F * largest + 1e-37F;
+  known_ = largest <= kLargest && off * scale_ <= 0x1p-10 * largest;
+  error_ = 0x1.00002p-24F * largest + 1e-37F + 1.0001F * static_cast<float>(off * scale_);
+}
+
+double LocalPositions::largest_in_scene() const {
+  return 1.0001 * (origin_.cwiseAbs().maxCoeff() + 0x1p24 * double{error_} / scale_);
 }
 
 // Converts a range of vertices and returns the bits of the largest coordinate's size. Bits are ordered as the

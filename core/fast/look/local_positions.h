@@ -24,12 +24,15 @@ class LocalPositions {
   // `reference`, [vertices], sets the scale and the number of vertices.
   explicit LocalPositions(std::span<const Vec3> reference);
 
-  // Converts the positions of an interval, and finds their error.
-  void update(const Motion& motion, const Team& team = Team());
+  // Converts the positions of an interval, and finds their error. `off`, in units of the scene, is by how
+  // much the coordinates of `motion` may be off themselves.
+  void update(const Motion& motion, const Team& team = Team(), double off = 0);
 
   std::span<const Record> records() const { return records_; }
   // Returns where a point of local coordinates lies in the scene.
   Vec3 in_scene(const float (&at)[3]) const { return origin_ + Vec3(at[0], at[1], at[2]) / scale_; }
+  // Returns a bound on the coordinates of the scene.
+  double largest_in_scene() const;
   // A bound on the error of every coordinate, in local units.
   float error() const { return error_; }
   // False where the motion leaves the range in which errors are known. Nothing may be concluded from the

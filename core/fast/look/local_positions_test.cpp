@@ -36,6 +36,37 @@ TEST(LocalPositions, EveryCoordinateIsWithinItsError) {
   }
 }
 
+// Positions between the ends of an interval are rounded where they are computed (core/fast/fast_culler.cpp).
+// Mutations: `off` is not scaled; it is left out; the largest coordinate is that of local units.
+TEST(LocalPositions, KnowHowFarPositionsAreOff) {
+  for (const auto& [origin, scale] :
+       {std::pair<Vec3, double>{{1e10, -3e6, 123.456}, 1}, {{0, 0, 0}, 1e-20}, {{1e30, 0, 0}, 1e25}}) {
+    const test::Body body(0.05, 2, origin, scale);
+    LocalPositions local(body.start);
+    local.update(body.motion());
+    ASSERT_TRUE(local.known());
+    const float error = local.error();
+    const double largest = local.largest_in_scene(), off = 0x1p-50 * largest;
+    std::vector<Vec3> between;
+    for (std::size_t v = 0; v < body.start.size(); ++v) {
+      EXPECT_LE(std::max(body.start[v].cwiseAbs().maxCoeff(), body.end[v].cwiseAbs().maxCoeff()), largest);
+      between.push_back(body.start[v] + 0.421875 * (body.end[v] - body.start[v]));
+      for (std::size_t i = 0; i < 3; ++i) {
+        const mpq_class from = test::exact(body.start[v])[i], to = test::exact(body.end[v])[i];
+        const mpq_class way = from + mpq_class(27, 64) * (to - from) - test::exact(between[v])[i];
+        EXPECT_LE(abs(way), mpq_class(off));
+      }
+    }
+    EXPECT_LT(largest, 4 * (origin.cwiseAbs().maxCoeff() + 20 * scale)) << "the bound is of use";
+    local.update(Motion(body.start, between), Team(), off);
+    ASSERT_TRUE(local.known());
+    // The scale is a power of two, so it is known from a length.
+    const double unit = static_cast<double>(local.records()[9].at[0]) / (body.start[9] - body.start[0]).x();
+    EXPECT_GE(local.error(), 0.9 * off * unit);
+    EXPECT_LE(local.error(), 1.1 * (off * unit + error));
+  }
+}
+
 TEST(LocalPositions, AMotionOutOfRangeIsNotKnown) {
   test::Body body(0, 1);
   LocalPositions local(body.start);
