@@ -1,6 +1,7 @@
 #include "core/fast/cut/patch_cutter.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -138,33 +139,53 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
 
 // Joins the smallest piece with the largest piece that it touches and that has room for it, as long as there
 // is one.
-void PatchCutter::join(Patches& patches) const {
+void PatchCutter::join(Patches& patches) {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
   std::vector<std::vector<VertexId>> vertices;
   for (const auto& patch : patches) vertices.push_back(vertices_of(patch));
+  for (std::size_t i = 0; i < patches.size(); ++i) enter(i, patches[i]);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const std::vector<VertexId>& own = vertices[i];
-    for (std::size_t j = patches.size(); j-- > i + 1;) {
+    beside_.clear();
+    for (const VertexId v : own)
+      for (const TriangleId t : mesh_.triangles_at(v))
+        if (patch_of_[+t] > static_cast<std::int32_t>(i)) beside_.push_back(patch_of_[+t]);
+    std::ranges::sort(beside_, std::greater{});
+    beside_.erase(std::ranges::unique(beside_).begin(), beside_.end());
+    for (const std::int32_t p : beside_) {
+      const std::size_t j = index(p);
       if (patches[i].size() + patches[j].size() > most_) continue;
       const std::vector<VertexId>& other = vertices[j];
       std::vector<VertexId> both;
       std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
-      if (both.size() > most_ || both.size() == own.size() + other.size()) continue;
+      if (both.size() > most_) continue;
+      enter(j, patches[i]);
       patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
       patches[i].clear();
       vertices[j] = std::move(both);
       break;
     }
   }
+  leave(patches);
+}
+
+// Enters that these triangles belong to a patch.
+void PatchCutter::enter(std::size_t patch, std::span<const TriangleId> triangles) {
+  for (const TriangleId t : triangles) patch_of_[+t] = static_cast<std::int32_t>(patch);
+}
+
+// Forgets who belongs to a patch, and drops patches without triangles.
+void PatchCutter::leave(Patches& patches) {
+  for (const auto& patch : patches)
+    for (const TriangleId t : patch) patch_of_[+t] = -1;
   std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
 }
 
 // Moves the triangles of small patches, the smallest first, into patches beside them, as long as they find
 // room.
 void PatchCutter::empty_small(Patches& patches) {
-  for (std::size_t p = 0; p < patches.size(); ++p)
-    for (const TriangleId t : patches[p]) patch_of_[+t] = static_cast<std::int32_t>(p);
+  for (std::size_t p = 0; p < patches.size(); ++p) enter(p, patches[p]);
   for (std::size_t size = 1; size < most_; ++size)
     for (const std::vector<TriangleId>& patch : patches) {
       if (patch.size() != size) continue;
@@ -172,9 +193,7 @@ void PatchCutter::empty_small(Patches& patches) {
       for (const TriangleId t : triangles)
         if (!move(t, patches)) break;
     }
-  for (const auto& patch : patches)
-    for (const TriangleId t : patch) patch_of_[+t] = -1;
-  std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+  leave(patches);
 }
 
 // Moves a triangle into a patch that has room, or in place of a triangle that moves on in the same way, so
@@ -219,7 +238,7 @@ void PatchCutter::find_patches_beside(TriangleId triangle) {
 // room by leaving.
 bool PatchCutter::find_room(TriangleId triangle, std::span<const TriangleId> patch) {
   std::size_t vertices = 0;
-  const auto enter = [&](TriangleId t) {
+  const auto use = [&](TriangleId t) {
     for (const VertexId v : mesh_.corners(t)) vertices += uses_[+v]++ == 0;
   };
   const auto forget = [&](TriangleId t) {
@@ -229,8 +248,8 @@ bool PatchCutter::find_room(TriangleId triangle, std::span<const TriangleId> pat
     const Triangle& c = mesh_.corners(t);
     return std::size_t{uses_[+c[0]] == 1} + std::size_t{uses_[+c[1]] == 1} + std::size_t{uses_[+c[2]] == 1};
   };
-  enter(triangle);
-  std::ranges::for_each(patch, enter);
+  use(triangle);
+  std::ranges::for_each(patch, use);
   const bool is_free = patch.size() < most_ && vertices <= most_;
   in_place_of_.clear();
   for (const TriangleId t : patch)

@@ -26,7 +26,9 @@ class PatchCutter {
   int free_beside(TriangleId triangle) const;  // how many free neighbours a free triangle has
   Patches pieces(std::span<const TriangleId> cell);
   std::vector<TriangleId> grow(TriangleId seed);
-  void join(Patches& patches) const;
+  void join(Patches& patches);
+  void enter(std::size_t patch, std::span<const TriangleId> triangles);
+  void leave(Patches& patches);
   void empty_small(Patches& patches);
   bool move(TriangleId triangle, Patches& patches);
   void find_patches_beside(TriangleId triangle);
@@ -47,7 +49,7 @@ class PatchCutter {
       touched_;  // free triangles with a corner in the patch, in the order in which they were met
   // The vertices of the patch that has grown last.
   std::vector<VertexId> vertices_;
-  // State while small patches are emptied into the patches beside them.
+  // State while patches are joined, and small ones emptied into the patches beside them.
   struct Seeking {
     TriangleId triangle;
     std::size_t for_whom;  // index in `seeking_` of the triangle that gets its room; 0 for the first, which
