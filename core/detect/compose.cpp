@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/base/stage_clock.h"
+#include "core/base/team.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
@@ -18,6 +19,9 @@ namespace {
 // A slack that exceeds the error of a contact time (2^-50, core/elementary/exact/exact.h), so that all
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
+
+// So many triangle pairs to filter, and feature pairs to test, are worth another thread.
+constexpr std::size_t kFilteredTogether = 256, kAskedTogether = 64;
 
 // Feature pairs of one kind, and their queries, that are tested together.
 template <class Query>
@@ -42,6 +46,7 @@ class PairTester : public TrianglePairSink {
         first_only_(setup.first_only),
         exclusions_(setup.exclusions),
         options_(std::move(options)),
+        team_(options_.threads),
         clock_(clock) {
     if (setup.pipeline == Pipeline::published) options_.filter = PairFilter::plain_sign;
   }
@@ -143,12 +148,25 @@ class PairTester : public TrianglePairSink {
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
     if (options_.filter == PairFilter::certain_sign)
-      filter(mesh_, *motion_, carried_, test_.single_precision_first, left_);
+      filter_carried();
     else
       for (const CarriedPairs& carried : carried_)
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
     if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
     test_left();
+  }
+
+  // Each range of pairs is filtered into a list of its own, and the lists are joined in order.
+  void filter_carried() {
+    const std::span<const CarriedPairs> carried = carried_;
+    lists_.resize(team_.ranges_of(carried.size(), kFilteredTogether));
+    team_.ranges(carried.size(), kFilteredTogether,
+                 [&](std::size_t first, std::size_t last, std::size_t part) {
+                   lists_[part].clear();
+                   filter(mesh_, *motion_, carried.subspan(first, last - first), test_.single_precision_first,
+                          lists_[part]);
+                 });
+    for (const std::vector<FeaturePair>& list : lists_) left_.insert(left_.end(), list.begin(), list.end());
   }
 
   void take_all_carried(const TrianglePair& pair) {
@@ -182,7 +200,11 @@ class PairTester : public TrianglePairSink {
   template <class Query>
   void test_all(Tests<Query>& tests) {
     tests.answers.resize(tests.pairs.size());
-    test_.answer(tests.queries, tests.answers);
+    const std::span<const Query> queries = tests.queries;
+    const std::span<Answer> answers = tests.answers;
+    team_.ranges(queries.size(), kAskedTogether, [&](std::size_t first, std::size_t last, std::size_t) {
+      test_.answer(queries.subspan(first, last - first), answers.subspan(first, last - first));
+    });
     for (std::size_t i = 0; i < tests.pairs.size(); ++i) take_answer(tests.pairs[i], tests.answers[i]);
   }
   void take_answer(const FeaturePair& pair, const Answer& answer) {
@@ -196,18 +218,20 @@ class PairTester : public TrianglePairSink {
   const bool first_only_;
   const Exclusions* const exclusions_;
   PairOptions options_;
+  Team team_;
   StageClock& clock_;
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   Crossings* start_ = nullptr;
   std::size_t most_ = 0;  // crossings that are kept
   PairCounts counts_;
-  std::vector<TrianglePair> kept_;        // the block without what is excluded
-  std::vector<CarriedPairs> carried_;     // by the block's triangle pairs; one pair may be carried repeatedly
-  std::vector<FeaturePair> assigned_;     // to the block's triangle pairs
-  std::vector<FeaturePair> left_;         // feature pairs that the filter could not prove apart
-  FeaturePairSet met_;                    // feature pairs met in this interval
-  Tests<MovingVertexFace> vertex_faces_;  // those left that are met for the first time
+  std::vector<TrianglePair> kept_;     // the block without what is excluded
+  std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
+  std::vector<FeaturePair> assigned_;  // to the block's triangle pairs
+  std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
+  std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
+  FeaturePairSet met_;                           // feature pairs met in this interval
+  Tests<MovingVertexFace> vertex_faces_;         // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
   struct Bounded {

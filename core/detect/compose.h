@@ -19,6 +19,9 @@ struct PairOptions {
   // Which feature pairs a triangle pair is tested for; null means all that it carries. An assignment is used
   // without relative boxes.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
+  // The threads that filter and test, for a strategy whose culler uses as many. Contacts, their order and all
+  // counters are the same on any number.
+  int threads = 1;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy
