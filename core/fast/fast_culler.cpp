@@ -116,8 +116,8 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
     if (pair.b < pair.a) std::swap(pair.a, pair.b);
   const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
   std::ranges::sort(found_.pairs, {}, ends);
-  const auto again = std::ranges::unique(found_.pairs, {}, ends);
-  found_.pairs.erase(again.begin(), again.end());
+  const auto same = [&](const TrianglePair& a, const TrianglePair& b) { return ends(a) == ends(b); };
+  found_.pairs.erase(std::unique(found_.pairs.begin(), found_.pairs.end(), same), found_.pairs.end());
   for (const TrianglePair& pair : found_.pairs) sink.add(pair.a, pair.b);
   return tests;
 }

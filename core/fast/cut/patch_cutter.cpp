@@ -152,7 +152,7 @@ void PatchCutter::join(Patches& patches) {
       for (const TriangleId t : mesh_.triangles_at(v))
         if (patch_of_[+t] > static_cast<std::int32_t>(i)) beside_.push_back(patch_of_[+t]);
     std::ranges::sort(beside_, std::greater{});
-    beside_.erase(std::ranges::unique(beside_).begin(), beside_.end());
+    beside_.erase(std::unique(beside_.begin(), beside_.end()), beside_.end());
     for (const std::int32_t p : beside_) {
       const std::size_t j = index(p);
       if (patches[i].size() + patches[j].size() > most_) continue;
