@@ -138,6 +138,7 @@ class SelfCollision::Engine {
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
+  std::vector<std::byte> preparation() const { return first_.plain->saved_preparation(); }
 
   // Sessions look for numbers that are not finite in the pass in which they look whether a start is known.
   Motion motion(const Positions& start, const Positions& end) const {
@@ -221,7 +222,14 @@ class SelfCollision::Engine {
 
   static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
   Setup setup(bool first, const cscd::Exclusions* exclusions) const {
-    return {mesh_, reference_, nullptr, elementary(), options_.threads, first, exclusions};
+    return {.mesh = mesh_,
+            .reference = reference_,
+            .rig = nullptr,
+            .elementary = elementary(),
+            .threads = options_.threads,
+            .first_only = first,
+            .exclusions = exclusions,
+            .preparation = options_.preparation};
   }
   Session& made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
                 const cscd::Exclusions* exclusions) {
@@ -379,6 +387,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
     engine_->candidates(motion, radius, out);
     return out;
   });
+}
+
+std::vector<std::byte> SelfCollision::preparation() const {
+  return engine_->preparation();
 }
 
 std::size_t SelfCollision::vertex_count() const {

@@ -34,6 +34,8 @@ class Answerer {
 
   IntervalAnswer answer(std::size_t interval);
 
+  // Returns what preparing the strategy has found out; empty where it saves nothing.
+  std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
   double preparation_ms() const { return session_.preparation_ms(); }
   // The triangles that cross at rest. They are left out of answers unless the options keep them.

@@ -1,6 +1,8 @@
 #include <CLI/App.hpp>
 #include <charconv>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,9 +28,27 @@ using nlohmann::json;
 constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all are asked for
 
 struct QueryOptions : AnswerRequest {
-  std::string strategy, output, start_pairs;
+  std::string strategy, output, start_pairs, preparation;
   bool force = false, fail_on_contact = false;
 };
+
+// Returns what an earlier run left in the file; nothing if there is no such file yet.
+std::vector<std::byte> read_preparation(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw InputError("--preparation " + path + ": cannot be read");
+  const auto bytes = std::as_bytes(std::span(text));
+  if (bytes.empty()) throw InputError("--preparation " + path + ": is empty; remove it");
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_preparation(const std::string& path, std::span<const std::byte> bytes, const Strategy& strategy) {
+  if (bytes.empty())
+    throw InputError("--preparation " + path + ": strategy " + std::string(strategy.name) +
+                     " has no preparation worth keeping; leave the option out");
+  OutputFile(path, false, ".preparation").commit({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
 
 std::size_t most_start_pairs(const std::string& text) {
   if (text.empty()) return kStartPairs;
@@ -62,7 +82,10 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
   const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
   Watchdog watchdog = watchdog_of(options, input);
+  if (!options.preparation.empty()) input.preparation = read_preparation(options.preparation);
   Answerer answerer(input, strategy, elementary, options.answers);
+  if (!options.preparation.empty() && input.preparation.empty())
+    write_preparation(options.preparation, answerer.saved_preparation(), strategy);
   const SurfaceNames names(input);
   AnswerSummary summary;
   summary.preparation_ms = answerer.preparation_ms();
@@ -174,6 +197,10 @@ void add_query(CLI::App& app) {
   add_answer_options(*command, *options);
   command->add_option("--strategy", options->strategy,
                       "culling strategy (cscd list); without it, the best that the input allows");
+  command->add_option(
+      "--preparation", options->preparation,
+      "file in which what preparing the surface finds out is kept: written if there is none, else read, "
+      "which takes a fraction of the time");
   command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_option(

@@ -130,6 +130,30 @@ TEST_F(Query, AnswersAllClipsInOneRun) {
   expect_refused(run("cscd inspect figure.glb --clip all"), "only query answers all clips");
 }
 
+// Mutations: the file is written and never read; a strategy without a preparation takes the option.
+TEST_F(Query, KeepsAPreparation) {
+  const auto counted = [&](const std::string& words) {
+    json document = answer(words);
+    for (json& interval : document["intervals"]) interval.erase("ms");
+    return document["intervals"];
+  };
+  const json plain = counted("small");
+  EXPECT_EQ(counted("small --preparation kept.preparation"), plain);
+  const std::string kept = text("kept.preparation");
+  EXPECT_GT(kept.size(), 1000u);
+  EXPECT_EQ(counted("small --preparation kept.preparation"), plain);
+  EXPECT_EQ(text("kept.preparation"), kept);
+
+  expect_refused(run("cscd query figure.glb --clip hug --preparation kept.preparation"),
+                 "preparation: was made for another surface; prepare anew without it");
+  put("kept.preparation", kept.substr(0, kept.size() / 2));
+  expect_refused(run("cscd query small --preparation kept.preparation"), "preparation: is damaged");
+  put("kept.preparation", "");
+  expect_refused(run("cscd query small --preparation kept.preparation"), "is empty; remove it");
+  expect_refused(run("cscd query small --strategy base --preparation other.preparation"),
+                 "strategy base has no preparation worth keeping");
+}
+
 TEST_F(Query, ListsAsManyStartPairsAsAsked) {
   const auto longest = [&](const std::string& words) {
     std::size_t most = 0, total = 0;

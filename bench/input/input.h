@@ -27,6 +27,7 @@ struct Input {
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
   int threads = 1;                                            // for whatever can use them
   bool use_bones = true;                                      // for strategies that can do without
+  std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
@@ -37,8 +38,9 @@ struct Input {
 
   Setup setup(const ElementaryTest& elementary, bool first_only = false,
               Pipeline pipeline = Pipeline::today) const {
-    return {mesh,    reference, rig && use_bones ? &*rig : nullptr, elementary, threads, first_only,
-            nullptr, pipeline};
+    return {mesh,       reference, rig && use_bones ? &*rig : nullptr,
+            elementary, threads,   first_only,
+            nullptr,    pipeline,  preparation};
   }
 };
 

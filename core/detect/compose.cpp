@@ -258,6 +258,7 @@ class ComposedDetector : public Detector {
     return report;
   }
   void forget() override { culler_->forget(); }
+  std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
   RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:

@@ -69,6 +69,8 @@ class Culler {
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
   // Forgets all intervals (Detector::forget).
   virtual void forget() {}
+  // Returns what preparation has found out (Detector::saved_preparation).
+  virtual std::vector<std::byte> saved_preparation() const { return {}; }
   // The orientation of the surface in the last interval, for pictures.
   virtual RadialView radial_view() const { return {}; }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,10 @@ struct Setup {
   const Exclusions* exclusions = nullptr;
   // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.
   Pipeline pipeline = Pipeline::today;
+  // What a detector of the same strategy and surface has said by Detector::saved_preparation(); empty to
+  // prepare from nothing. The strategy throws InputError if it is damaged or of another surface. Strategies
+  // that save nothing take no notice.
+  std::span<const std::byte> preparation = {};
 };
 
 // Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).

@@ -26,7 +26,9 @@ Setup setup_of(const TriangleMesh& mesh, std::span<const Vec3> reference, int th
 // A test of the start that culls as `drvbc_fast` does, by signs alone.
 EmbeddingTest by_signs(const TriangleMesh& mesh, std::span<const Vec3> reference) {
   return {mesh, std::make_unique<fast::FastCuller>(
-                    setup_of(mesh, reference), fast::surface_clusters(mesh, reference), DrvbcFastOptions{})};
+                    setup_of(mesh, reference),
+                    fast::cut_surface(mesh, reference, fast::surface_clusters(mesh, reference)),
+                    DrvbcFastOptions{})};
 }
 
 // Shapes whose poses are compared. They are closed but for the last one.

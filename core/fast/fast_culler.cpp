@@ -25,11 +25,10 @@ std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
 
 }  // namespace
 
-FastCuller::FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of,
-                       const DrvbcFastOptions& options)
+FastCuller::FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options)
     : mesh_(setup.mesh),
       reference_(setup.reference),
-      cut_(cut_surface(setup.mesh, setup.reference, cluster_of)),
+      cut_(std::move(cut)),
       options_(options),
       positions_(setup.reference),
       certificates_(cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),

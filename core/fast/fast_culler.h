@@ -8,6 +8,7 @@
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
 #include "core/fast/cut/cut_surface.h"
+#include "core/fast/cut/saved_cut.h"
 #include "core/fast/descend/shared_descent.h"
 #include "core/fast/follow/following_cover.h"
 #include "core/fast/look/grid_bounds.h"
@@ -27,14 +28,17 @@ namespace cscd::fast {
 // surface moves far in them and their descents are long. All of that is part of cull.
 class FastCuller : public Culler {
  public:
-  // Cuts the surface along the seams of `cluster_of`, [triangles] (cut/cut_surface.h). The mesh of the set-up
-  // must outlive the culler.
-  FastCuller(const Setup& setup, std::span<const std::int32_t> cluster_of, const DrvbcFastOptions& options);
+  // Takes over a surface that has been cut (cut/cut_surface.h). The mesh of the set-up must outlive the
+  // culler.
+  FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options);
 
   // From the next interval on, the first cover follows the surface (follow/following_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }
   // From the next interval on, looks from the first `count` covers alone, at least one.
-  void use_covers(std::size_t count) { certificates_.use_covers(count); }
+  void use_covers(std::size_t count) {
+    covers_used_ = count;
+    certificates_.use_covers(count);
+  }
 
   void refit(const Motion& motion) override;
   // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded
@@ -42,6 +46,9 @@ class FastCuller : public Culler {
   bool classify(const Motion& motion, const Rig::Interval* bones) override;
   CullCounts cull(TrianglePairSink& sink) override;
   void forget() override;
+  std::vector<std::byte> saved_preparation() const override {
+    return saved_cut(mesh_, reference_, cut_, covers_used_);
+  }
   // Of a step in parts, the view is that of the last part.
   RadialView radial_view() const override { return certificates_.view(); }
 
@@ -76,6 +83,7 @@ class FastCuller : public Culler {
   const TriangleMesh& mesh_;
   std::span<const Vec3> reference_;
   CutSurface cut_;
+  std::size_t covers_used_ = 0;
   DrvbcFastOptions options_;
   LocalPositions positions_;
   Certificates certificates_;

@@ -48,8 +48,18 @@ std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint6
 }
 
 Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
-  auto culler = std::make_unique<FastCuller>(setup, cluster_of, options);
+  auto culler =
+      std::make_unique<FastCuller>(setup, cut_surface(setup.mesh, setup.reference, cluster_of), options);
   return {std::move(cluster_of), std::move(culler)};
+}
+
+// Takes over what an earlier preparation of the surface has decided.
+Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
+  RestoredCut restored = restored_cut(setup.mesh, setup.reference, setup.preparation);
+  Candidate candidate{restored.cut.covers[0].cluster_of, nullptr};
+  candidate.culler = std::make_unique<FastCuller>(setup, std::move(restored.cut), options);
+  candidate.culler->use_covers(std::min(restored.covers, options.covers));
+  return candidate;
 }
 
 // Keeps the candidate that makes the least work.
@@ -87,6 +97,7 @@ class Choice {
 
 Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
+  if (!setup.preparation.empty()) return restored(setup, options);
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
 

@@ -18,8 +18,9 @@ struct Candidate {
 // Prepares several cullers and returns the one that makes the least work in a few trial poses
 // (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, and look from one,
 // two or three covers. They are prepared side by side on the threads of the set-up. Without bones, on an open
-// surface, or where the options name the clusters, there is one candidate and no trial. Leaves the clock in
-// the stage `decomposition`.
+// surface, or where the options name the clusters, there is one candidate and no trial. With
+// Setup::preparation, nothing is tried or cut, and what that says is taken. Leaves the clock in the stage
+// `decomposition`.
 Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
 
 }  // namespace cscd::fast

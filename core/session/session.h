@@ -61,6 +61,8 @@ class Session {
   // memory is used again.
   void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
 
+  // Returns what preparing the strategy has found out (Setup::preparation); empty where it saves nothing.
+  std::vector<std::byte> saved_preparation() const { return main_.detector->saved_preparation(); }
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
   double preparation_ms() const { return preparation_ms_ + rest_ms_; }
   // The triangles that cross at rest. They are left out of answers unless the options keep them.

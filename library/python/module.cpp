@@ -151,15 +151,19 @@ the second. Answers are exact for the numbers as they are given. Wrong input rai
 One object is used by one thread at a time; different objects are independent.)")
       .def(py::init([](const SelfCollision::Faces& faces, const SelfCollision::Positions& reference,
                        int threads, bool check_positions, bool check_start,
-                       const SelfCollision::Exclusions& exclude, const Surfaces& obstacles) {
-             SelfCollision::Options options{threads, check_positions, check_start, exclude, {}};
+                       const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
+                       const std::string& preparation) {
+             SelfCollision::Options options{threads, check_positions, check_start, exclude, {}, {}};
+             const auto* const bytes = reinterpret_cast<const std::byte*>(preparation.data());
+             options.preparation.assign(bytes, bytes + preparation.size());
              for (const auto& [corners, positions] : obstacles)
                options.obstacles.emplace_back(corners, positions);
              return std::make_unique<SelfCollision>(faces, reference, std::move(options));
            }),
            py::arg("faces"), py::arg("reference"), py::kw_only(), py::arg("threads") = 1,
            py::arg("check_positions") = true, py::arg("check_start") = true,
-           py::arg("exclude") = SelfCollision::Exclusions(), py::arg("obstacles") = Surfaces(), kWithoutLock)
+           py::arg("exclude") = SelfCollision::Exclusions(), py::arg("obstacles") = Surfaces(),
+           py::arg("preparation") = py::bytes(), kWithoutLock)
       .def("place_obstacle", &SelfCollision::place_obstacle, py::arg("obstacle"), py::arg("positions"),
            kWithoutLock, "Places an obstacle, counted from 0, where it rests in the steps from then on.")
       .def("move_obstacle", &SelfCollision::move_obstacle, py::arg("obstacle"), py::arg("start"),
@@ -194,6 +198,15 @@ One object is used by one thread at a time; different objects are independent.)"
           "Returns all pairs that come within the radius: [n, 2] int of a vertex and a face, and [m, 4] int "
           "of "
           "the ends of two edges.")
+      .def(
+          "preparation",
+          [](const SelfCollision& self) {
+            const std::vector<std::byte> bytes = self.preparation();
+            return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          "Returns what preparing the mesh has found out, as bytes for SelfCollision(..., preparation=...) "
+          "of the "
+          "same mesh.")
       .def_property_readonly("vertex_count", &SelfCollision::vertex_count)
       .def_property_readonly("face_count", &SelfCollision::face_count)
       .def_property_readonly("closed", &SelfCollision::closed);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/base/digest.h"
 #include "scenes/clip/clip.h"
 
 namespace cscd::scenes {
@@ -15,7 +16,7 @@ class FrameDigest {
   std::string text() const;  // 16 hex digits
 
  private:
-  std::uint64_t state_ = 14695981039346656037ull;
+  std::uint64_t state_ = kDigestOfNothing;
 };
 
 // The 64-bit FNV-1a hash of bytes, as 16 hex digits.

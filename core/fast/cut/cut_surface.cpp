@@ -20,8 +20,8 @@ std::vector<std::int32_t> rounded_to_patches(const PatchTree& tree, std::vector<
   return cluster_of;
 }
 
-// Writes into the tree, for cover `number`, the cluster of each patch and the triangles of each patch that
-// lie inside that cluster.
+}  // namespace
+
 void enter_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree) {
   const std::vector<bool> is_inside = inside(mesh, cover.cluster_of);
   for (std::size_t p = 0; p < tree.patches.size(); ++p) {
@@ -32,8 +32,6 @@ void enter_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t numbe
   }
 }
 
-}  // namespace
-
 CutSurface cut_surface(const TriangleMesh& mesh, std::span<const Vec3> reference,
                        std::span<const std::int32_t> cluster_of, std::size_t least_cell) {
   CutSurface cut;
@@ -42,7 +40,9 @@ CutSurface cut_surface(const TriangleMesh& mesh, std::span<const Vec3> reference
   merge_thin_clusters(mesh, parts);
   covers[0] = make_cover(mesh, reference, std::move(parts));
   std::vector<std::int32_t> seams = nearest_seams(mesh, covers[0].cluster_of);
-  tree = make_patches(mesh, reference, {covers[0].cluster_of, seams}, least_cell);
+  tree =
+      make_tree(mesh, reference, cut_into_patches(mesh, reference, {covers[0].cluster_of, seams}, least_cell),
+                covers[0].cluster_of);
   enter_cover(mesh, covers[0], 0, tree);
   covers[1] = make_cover(mesh, reference, rounded_to_patches(tree, std::move(seams)));
   enter_cover(mesh, covers[1], 1, tree);

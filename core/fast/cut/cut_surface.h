@@ -34,4 +34,8 @@ inline constexpr std::size_t kLeastCell = 96;
 CutSurface cut_surface(const TriangleMesh& mesh, std::span<const Vec3> reference,
                        std::span<const std::int32_t> cluster_of, std::size_t least_cell = kLeastCell);
 
+// Writes into the tree, for cover `number`, the cluster of each patch and the triangles of each patch that
+// lie inside that cluster.
+void enter_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t number, PatchTree& tree);
+
 }  // namespace cscd::fast

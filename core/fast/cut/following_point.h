@@ -30,6 +30,7 @@ class FollowingPoint {
   // it.
   void stand_off(float height) { height_ = height; }
   bool stands_off() const { return height_ != 0; }
+  float height() const { return height_; }
   // Returns by how much the point stands off its affine combination, from where the vertices are, `corners`,
   // [vertices()]. Zero if the polygon has no area.
   Vec3 offset(std::span<const Vec3> corners) const;

@@ -69,26 +69,27 @@ struct Item {
 class TreeBuilder {
  public:
   TreeBuilder(const std::vector<Patch>& patches, const std::vector<Triangles>& triangles,
-              const std::vector<Vec3>& centre, PatchTree& tree)
-      : patches_(patches), triangles_(triangles), centre_(centre), tree_(tree) {}
+              const std::vector<Vec3>& centre, const std::vector<std::int32_t>& cell, PatchTree& tree)
+      : patches_(patches), triangles_(triangles), centre_(centre), cell_(cell), tree_(tree) {}
 
   // Builds the tree over the first clusters, below them over the cells of each, and below those over patches.
-  void build(std::size_t count, const std::vector<std::int32_t>& cluster,
-             const std::vector<std::int32_t>& cell) {
-    std::vector<std::size_t> all(count);
+  void build(const std::vector<std::int32_t>& cluster) {
+    std::vector<std::size_t> all(patches_.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     tree_.nodes.push_back({0});
     split(grouped(all, cluster), 0, [&](const Item& in_cluster, std::size_t cluster_node) {
-      split(grouped(in_cluster.patches, cell), cluster_node, [&](const Item& in_cell, std::size_t cell_node) {
-        std::vector<Item> single;
-        for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
-        split(single, cell_node, [&](const Item& patch, std::size_t leaf) {
-          tree_.nodes[leaf].child = ~static_cast<std::int32_t>(tree_.patches.size());
-          tree_.leaf.push_back(static_cast<std::int32_t>(leaf));
-          tree_.patches.push_back(patches_[patch.patches[0]]);
-          tree_.triangles.push_back(triangles_[patch.patches[0]]);
-        });
-      });
+      split(grouped(in_cluster.patches, cell_), cluster_node,
+            [&](const Item& in_cell, std::size_t cell_node) {
+              std::vector<Item> single;
+              for (const std::size_t p : in_cell.patches) single.push_back({{p}, centre_[p]});
+              split(single, cell_node, [&](const Item& patch, std::size_t leaf) {
+                tree_.nodes[leaf].child = ~static_cast<std::int32_t>(tree_.patches.size());
+                tree_.leaf.push_back(static_cast<std::int32_t>(leaf));
+                tree_.patches.push_back(patches_[patch.patches[0]]);
+                tree_.triangles.push_back(triangles_[patch.patches[0]]);
+                tree_.cell.push_back(cell_[patch.patches[0]]);
+              });
+            });
     });
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n)
       if (!tree_.nodes[n].is_leaf()) tree_.inner.push_back(static_cast<std::int32_t>(n));
@@ -131,6 +132,7 @@ class TreeBuilder {
   const std::vector<Patch>& patches_;
   const std::vector<Triangles>& triangles_;
   const std::vector<Vec3>& centre_;
+  const std::vector<std::int32_t>& cell_;
   PatchTree& tree_;
 };
 
@@ -161,32 +163,50 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
 
 }  // namespace
 
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       const CuttingClusters& clusters, std::size_t least_cell) {
+namespace {
+
+std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> reference) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
+  return centroid;
+}
 
-  std::vector<Patch> patches;
-  std::vector<Triangles> triangles;
-  std::vector<Vec3> centre;
-  std::vector<std::int32_t> cluster, cell_number;
+}  // namespace
+
+PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                           const CuttingClusters& clusters, std::size_t least_cell) {
+  const std::vector<Vec3> centroid = centroids(mesh, reference);
   PatchCutter cutter(mesh, centroid, kLanes16);
+  PatchList patches;
   std::int32_t number = 0;
   for (const std::vector<TriangleId>& cell : cells_of(mesh, clusters, least_cell)) {
-    for (const std::vector<TriangleId>& patch : cutter.cut(cell)) {
-      triangles.push_back(padded(patch));
-      patches.push_back(make_patch(mesh, triangles.back(), patch.size()));
-      Vec3 sum = Vec3::Zero();
-      for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
-      centre.push_back(sum);
-      cluster.push_back(clusters.first[+cell[0]]);
-      cell_number.push_back(number);
+    for (std::vector<TriangleId>& patch : cutter.cut(cell)) {
+      patches.triangles.push_back(std::move(patch));
+      patches.cell.push_back(number);
     }
     ++number;
   }
+  return patches;
+}
+
+PatchTree make_tree(const TriangleMesh& mesh, std::span<const Vec3> reference, const PatchList& list,
+                    std::span<const std::int32_t> cluster_of) {
+  const std::vector<Vec3> centroid = centroids(mesh, reference);
+  std::vector<Patch> patches;
+  std::vector<Triangles> triangles;
+  std::vector<Vec3> centre;
+  std::vector<std::int32_t> cluster;
+  for (const std::vector<TriangleId>& patch : list.triangles) {
+    triangles.push_back(padded(patch));
+    patches.push_back(make_patch(mesh, triangles.back(), patch.size()));
+    Vec3 sum = Vec3::Zero();
+    for (const TriangleId t : patch) sum += centroid[+t] / static_cast<double>(patch.size());
+    centre.push_back(sum);
+    cluster.push_back(cluster_of[+patch[0]]);
+  }
   PatchTree tree;
-  TreeBuilder(patches, triangles, centre, tree).build(patches.size(), cluster, cell_number);
+  TreeBuilder(patches, triangles, centre, list.cell, tree).build(cluster);
   find_adjacent(mesh, tree);
   tree.inside.resize(tree.patches.size());
   return tree;

@@ -82,6 +82,7 @@ struct PatchTree {
   // [patches]: the triangles of each patch; a patch with fewer than sixteen repeats its last one. They are
   // kept apart from the patches, because an interval asks for the triangles of few patches.
   std::vector<std::array<TriangleId, kLanes16>> triangles;
+  std::vector<std::int32_t> cell;  // [patches]: the number of its cell
   std::span<const TriangleId> triangles_of(std::size_t patch) const {
     return std::span(triangles[patch]).first(static_cast<std::size_t>(std::bit_width(patches[patch].lanes)));
   }
@@ -122,16 +123,26 @@ struct CuttingClusters {
   std::span<const std::int32_t> first, second;
 };
 
-// Cuts the surface into patches and builds the tree over them.
+// Patches as sets of triangles, each triangle in one of them, at most sixteen triangles with at most as many
+// vertices in a patch.
+struct PatchList {
+  std::vector<std::vector<TriangleId>> triangles;  // [patches]
+  std::vector<std::int32_t> cell;                  // [patches]: the number of its cell
+};
+
+// Cuts the surface into patches.
 //
 // The surface is first cut into cells, and each cell into patches. A *cell* is a set of triangles that the
 // certificates treat alike: the triangles of one first cluster and one second cluster that all lie inside the
 // second cluster, or all do not. A set of fewer than `least_cell` triangles is no cell of its own: all such
 // sets of a first cluster form one cell together. So no patch crosses a seam of the first clusters, and a
 // patch crosses a seam of the second clusters only where that seam would make too small a cell.
-//
-// The patches that are returned belong to no cluster, and `inside` is empty: cut_surface.h enters both.
-PatchTree make_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       const CuttingClusters& clusters, std::size_t least_cell);
+PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                           const CuttingClusters& clusters, std::size_t least_cell);
+
+// Builds the tree over patches, of which none crosses a seam of the first clusters, `cluster_of` [triangles].
+// The patches of the tree belong to no cluster, and `inside` is empty: cut_surface.h enters both.
+PatchTree make_tree(const TriangleMesh& mesh, std::span<const Vec3> reference, const PatchList& patches,
+                    std::span<const std::int32_t> cluster_of);
 
 }  // namespace cscd::fast
