@@ -61,8 +61,8 @@ TEST(BenchmarkAnswers, MayBeLines) {
   EXPECT_EQ(answers.intervals[1].collides, std::optional(false));
 }
 
-// Mutations: with the checks of times, of unknown keys, or of pairs that are there twice left out, the lines
-// about them are taken.
+// Untried mutations: with the checks of times, of unknown keys, or of pairs that are there twice left out,
+// the lines about them are taken.
 TEST(BenchmarkAnswers, AreRefusedWithPlaceAndRemedy) {
   const struct {
     const char *answer, *reason;

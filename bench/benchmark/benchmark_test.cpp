@@ -111,7 +111,7 @@ IntervalTruth by_referee(const TriangleMesh& mesh, const scenes::PosedMesh& pose
   return out;
 }
 
-// Mutation: with first_contact rows in place of all pairs, hundreds of contacts are missing here.
+// Untried mutation: with first_contact rows in place of all pairs, hundreds of contacts are missing here.
 TEST(Truth, IsWhatTheRefereeSaysOfEveryPair) {
   std::size_t contacts = 0, crossing = 0;
   const auto compare = [&](const Subject& subject) {
@@ -183,7 +183,8 @@ TEST_F(PublicBenchmark, KeepsToItsSchemas) {
   EXPECT_EQ(schema_violation(score, "score.schema.json"), "");
 }
 
-// Mutation: with the times of creation that HDF5 keeps by default, the mesh files differ after a second.
+// Untried mutation: with the times of creation that HDF5 keeps by default, the mesh files differ after a
+// second.
 TEST_F(PublicBenchmark, IsTheSameToTheByteWhenMadeAgain) {
   sleep(1);
   make(folder / "again");
@@ -197,7 +198,7 @@ TEST_F(PublicBenchmark, IsTheSameToTheByteWhenMadeAgain) {
   fs::remove_all(folder / "again");
 }
 
-// Mutation: without hold_to_sums() a mesh file with one other byte is judged by.
+// Untried mutation: without hold_to_sums() a mesh file with one other byte is judged by.
 TEST_F(PublicBenchmark, IsRefusedWhereItIsDamaged) {
   const auto damage = [&](const char* name, const std::function<std::string(std::string)>& change,
                           const std::string& reason) {
@@ -227,7 +228,8 @@ TEST_F(PublicBenchmark, IsRefusedWhereItIsDamaged) {
   expect_refused([&] { read_benchmark(copy); }, "has no manifest.json");
 }
 
-// Mutations: the answers lose a contact, invent one, and move a time; each is counted, and nothing else.
+// Untried mutations: the answers lose a contact, invent one, and move a time; each is counted, and nothing
+// else.
 TEST_F(PublicBenchmark, JudgesWholeAnswers) {
   const Benchmark made = read_benchmark(copy);
   const Answers right = perfect(made);
