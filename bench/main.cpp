@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   cscd::bench::add_nearness(app);
   cscd::bench::add_verify(app);
   cscd::bench::add_hardcases(app);
+  cscd::bench::add_benchmark(app);
   cscd::bench::add_accuracy(app);
   cscd::bench::add_scale(app);
   cscd::bench::add_run(app);

@@ -34,6 +34,7 @@ void add_verify(CLI::App& app);
 void add_clusters(CLI::App& app);
 void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
+void add_benchmark(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_scale(CLI::App& app);
 void add_scene(CLI::App& app);

@@ -4,106 +4,16 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/hdf5_dataset.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::scenes {
 namespace {
 
+constexpr std::string_view kFormat = "point cache format";
 constexpr std::size_t kMost = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
 constexpr std::size_t kMostBones = std::size_t{1} << 20;
 constexpr std::size_t kMostFrames = std::size_t{1} << 40;
-
-// A dataset whose shape and type have been checked.
-struct Dataset {
-  Hdf5Handle id;
-  std::string where;  // "file.h5, /positions"
-  std::vector<hsize_t> shape;
-};
-
-std::string shown(const std::vector<hsize_t>& shape) {
-  std::string text = "[";
-  for (const hsize_t extent : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(extent);
-  return text + "]";
-}
-
-bool has(hid_t file, const std::string& name) {
-  for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1))
-    if (H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
-  return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
-}
-
-// True if the data of the dataset lie in another file. Such data are refused: they would let a cache from a
-// stranger read any file that its user may read.
-bool lies_elsewhere(hid_t file, const std::string& name, hid_t dataset) {
-  for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
-    H5L_info_t link;
-    if (H5Lget_info(file, name.substr(0, end).c_str(), &link, H5P_DEFAULT) < 0 ||
-        link.type == H5L_TYPE_EXTERNAL)
-      return true;
-    if (end == std::string::npos) break;
-  }
-  const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
-  return H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL;
-}
-
-// Opens a dataset and checks its type, its rank and its last extent.
-Dataset open_dataset(hid_t file, const std::string& path, const std::string& name, H5T_class_t type_class,
-                     std::size_t rank) {
-  Dataset dataset;
-  dataset.where = path + ", " + name;
-  if (!has(file, name))
-    throw InputError(dataset.where + ": dataset is missing; write it as the point cache format says");
-  dataset.id = Hdf5Handle(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!dataset.id.valid())
-    throw InputError(dataset.where + ": is not a readable dataset; the file may be damaged, write it again");
-  if (lies_elsewhere(file, name, dataset.id.get()))
-    throw InputError(dataset.where + ": its data lie in another file; store them in this one");
-
-  const Hdf5Handle type(H5Dget_type(dataset.id.get()), H5Tclose);
-  const bool fits = H5Tget_class(type.get()) == type_class && H5Tget_size(type.get()) <= 8;
-  if (!fits)
-    throw InputError(dataset.where + ": has elements of another type; write " +
-                     (type_class == H5T_FLOAT ? "float64" : "int32"));
-  const Hdf5Handle space(H5Dget_space(dataset.id.get()), H5Sclose);
-  const int found = H5Sget_simple_extent_ndims(space.get());
-  if (found != static_cast<int>(rank) || H5Sget_simple_extent_type(space.get()) != H5S_SIMPLE)
-    throw InputError(dataset.where + ": has " + std::to_string(found) + " dimensions; it needs " +
-                     std::to_string(rank));
-  dataset.shape.resize(rank);
-  H5Sget_simple_extent_dims(space.get(), dataset.shape.data(), nullptr);
-  if (rank > 1 && dataset.shape.back() != 3)
-    throw InputError(dataset.where + ": has shape " + shown(dataset.shape) + "; its last extent must be 3");
-  return dataset;
-}
-
-void require_shape(const Dataset& dataset, const std::vector<hsize_t>& wanted, const std::string& why) {
-  if (dataset.shape != wanted)
-    throw InputError(dataset.where + ": has shape " + shown(dataset.shape) + ", but " + why + " asks for " +
-                     shown(wanted));
-}
-
-// Throws InputError if the file stores fewer elements of the dataset than `elements`. This guards
-// allocations against declared sizes without data behind them. A dataset with a filter is not checked,
-// because a filter may pack data.
-void require_stored(const Dataset& dataset, hsize_t elements) {
-  const Hdf5Handle creation(H5Dget_create_plist(dataset.id.get()), H5Pclose);
-  const Hdf5Handle type(H5Dget_type(dataset.id.get()), H5Tclose);
-  if (H5Pget_nfilters(creation.get()) > 0) return;
-  if (H5Dget_storage_size(dataset.id.get()) < elements * H5Tget_size(type.get()))
-    throw InputError(dataset.where + ": declares shape " + shown(dataset.shape) +
-                     " but stores too little for it; the file may be cut short, write it again");
-}
-
-std::vector<std::int64_t> read_integers(const Dataset& dataset) {
-  std::size_t count = 1;
-  for (const hsize_t extent : dataset.shape) count *= extent;
-  std::vector<std::int64_t> values(count);
-  if (count > 0 &&
-      H5Dread(dataset.id.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw InputError(dataset.where + ": cannot be read; the file may be damaged, write it again");
-  return values;
-}
 
 void read_frame(const Dataset& dataset, std::size_t frame, Vec3* out) {
   const Hdf5Handle all(H5Dget_space(dataset.id.get()), H5Sclose);
@@ -154,12 +64,12 @@ struct PointCacheReader::File {
 
   explicit File(const std::filesystem::path& name) : path(name.string()) {
     open();
-    shown_frames.positions = open_dataset(file.get(), path, "/positions", H5T_FLOAT, 3);
+    shown_frames.positions = open_dataset(file.get(), path, kFormat, "/positions", H5T_FLOAT, 3);
     read_sizes();
     read_triangles();
-    if (has(file.get(), "/bones")) open_bones();
-    if (has(file.get(), "/predicted")) open_predictions();
-    if (has(file.get(), "/rest")) read_rest();
+    if (has_object(file.get(), "/bones")) open_bones();
+    if (has_object(file.get(), "/predicted")) open_predictions();
+    if (has_object(file.get(), "/rest")) read_rest();
     if (!header.bone_parent.empty()) check_rig();
   }
 
@@ -190,7 +100,7 @@ struct PointCacheReader::File {
   }
 
   void read_triangles() {
-    const Dataset triangles = open_dataset(file.get(), path, "/triangles", H5T_INTEGER, 2);
+    const Dataset triangles = open_dataset(file.get(), path, kFormat, "/triangles", H5T_INTEGER, 2);
     if (triangles.shape[0] == 0 || triangles.shape[0] > kMost)
       throw InputError(triangles.where + ": has shape " + shown(triangles.shape) +
                        "; from 1 to 2^28 triangles are supported");
@@ -207,13 +117,13 @@ struct PointCacheReader::File {
   }
 
   Dataset open_frames(const std::string& name, hsize_t count, hsize_t points, const std::string& why) {
-    Dataset dataset = open_dataset(file.get(), path, name, H5T_FLOAT, 3);
+    Dataset dataset = open_dataset(file.get(), path, kFormat, name, H5T_FLOAT, 3);
     require_shape(dataset, {count, points, 3}, why);
     return dataset;
   }
 
   void open_bones() {
-    const Dataset parent = open_dataset(file.get(), path, "/bones/parent", H5T_INTEGER, 1);
+    const Dataset parent = open_dataset(file.get(), path, kFormat, "/bones/parent", H5T_INTEGER, 1);
     if (parent.shape[0] == 0 || parent.shape[0] > kMostBones)
       throw InputError(parent.where + ": has " + std::to_string(parent.shape[0]) +
                        " bones; from 1 to 2^20 are supported; leave /bones out for none");
@@ -242,7 +152,7 @@ struct PointCacheReader::File {
   }
 
   void read_rest() {
-    const Dataset rest = open_dataset(file.get(), path, "/rest", H5T_FLOAT, 2);
+    const Dataset rest = open_dataset(file.get(), path, kFormat, "/rest", H5T_FLOAT, 2);
     require_shape(rest, {header.vertex_count, 3}, "/positions");
     require_stored(rest, header.vertex_count * 3);
     header.rest.resize(header.vertex_count);

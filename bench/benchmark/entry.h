@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "bench/benchmark/benchmark.h"
+#include "bench/benchmark/benchmark_answers.h"
+#include "bench/rows/strategy_row.h"
+
+namespace cscd::bench {
+
+// The answers of a strategy to a benchmark, and why it left intervals out: reason to number of intervals.
+struct Entry {
+  Answers answers;
+  std::map<std::string, std::size_t> left_out;
+};
+
+// Asks a strategy about all intervals of a benchmark. What the strategy promises becomes the claim: nothing
+// where it promises the first contact of an embedded start and the start is not embedded. An interval that
+// the strategy cannot take is left out. Each interval is asked `repetitions` times, and `milliseconds` is the
+// median of what these took, without preparation. `progress` gets the number of intervals done.
+Entry answer_benchmark(const Benchmark& benchmark, const StrategyRow& row, const ElementaryTest& elementary,
+                       int repetitions, const std::function<void(std::size_t)>& progress);
+
+}  // namespace cscd::bench

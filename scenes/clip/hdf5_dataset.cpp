@@ -1,0 +1,91 @@
+#include "scenes/clip/hdf5_dataset.h"
+
+#include "core/base/error.h"
+
+namespace cscd::scenes {
+namespace {
+
+// True if the data of the dataset lie in another file. Such data are refused: they would let a cache from a
+// stranger read any file that its user may read.
+bool lies_elsewhere(hid_t file, const std::string& name, hid_t dataset) {
+  for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
+    H5L_info_t link;
+    if (H5Lget_info(file, name.substr(0, end).c_str(), &link, H5P_DEFAULT) < 0 ||
+        link.type == H5L_TYPE_EXTERNAL)
+      return true;
+    if (end == std::string::npos) break;
+  }
+  const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  return H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL;
+}
+
+}  // namespace
+
+std::string shown(const std::vector<hsize_t>& shape) {
+  std::string text = "[";
+  for (const hsize_t extent : shape) text += (text.size() > 1 ? ", " : "") + std::to_string(extent);
+  return text + "]";
+}
+
+bool has_object(hid_t file, const std::string& name) {
+  for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1))
+    if (H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+Dataset open_dataset(hid_t file, const std::string& path, std::string_view format, const std::string& name,
+                     H5T_class_t type_class, std::size_t rank) {
+  Dataset dataset;
+  dataset.where = path + ", " + name;
+  if (!has_object(file, name))
+    throw InputError(dataset.where + ": dataset is missing; write it as the " + std::string(format) +
+                     " says");
+  dataset.id = Hdf5Handle(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.id.valid())
+    throw InputError(dataset.where + ": is not a readable dataset; the file may be damaged, write it again");
+  if (lies_elsewhere(file, name, dataset.id.get()))
+    throw InputError(dataset.where + ": its data lie in another file; store them in this one");
+
+  const Hdf5Handle type(H5Dget_type(dataset.id.get()), H5Tclose);
+  const bool fits = H5Tget_class(type.get()) == type_class && H5Tget_size(type.get()) <= 8;
+  if (!fits)
+    throw InputError(dataset.where + ": has elements of another type; write " +
+                     (type_class == H5T_FLOAT ? "float64" : "int32"));
+  const Hdf5Handle space(H5Dget_space(dataset.id.get()), H5Sclose);
+  const int found = H5Sget_simple_extent_ndims(space.get());
+  if (found != static_cast<int>(rank) || H5Sget_simple_extent_type(space.get()) != H5S_SIMPLE)
+    throw InputError(dataset.where + ": has " + std::to_string(found) + " dimensions; it needs " +
+                     std::to_string(rank));
+  dataset.shape.resize(rank);
+  H5Sget_simple_extent_dims(space.get(), dataset.shape.data(), nullptr);
+  if (rank > 1 && dataset.shape.back() != 3)
+    throw InputError(dataset.where + ": has shape " + shown(dataset.shape) + "; its last extent must be 3");
+  return dataset;
+}
+
+void require_shape(const Dataset& dataset, const std::vector<hsize_t>& wanted, const std::string& why) {
+  if (dataset.shape != wanted)
+    throw InputError(dataset.where + ": has shape " + shown(dataset.shape) + ", but " + why + " asks for " +
+                     shown(wanted));
+}
+
+void require_stored(const Dataset& dataset, hsize_t elements) {
+  const Hdf5Handle creation(H5Dget_create_plist(dataset.id.get()), H5Pclose);
+  const Hdf5Handle type(H5Dget_type(dataset.id.get()), H5Tclose);
+  if (H5Pget_nfilters(creation.get()) > 0) return;
+  if (H5Dget_storage_size(dataset.id.get()) < elements * H5Tget_size(type.get()))
+    throw InputError(dataset.where + ": declares shape " + shown(dataset.shape) +
+                     " but stores too little for it; the file may be cut short, write it again");
+}
+
+std::vector<std::int64_t> read_integers(const Dataset& dataset) {
+  std::size_t count = 1;
+  for (const hsize_t extent : dataset.shape) count *= extent;
+  std::vector<std::int64_t> values(count);
+  if (count > 0 &&
+      H5Dread(dataset.id.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw InputError(dataset.where + ": cannot be read; the file may be damaged, write it again");
+  return values;
+}
+
+}  // namespace cscd::scenes
