@@ -19,7 +19,7 @@ namespace {
 // A reader of untrusted files may answer, or refuse in one line, within its limits, and nothing else.
 class Hostile : public testing::Test {
  protected:
-  static constexpr double kImportSeconds = 5;
+  static constexpr double kImportSeconds = 20;
   static constexpr std::size_t kImportMiB = 1024;
 
   // Queries, inspects and exports by turns.
