@@ -1,6 +1,7 @@
 #include "bench/command_line/usage.h"
 
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "core/base/closest_name.h"
@@ -48,6 +49,20 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
   return "one argument too many: " + words.front();
 }
 
+// Of a text in UTF-8: whether it holds a control character, or one that embeds, overrides or isolates a
+// direction of writing.
+bool controls_a_terminal(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (byte(i) < 0x20 || byte(i) == 0x7f) return true;
+    if (byte(i) == 0xc2 && byte(i + 1) < 0xa0) return true;  // U+0080 to U+009F
+    if (byte(i) != 0xe2) continue;
+    if (byte(i + 1) == 0x80 && byte(i + 2) >= 0xaa && byte(i + 2) <= 0xae) return true;  // U+202A to U+202E
+    if (byte(i + 1) == 0x81 && byte(i + 2) >= 0xa6 && byte(i + 2) <= 0xa9) return true;  // U+2066 to U+2069
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
@@ -64,11 +79,16 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
 
 void require_text(int count, const char* const* words) {
   for (int i = 1; i < count; ++i) {
+    const std::string argument = "argument " + std::to_string(i);
     try {
       nlohmann::json(words[i]).dump();
     } catch (const nlohmann::json::exception&) {
-      throw InputError("argument " + std::to_string(i) + " is not UTF-8; give the file another name");
+      throw InputError(argument + " is not UTF-8; give the file another name");
     }
+    if (controls_a_terminal(words[i]))
+      throw InputError(argument +
+                       " holds a character that controls a terminal or the direction of writing; "
+                       "give the file another name");
   }
 }
 

@@ -4,9 +4,13 @@
 #include <cstdio>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sys/stat.h>
 
+#include "bench/input/input.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_generated.h"
 
 namespace cscd::bench {
@@ -15,28 +19,36 @@ namespace {
 // A reader of untrusted files may answer, or refuse in one line, within its limits, and nothing else.
 class Hostile : public testing::Test {
  protected:
-  static constexpr double kImportSeconds = 5;
+  static constexpr double kImportSeconds = 20;
   static constexpr std::size_t kImportMiB = 1024;
 
+  // Queries, inspects and exports by turns.
   void attack(const std::string& file) {
-    const bool ask = ++runs % 2 == 0;
-    std::vector<std::string> arguments{ask ? "query" : "inspect", file};
-    if (ask)
-      arguments.insert(arguments.end(), {"--frames", "0:1", "--interval-seconds", "10", "--json",
-                                         scratch / "out.json", "--force"});
-    arguments.insert(arguments.end(), {"--import-seconds", std::to_string(kImportSeconds), "--import-memory",
-                                       std::to_string(kImportMiB)});
+    constexpr std::array<const char*, 3> kCommands = {"query", "inspect", "export"};
+    const std::string command = kCommands[runs++ % kCommands.size()], answer = scratch / "out.json",
+                      frames = scratch / "out.h5";
+    std::vector<std::string> arguments{command, file};
+    if (command == "query")
+      arguments.insert(arguments.end(), {"--frames", "0:1", "--interval-seconds", "10"});
+    if (command == "export") arguments.push_back(frames);
+    if (command != "export") arguments.insert(arguments.end(), {"--json", answer});
+    arguments.insert(arguments.end(), {"--force", "--import-seconds", std::to_string(kImportSeconds),
+                                       "--import-memory", std::to_string(kImportMiB)});
     Limits limits;
     limits.memory_bytes = std::size_t{2 * kImportMiB} << 20;
-    limits.seconds = 30;
+    limits.seconds =
+        300;  // many times what the program's own limits come to, because the machine may be busy
     const Outcome outcome = cscd(arguments, limits);
     slowest = std::max(slowest, outcome.seconds);
     largest = std::max(largest, outcome.peak_bytes);
-    ASSERT_EQ(outcome.end, Outcome::End::exited) << to_text(outcome) << kept(file);
-    ASSERT_TRUE(outcome.code == 0 || outcome.code == 2) << to_text(outcome) << kept(file);
-    accepted += outcome.code == 0;
+    ASSERT_EQ(outcome.end, Outcome::End::exited) << command << to_text(outcome) << kept(file);
+    ASSERT_TRUE(outcome.code == 0 || outcome.code == 2) << command << to_text(outcome) << kept(file);
     if (outcome.code == 0) {
+      ++accepted;
       EXPECT_EQ(outcome.errors, "") << file;
+      if (command == "query") expect_sound_answer(read(answer));
+      if (command == "export") expect_finite_frames(frames);
+      if (HasFailure()) std::printf("%s%s\n", command.c_str(), kept(file).c_str());
     } else {
       EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << file << outcome.errors;
       EXPECT_TRUE(outcome.errors.starts_with("cscd: ")) << file << outcome.errors;
@@ -48,11 +60,49 @@ class Hostile : public testing::Test {
 #endif
   }
 
-  void report(const char* what) const {
+  // JSON has no word for a number that is not finite: it becomes null, which the schema allows in few places.
+  void expect_sound_answer(const std::string& text) {
+    const auto answer = nlohmann::ordered_json::parse(text, nullptr, false);
+    ASSERT_FALSE(answer.is_discarded()) << text;
+    EXPECT_EQ(schema_violation(answer, "query.schema.json"), "");
+    for (const auto& interval : answer.at("intervals")) {
+      EXPECT_TRUE(interval.at("seconds").is_number()) << "a model file has a rate";
+      ++verdicts[interval.at("verdict")];
+    }
+  }
+
+  void expect_finite_frames(const std::string& file) {
+    const Input input = open_input(file);
+    const auto finite = [](const Vec3& x) { return x.allFinite(); };
+    EXPECT_TRUE(std::ranges::all_of(input.rest(), finite));
+    for (std::size_t i = 0; i < input.clip->frame_count(); ++i)
+      ASSERT_TRUE(std::ranges::all_of(input.clip->load_frame(i).positions, finite)) << "frame " << i;
+    exported_frames += input.clip->frame_count();
+  }
+
+  // The figures are also properties of the test, which --gtest_output=json:FILE writes.
+  void report(const char* what, std::size_t samples) {
     std::printf(
-        "%s: %zu runs, %zu accepted, %zu refused, %zu of them lost importers, %zu late; slowest %.1f s, "
-        "largest %zu MiB\n",
-        what, runs, accepted, runs - accepted, crashed, timed_out, slowest, largest >> 20);
+        "%s: %zu samples, %zu runs, %zu accepted, %zu refused, %zu of them lost importers, %zu late; slowest "
+        "%.1f s, largest %zu MiB; %zu frames exported, all finite;",
+        what, samples, runs, accepted, runs - accepted, crashed, timed_out, slowest, largest >> 20,
+        exported_frames);
+    for (const auto& [verdict, count] : verdicts) {
+      std::printf(" %s %zu", verdict.c_str(), count);
+      RecordProperty("verdict_" + verdict, static_cast<int>(count));
+    }
+    std::printf("\n");
+    const std::pair<const char*, std::size_t> figures[] = {
+        {"samples", samples},
+        {"runs", runs},
+        {"accepted", accepted},
+        {"refused", runs - accepted},
+        {"lost_importers", crashed},
+        {"late", timed_out},
+        {"slowest_ms", static_cast<std::size_t>(slowest * 1000)},
+        {"largest_mib", largest >> 20},
+        {"exported_frames", exported_frames}};
+    for (const auto& [name, value] : figures) RecordProperty(name, static_cast<int>(value));
   }
 
   // A file that did it outlives the test.
@@ -66,8 +116,9 @@ class Hostile : public testing::Test {
   }
 
   const Scratch scratch;
-  std::size_t runs = 0, accepted = 0, crashed = 0, timed_out = 0, largest = 0;
+  std::size_t runs = 0, accepted = 0, crashed = 0, timed_out = 0, largest = 0, exported_frames = 0;
   double slowest = 0;
+  std::map<std::string, std::size_t> verdicts;  // of the intervals that were queried
 };
 
 std::string flipped(std::string bytes, std::mt19937_64& random) {
@@ -120,30 +171,42 @@ std::string with_other_numbers(const std::string& file, std::mt19937_64& random)
          file.substr(16, 4) + text + rest;
 }
 
-// Generated characters, the shared models, and those of Debian's assimp-testmodels.
-std::vector<fs::path> samples(const Scratch& scratch) {
+// The lower-case extension of a file's name, with its dot.
+std::string extension(const fs::path& file) {
+  std::string kind = file.extension();
+  for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return kind;
+}
+
+// Generated characters, the shared models, and those of Debian's assimp-testmodels, with this extension.
+std::vector<fs::path> samples(const std::string& kind, const Scratch& scratch) {
   std::vector<fs::path> files;
   std::error_code ignored;
   for (const fs::path& folder : {models_folder(), fs::path("/usr/share/assimp/models")})
     for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-      std::string kind = entry.path().extension();
-      for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      const bool sample = kind == ".glb" || kind == ".gltf" || kind == ".fbx" || kind == ".x" ||
-                          kind == ".dae" || kind == ".bvh";
-      const std::uintmax_t bytes = sample && entry.is_regular_file(ignored) ? entry.file_size(ignored) : 0;
+      const bool sample = extension(entry.path()) == kind && entry.is_regular_file(ignored);
+      const std::uintmax_t bytes = sample ? entry.file_size(ignored) : 0;
       if (bytes > 0 && bytes < 2'000'000) files.push_back(entry.path());
     }
   std::sort(files.begin(), files.end());
   for (const GeneratedCharacter& generated : kGenerated)
-    files.insert(files.begin(), character_file(generated.name, scratch));
+    if (extension(generated.name) == kind)
+      files.insert(files.begin(), character_file(generated.name, scratch));
   return files;
 }
 
-// $CSCD_HOSTILE damaged copies of each sample; a few without it.
-TEST_F(Hostile, DamagedSamplesNeverCrashHangOrFillTheMemory) {
+class HostileKinds : public Hostile, public testing::WithParamInterface<const char*> {};
+
+// Makes $CSCD_HOSTILE damaged copies of each sample, or a few without it. $CSCD_HOSTILE_SAMPLE names the one
+// sample to damage, for instance to repeat a failure.
+TEST_P(HostileKinds, DamagedSamplesNeverCrashHangOrFillTheMemory) {
   const char* asked = std::getenv("CSCD_HOSTILE");
   const std::size_t copies = asked ? static_cast<std::size_t>(std::atoll(asked)) : 4;
-  for (const fs::path& file : samples(scratch)) {
+  std::vector<fs::path> files = samples(std::string(".") + GetParam(), scratch);
+  if (const char* only = std::getenv("CSCD_HOSTILE_SAMPLE"))
+    std::erase_if(files, [&](const fs::path& file) { return file.filename() != only; });
+  if (files.empty()) GTEST_SKIP() << "no samples of this kind";
+  for (const fs::path& file : files) {
     const std::string name = file.filename();  // alone decides the damage, whatever other samples there are
     std::seed_seq seed(name.begin(), name.end());
     std::mt19937_64 random(seed);
@@ -160,8 +223,11 @@ TEST_F(Hostile, DamagedSamplesNeverCrashHangOrFillTheMemory) {
       attack(damaged);
     }
   }
-  report("damaged samples");
+  report("damaged samples", files.size());
 }
+
+INSTANTIATE_TEST_SUITE_P(Damaged, HostileKinds, testing::Values("glb", "gltf", "fbx", "dae", "x", "bvh"),
+                         [](const auto& kind) { return std::string(kind.param); });
 
 TEST_F(Hostile, WhatIsNoModelAtAllIsRefused) {
   const std::string glb = std::string("glTF\x02\0\0\0", 8);
@@ -216,7 +282,7 @@ TEST_F(Hostile, WhatIsNoModelAtAllIsRefused) {
   fs::resize_file(scratch.path / "large.fbx", std::uintmax_t{1} << 40);
   attack(scratch / "large.fbx");
   EXPECT_EQ(accepted, 0u);
-  report("no models");
+  report("no models", files.size());
 }
 
 }  // namespace

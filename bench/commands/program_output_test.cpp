@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 
+#include "bench/testing/test_generated.h"
 #include "bench/testing/test_shell.h"
 
 // These tests follow the program's outputs to files, pipes and devices, through errors and signals.
@@ -53,6 +54,51 @@ TEST_F(ProgramOutput, IsNoSuccessWhereStandardOutputIsClosedOrFull) {
   EXPECT_TRUE(json::accept(text("out.json"))) << text("out.json");
   EXPECT_EQ(run("cscd query small --json all.json <&- >&- 2>&-").status, 2);
   EXPECT_TRUE(json::accept(text("all.json"))) << text("all.json");
+}
+
+// What commands that read or write numbers as text say and write, without what a clock measured. Frames of
+// the figure lie beside the folder out.
+constexpr char kManyNumbers[] = R"sh(rm -rf out; mkdir -p out/hard; cd out
+answer() { cscd query "$@" >text 2>&1; grep -v '  took ' text; rm text; }
+answer small
+answer ../figure.glb --fps 12.5 --frames 0:3 --interval-seconds 99.5
+cscd inspect ../figure.glb --json inspect.json
+for kind in obj ply usda pvd; do cscd export ../figure.glb figure.$kind --fps 12.5 >/dev/null; done
+answer figure.0000.obj --frames 0:1
+cscd plan --scene small --strategy base,drvbc --out plan.json
+cscd run --plan plan.json --into cells; cscd merge --plan plan.json cells --out merged.json
+cscd tables merged.json; rm -r cells
+cscd hardcases --out hard --queries 5
+cscd elementary hard/needles-vf.csv --kind vf --elementary exact | sed 's/ *[0-9]*$//'
+find . -type f | sort | while read -r name; do echo "== $name"; cat "$name"; done)sh";
+
+TEST_F(ProgramOutput, IsTheSameWhereADecimalHasAComma) {
+  const std::string comma = "export LOCPATH=$PWD/locales LC_ALL=de_DE.UTF-8\n";
+  if (run("mkdir locales && localedef -i de_DE -f UTF-8 locales/de_DE.UTF-8 || exit\n" + comma +
+          "[ \"$(bash -c 'printf %.1f 1,5')\" = 1,5 ]")
+          .status != 0)
+    GTEST_SKIP() << "has no locale with a decimal comma";
+  put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  const Ran with_point = run(std::string("export LC_ALL=C\n") + kManyNumbers),
+            with_comma = run(comma + kManyNumbers);
+  EXPECT_EQ(with_point.errors, "");
+  for (const char* name :
+       {"== ./figure.0000.obj", "== ./figure.usda", "== ./figure.0000.vtp", "== ./merged.json",
+        "== ./inspect.json", "== ./hard/needles-vf.csv", " frames, taken as 30 a second"})
+    EXPECT_NE(with_point.out.find(name), std::string::npos) << name;
+  EXPECT_TRUE(with_point.out == with_comma.out) << "a decimal comma changes what is written";
+}
+
+TEST_F(ProgramOutput, NeedsNoTerminalAndNoEnvironment) {
+  const std::string query = "cscd query small >here.txt 2>&1; grep -v '  took ' here.txt";
+  const Ran
+      usual = run(query),
+      alone = run(
+          "program=$(command -v cscd)\n"
+          "env -i CSCD_SCENES=\"$CSCD_SCENES\" CSCD_CACHE=\"$CSCD_CACHE\" setsid -w \"$program\" query small "
+          "<&- >there.txt 2>&1; grep -v '  took ' there.txt");
+  EXPECT_NE(usual.out.find("does not touch itself"), std::string::npos) << usual.out;
+  EXPECT_EQ(usual.out, alone.out);
 }
 
 TEST_F(ProgramOutput, WritesToDevicesAndPipesAndLeavesThem) {

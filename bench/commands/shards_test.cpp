@@ -1,4 +1,7 @@
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "bench/measure/replay.h"
 #include "bench/output/json_text.h"
@@ -43,6 +46,11 @@ class Shards : public Program {
     ASSERT_EQ(ran.status, 0) << command << " changes nothing";
   }
 };
+
+std::multiset<std::string> words_of(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
 
 TEST_F(Shards, MergeToWhatOneRunCounts) {
   plan_counts();
@@ -169,6 +177,45 @@ unshare -m bash -c 'mount -t tmpfs -o size=1m none disk && mount -o remount,ro d
   expect_refused(ran, "Read-only file system");
 }
 
+// Starts a worker and stops one of its cells in the middle, whichever that is.
+constexpr char kStopACell[] = R"sh(worker=$!
+until cell=$(pgrep -P $worker) && kill -STOP $cell 2>/dev/null; do
+  kill -0 $worker || exit 78
+done
+)sh";
+
+TEST_F(Shards, GoOnWhereACellTakesTooLong) {
+  plan_counts();
+  const Ran ran = run("cscd run --plan plan.json --into cells --cell-seconds 5 & " + std::string(kStopACell) +
+                      "wait $worker");
+  ASSERT_NE(ran.status, 78) << "no cell was at work";
+  EXPECT_EQ(ran.status, 2) << ran.out << ran.errors;
+  const std::string became = statuses("cells");
+  EXPECT_EQ(std::multiset<std::string>({"time_limit", "done", "done", "done", "done"}), words_of(became))
+      << became;
+  EXPECT_NE(ran.out.find("; raise --cell-seconds, or plan smaller cells\n"), std::string::npos) << ran.out;
+  EXPECT_EQ(run("cscd run --plan plan.json --into cells").status, 0);
+  EXPECT_EQ(statuses("cells"), "done done done done done");
+}
+
+TEST_F(Shards, TellThatTheFolderHasBecomeReadOnly) {
+  plan_counts();
+  const Ran ran =
+      run("mkdir disk; unshare -m true 2>/dev/null || exit 77\nunshare -m bash -c '"
+          "mount -t tmpfs -o size=1m none disk || exit 77\n"
+          "cscd run --plan plan.json --into disk >out & " +
+          std::string(kStopACell) +
+          "until mount -o remount,ro disk 2>/dev/null; do sleep 0.05; done\n"
+          "kill -CONT $cell; wait $worker; echo $? >status; mount -o remount,rw disk || exit\n"
+          "cscd run --plan plan.json --into disk && cp -r disk kept'");
+  if (ran.status == 77) GTEST_SKIP() << "may not mount";
+  ASSERT_NE(ran.status, 78) << "no cell was at work";
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(text("status"), "2\n");
+  EXPECT_NE(text("out").find(": read_only: cscd: output "), std::string::npos) << text("out");
+  EXPECT_EQ(statuses("kept"), "done done done done done");
+}
+
 TEST_F(Shards, LeaveAValidStateAtSignals) {
   plan_counts();
   ASSERT_EQ(
@@ -276,30 +323,56 @@ TEST_F(Shards, AreSubmittedToWorkersHere) {
   EXPECT_EQ(run("cscd submit --plan plan.json --into late --workers 2 --cell-seconds 0.001").status, 2);
 }
 
-// Slurm itself is not at hand. Its place is taken by a program that runs the tasks of the script that it
-// reads.
+// scripts/check-slurm runs these scripts in Slurm. Its place is taken here by a program that runs the tasks
+// of the script that it reads.
 TEST_F(Shards, AreSubmittedToSlurm) {
   plan_counts();
-  expect_refused(run("cscd submit --plan plan.json --into cells --workers 2 --executor slurm"),
-                 "sbatch: did not take");
-  const Ran sent = run(R"sh(mkdir bin; cat >bin/sbatch <<'TEXT'
-#!/bin/bash
-cat >job
+  const std::string submit = "cscd submit --plan plan.json --into cells --workers 2 --executor slurm";
+  expect_refused(run("PATH=${PATH%%:*} cscd submit --plan plan.json --into cells --executor slurm"),
+                 "sbatch: did not take the job (there is no such program); ");
+  const auto put_sbatch = [&](const std::string& text) {
+    ASSERT_EQ(
+        run("mkdir -p bin; cat >bin/sbatch <<'TEXT'\n#!/bin/bash\n" + text + "\nTEXT\nchmod +x bin/sbatch")
+            .status,
+        0);
+  };
+  put_sbatch("echo sbatch: a hint >&2; echo sbatch: error: no such partition >&2; exit 1");
+  expect_refused(run("PATH=$PWD/bin:$PATH " + submit),
+                 "sbatch: did not take the job (sbatch: error: no such partition); ");
+  put_sbatch(R"sh(echo sbatch: a hint >&2; cat >job
 tasks=$(sed -n 's/^#SBATCH --array=1-//p' job)
-for ((task = 1; task <= tasks; task++)); do SLURM_ARRAY_TASK_ID=$task bash job || exit 1; done
-TEXT
-chmod +x bin/sbatch
-PATH=$PWD/bin:$PATH cscd submit --plan plan.json --into cells --workers 2 --executor slurm --cell-seconds 600)sh");
+for ((task = 1; task <= tasks; task++)); do SLURM_ARRAY_TASK_ID=$task bash job || exit 1; done)sh");
+  const Ran sent = run("PATH=$PWD/bin:$PATH " + submit + " --cell-seconds 600");
   EXPECT_EQ(sent.status, 0) << sent.errors;
+  EXPECT_EQ(sent.errors, "sbatch: a hint\n");
   EXPECT_EQ(statuses("cells", "1-of-2"), "done done done");
   EXPECT_EQ(merged("merged.json").status, 0);
-  ASSERT_EQ(run("cscd submit --plan plan.json --into cells --workers 2 --executor slurm --script job.sbatch "
-                "--cell-seconds 600")
-                .status,
-            0);
+  ASSERT_EQ(run(submit + " --script job.sbatch --cell-seconds 600").status, 0);
   EXPECT_EQ(text("job.sbatch"), text("job"));
   expect_refused(run("cscd submit --plan plan.json --into cells --script job.sbatch"),
                  "is of --executor slurm");
+}
+
+TEST_F(Shards, ShareNodesUnlessTheyTakeTimes) {
+  const auto script = [&](const std::string& words) {
+    const Ran ran = run("cscd submit --plan plan.json --into cells --executor slurm --script - " + words);
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    return ran.out;
+  };
+  plan_counts();
+  const std::string counts = script("--workers 200");
+  EXPECT_NE(counts.find("#SBATCH --oversubscribe\n"), std::string::npos) << counts;
+  EXPECT_EQ(counts.find("--exclusive"), std::string::npos) << counts;
+  EXPECT_NE(counts.find("#SBATCH --array=1-5\n"), std::string::npos) << "there are five cells: " << counts;
+  EXPECT_NE(counts.find("\"$SLURM_ARRAY_TASK_ID/5\""), std::string::npos) << counts;
+  ASSERT_EQ(
+      run(std::string(kPlan) + "--kind timings --repetitions 2 --threads 3 --force --out plan.json").status,
+      0);
+  const std::string timings = script("--workers 2");
+  EXPECT_NE(timings.find("#SBATCH --exclusive\n"), std::string::npos) << timings;
+  EXPECT_EQ(timings.find("--oversubscribe"), std::string::npos) << timings;
+  EXPECT_NE(timings.find("#SBATCH --cpus-per-task=3\n"), std::string::npos) << timings;
+  expect_refused(run("cscd submit --plan plan.json --into cells --workers 2"), "would slow each other down");
 }
 
 }  // namespace

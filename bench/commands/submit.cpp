@@ -1,6 +1,7 @@
 #include "bench/shards/submit.h"
 
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "bench/commands/command.h"
@@ -18,13 +19,20 @@ struct SubmitOptions {
 };
 
 void submit(const SubmitOptions& options) {
-  read_plan(options.submission.plan);  // or every worker would refuse it
+  const Plan plan = read_plan(options.submission.plan);
+  Submission submission = options.submission;
+  submission.workers = std::min(submission.workers, plan.cells.size());
+  submission.kind = plan.replay.kind;
+  submission.threads = plan.replay.request.threads;
   if (options.executor == "local") {
     if (!options.script.empty()) throw InputError("--script: is of --executor slurm; leave it out");
-    if (const int worst = work_here(options.submission); worst != 0) throw ExitStatus{worst};
+    if (submission.kind == ReplayKind::timings && submission.workers > 1)
+      throw InputError(
+          "--workers: workers that take times on one machine would slow each other down; leave it out");
+    if (const int worst = work_here(submission); worst != 0) throw ExitStatus{worst};
     return;
   }
-  const std::string script = slurm_script(options.submission);
+  const std::string script = slurm_script(submission);
   if (options.script.empty()) return send_to_slurm(script);
   OutputFile(options.script, options.force, ".sbatch").commit(script);
 }
@@ -42,7 +50,9 @@ void add_submit(CLI::App& app) {
       "  cscd submit --plan plan.json --into cells --workers 200 --executor slurm --script job.sbatch\n\n"
       "`local` runs the workers as processes of this machine and waits for them; the exit status is the\n"
       "largest of theirs. `slurm` hands an array job to sbatch, or writes its script. SBATCH_ variables\n"
-      "choose partition, time and memory. Given again, the command measures what has no result yet.");
+      "choose partition, time and memory. Workers that count share nodes; each that takes times has a node\n"
+      "to itself, and here there is one such worker. A worker that would have no cell is not started.\n"
+      "Given again, the command measures what has no result yet.");
   command->add_option("--plan", submission.plan, "the plan, as `cscd plan` wrote it")->required();
   command->add_option("--into", submission.folder, "the folder of the results, which all workers see")
       ->required();

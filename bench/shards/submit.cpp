@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,6 +57,34 @@ std::string in_quotes(const std::string& word) {
   return out + "'";
 }
 
+constexpr int kNoSuchProgram = 127;
+
+// An open file without a name. It takes what a program says however long that is, so nobody has to read while
+// the program runs.
+struct MemoryFile {
+  const int id;
+  explicit MemoryFile(const char* name) : id(memfd_create(name, MFD_CLOEXEC)) {}
+  ~MemoryFile() {
+    if (id >= 0) close(id);
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string text() const {
+    std::string out;
+    char bytes[1024];
+    lseek(id, 0, SEEK_SET);
+    for (ssize_t got; (got = read(id, bytes, sizeof bytes)) > 0;)
+      out.append(bytes, static_cast<std::size_t>(got));
+    return out;
+  }
+};
+
+std::string last_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
 }  // namespace
 
 int work_here(const Submission& submission) {
@@ -81,27 +110,39 @@ std::string slurm_script(const Submission& submission) {
   std::string command = in_quotes(program);
   for (const std::string& word : worker_words(submission, "SHARD"))
     command += " " + (word == "SHARD" ? "\"$SLURM_ARRAY_TASK_ID/" + count + "\"" : in_quotes(word));
+  const std::string sharing =
+      submission.kind == ReplayKind::timings ? "#SBATCH --exclusive\n" : "#SBATCH --oversubscribe\n";
   return "#!/bin/bash\n"
          "#SBATCH --job-name=cscd\n"
          "#SBATCH --array=1-" +
-         count +
-         "\n"
-         "#SBATCH --requeue\n"
-         "cd " +
-         in_quotes(fs::current_path().string()) + "\nexec " + command + "\n";
+         count + "\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=" + std::to_string(submission.threads) +
+         "\n#SBATCH --requeue\n" + sharing + "cd " + in_quotes(fs::current_path().string()) + "\nexec " +
+         command + "\n";
 }
 
 void send_to_slurm(const std::string& script) {
+  const MemoryFile job("job"), errors("errors");
+  if (write(job.id, script.data(), script.size()) != static_cast<ssize_t>(script.size()) ||
+      lseek(job.id, 0, SEEK_SET) != 0)
+    throw InputError(std::string("sbatch: the job cannot be written (") + std::strerror(errno) +
+                     "); write it with --script FILE");
   std::fflush(stdout);
-  std::FILE* sbatch = popen("command -v sbatch >/dev/null && exec sbatch", "w");
-  const bool taken =
-      sbatch != nullptr && std::fwrite(script.data(), 1, script.size(), sbatch) == script.size();
-  const int status = sbatch == nullptr ? -1 : pclose(sbatch);
-  if (!taken || status != 0)
+  const pid_t sbatch = fork();
+  if (sbatch == 0) {
+    dup2(job.id, STDIN_FILENO);
+    dup2(errors.id, STDERR_FILENO);
+    execlp("sbatch", "sbatch", nullptr);
+    _exit(kNoSuchProgram);
+  }
+  const int status = sbatch < 0 ? kNoSuchProgram : status_of(sbatch);
+  const std::string said = errors.text();
+  if (status != 0)
     throw InputError(
-        "sbatch: did not take the job; run this where Slurm is, or write the script with --script FILE and "
-        "hand "
-        "it over yourself");
+        "sbatch: did not take the job (" +
+        (status == kNoSuchProgram && said.empty() ? "there is no such program" : last_line(said)) +
+        "); run this where Slurm is, or write the script with --script FILE and hand it over "
+        "yourself");
+  std::fputs(said.c_str(), stderr);
 }
 
 }  // namespace cscd::bench
