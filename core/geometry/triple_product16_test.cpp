@@ -48,6 +48,31 @@ TEST(TripleProduct16, AllArePositiveWhereEachIs) {
   for (const std::size_t alone : not_all) EXPECT_GT(alone, 100u);
 }
 
+// The bound is what the proof in the header needs, with all of its terms, and at most a fiftieth more.
+// Mutations: an error counts once where it counts twice; a factor of the bound is dropped.
+TEST(TripleProduct16, RuleErrorBoundTheBoundIsWhatTheProofSays) {
+  const double u = 0x1p-24;
+  for (const double a : {0.0, 1e-4, 0.75, 3.0})
+    for (const double b : {0.0, 1e-4, 0.75, 3.0})
+      for (const double c : {0.0, 1e-4, 0.75, 3.0})
+        for (const double error : {0x1p-22, 1e-3, 0.5}) {
+          VectorLanes16 third{};
+          third.at[1][2] = all_lanes(static_cast<float>(-c));
+          const auto d = static_cast<float>(error);
+          const Rounding16 rounding =
+              rounding_of(all_lanes(static_cast<float>(a)), all_lanes(static_cast<float>(b)), d);
+          const TripleProducts16 products = bounded({}, third, rounding, d);
+          const double longer_a = a + 2 * error, longer_b = b + 2 * error, longer_c = c + 2 * error;
+          const double needed =
+              12 * error * (longer_a * longer_b + longer_a * longer_c + longer_b * longer_c) +
+              (19 + 6 * 8.1) * u * longer_a * longer_b * longer_c;
+          const auto bound = static_cast<double>(products.bound[5]);
+          EXPECT_GE(bound, needed);
+          EXPECT_LE(bound, 1.02 * needed);
+          EXPECT_GE(static_cast<double>(products.bound3[5]), 3 * needed);
+        }
+}
+
 // If sizes are so small that products underflow, nothing is certain by either way. Mutations: nothing is
 // added to the bound for underflow; the area is not looked at.
 TEST(TripleProduct16, OfWhatUnderflowsNothingIsCertain) {
