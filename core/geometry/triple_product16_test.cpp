@@ -1,5 +1,6 @@
 #include "core/geometry/triple_product16.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -71,6 +72,26 @@ TEST(TripleProduct16, RuleErrorBoundTheBoundIsWhatTheProofSays) {
           EXPECT_LE(bound, 1.02 * needed);
           EXPECT_GE(static_cast<double>(products.bound3[5]), 3 * needed);
         }
+}
+
+// Every combination of coefficients that are above their bounds, below them or uncertain. Mutations: one of
+// the coefficients is left out, or compared with the bound of another; two of them have to hold together.
+TEST(TripleProduct16, SignsAreThoseOfTheCoefficients) {
+  for (int combination = 0; combination < 81; ++combination) {
+    TripleProducts16 products{{}, all_lanes(1), all_lanes(3), 0x5555};
+    int sign[4], rest = combination;
+    for (std::size_t k = 0; k < 4; ++k, rest /= 3) {
+      sign[k] = rest % 3 - 1;
+      const float bound = k == 0 || k == 3 ? 1 : 3;
+      products.c[k] = all_lanes(sign[k] == 0 ? (combination % 2 == 0 ? bound : -bound)
+                                             : 1.25F * bound * static_cast<float>(sign[k]));
+    }
+    const auto all = [&](int s) { return std::ranges::count(sign, s) == 4 ? 0x5555 : 0; };
+    const bool mixed = std::ranges::count(sign, 1) > 0 && std::ranges::count(sign, -1) > 0;
+    EXPECT_EQ(products.positive(), all(1)) << combination;
+    EXPECT_EQ(products.negative(), all(-1)) << combination;
+    EXPECT_EQ(products.mixed(), mixed ? 0x5555 : 0) << combination;
+  }
 }
 
 // If sizes are so small that products underflow, nothing is certain by either way. Mutations: nothing is
