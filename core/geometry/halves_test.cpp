@@ -177,6 +177,13 @@ TEST(Lanes16, PermutedTakesAnyLane) {
   }
 }
 
+// Every lane takes part once: a sum of sixteen powers of two shows which.
+TEST(Lanes16, FoldedCombinesEveryLaneOnce) {
+  Float16 v;
+  for (std::size_t l = 0; l < kLanes16; ++l) v[l] = static_cast<float>(1U << l);
+  EXPECT_EQ(folded(v, [](auto a, auto b) { return a + b; }), 65535.0F);
+}
+
 TEST(Lanes16, ComparisonsGiveOneBitALane) {
   std::mt19937 random(2014);
   for (int round = 0; round < 200; ++round) {

@@ -1,5 +1,6 @@
 #include "core/geometry/triple_product16.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -46,6 +47,51 @@ TEST(TripleProduct16, AllArePositiveWhereEachIs) {
   }
   EXPECT_GT(all, 1000u);
   for (const std::size_t alone : not_all) EXPECT_GT(alone, 100u);
+}
+
+// The bound is what the proof in the header needs, with all of its terms, and at most a fiftieth more.
+// Mutations: an error counts once where it counts twice; a factor of the bound is dropped.
+TEST(TripleProduct16, RuleErrorBoundTheBoundIsWhatTheProofSays) {
+  const double u = 0x1p-24;
+  for (const double a : {0.0, 1e-4, 0.75, 3.0})
+    for (const double b : {0.0, 1e-4, 0.75, 3.0})
+      for (const double c : {0.0, 1e-4, 0.75, 3.0})
+        for (const double error : {0x1p-22, 1e-3, 0.5}) {
+          VectorLanes16 third{};
+          third.at[1][2] = all_lanes(static_cast<float>(-c));
+          const auto d = static_cast<float>(error);
+          const Rounding16 rounding =
+              rounding_of(all_lanes(static_cast<float>(a)), all_lanes(static_cast<float>(b)), d);
+          const TripleProducts16 products = bounded({}, third, rounding, d);
+          const double longer_a = a + 2 * error, longer_b = b + 2 * error, longer_c = c + 2 * error;
+          const double needed =
+              12 * error * (longer_a * longer_b + longer_a * longer_c + longer_b * longer_c) +
+              (19 + 6 * 8.1) * u * longer_a * longer_b * longer_c;
+          const auto bound = static_cast<double>(products.bound[5]);
+          EXPECT_GE(bound, needed);
+          EXPECT_LE(bound, 1.02 * needed);
+          EXPECT_GE(static_cast<double>(products.bound3[5]), 3 * needed);
+        }
+}
+
+// Every combination of coefficients that are above their bounds, below them or uncertain. Mutations: one of
+// the coefficients is left out, or compared with the bound of another; two of them have to hold together.
+TEST(TripleProduct16, SignsAreThoseOfTheCoefficients) {
+  for (int combination = 0; combination < 81; ++combination) {
+    TripleProducts16 products{{}, all_lanes(1), all_lanes(3), 0x5555};
+    int sign[4], rest = combination;
+    for (std::size_t k = 0; k < 4; ++k, rest /= 3) {
+      sign[k] = rest % 3 - 1;
+      const float bound = k == 0 || k == 3 ? 1 : 3;
+      products.c[k] = all_lanes(sign[k] == 0 ? (combination % 2 == 0 ? bound : -bound)
+                                             : 1.25F * bound * static_cast<float>(sign[k]));
+    }
+    const auto all = [&](int s) { return std::ranges::count(sign, s) == 4 ? 0x5555 : 0; };
+    const bool mixed = std::ranges::count(sign, 1) > 0 && std::ranges::count(sign, -1) > 0;
+    EXPECT_EQ(products.positive(), all(1)) << combination;
+    EXPECT_EQ(products.negative(), all(-1)) << combination;
+    EXPECT_EQ(products.mixed(), mixed ? 0x5555 : 0) << combination;
+  }
 }
 
 // If sizes are so small that products underflow, nothing is certain by either way. Mutations: nothing is

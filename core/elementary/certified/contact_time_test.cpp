@@ -76,6 +76,28 @@ TEST(TimeInPairs, IsTheReferees) {
   }
 }
 
+// The slope of a cubic is off by up to six times the error of its coefficients, so a cubic whose error allows
+// a level slope has no certain time. Mutation: the error counts once.
+TEST(TimeInPairs, RuleErrorBoundIsNotKnownWhereTheSlopeMayBeLevel) {
+  QueryMaker make(7);
+  int known = 0;
+  for (int i = 0; i < 500; ++i) {
+    const auto query =
+        query_of<MovingVertexFace>(test::vertex_meets_face(make, make.uniform(0.1, 0.9), 0.25, 0.5));
+    const Triple v = triple(triple_points(query));
+    const BernsteinCubic f = triple_product(v.p, v.q, v.r);
+    const DoublesResult found = decide_in_doubles<MovingVertexFace>(v, f);
+    if (found.kind != DoublesResult::contact) continue;
+    const auto is_known = [&](double error) {
+      const Cubic cubic({{f.c[0], f.c[1], f.c[2], f.c[3]}, error}, 1);
+      return time_in_pairs(triple_points(query), v.sizes(), cubic, found.low, found.high).known;
+    };
+    known += is_known(f.error);
+    EXPECT_FALSE(is_known(std::abs(Cubic(f, 1).slope(found.low)) / 6));
+  }
+  EXPECT_GT(known, 400);
+}
+
 // The roots are doubles, or next to doubles. The pairs must give no answer or the right answer.
 TEST(TimeInPairs, SaysNothingThatIsNotCertain) {
   QueryMaker make(6);

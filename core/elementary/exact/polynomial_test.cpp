@@ -94,6 +94,7 @@ TEST(Polynomial, EvaluatesSigns) {
   const int expected[] = {-1, 0, 1, 0, -1, 0, 1};
   const double at[] = {0, 0.25, 0.3, 0.5, 0.6, 0.75, 1};
   for (int i = 0; i < 7; ++i) EXPECT_EQ(sign_at(p, dyadic(at[i])), expected[i]) << at[i];
+  for (const double t : at) EXPECT_EQ(sign_at(Polynomial(), dyadic(t)), 0);
 }
 
 TEST(UnitIntervalSigns, CountRootsOrSayNone) {

@@ -82,6 +82,32 @@ TEST(DirectionCones, HoldATriangleAtEveryTimeWithRoomForTheError) {
   EXPECT_GT(known, 1000u);
 }
 
+// Every corner at both ends has the room that the proof gives it: four errors as seen from the viewpoint.
+// Mutation: the room is left out of the cone of a triangle, or of that of a whole patch.
+TEST(DirectionCones, RuleErrorBoundEveryCornerHasRoomForItsError) {
+  std::mt19937 random(9);
+  std::size_t whole = 0;
+  for (int round = 0; round < 100; ++round) {
+    const Thrown thrown(random, 0.3F);
+    const Cones cones = cones_of(thrown.lanes, thrown.patch, thrown.from, kError);
+    const std::optional<Cone> all = cone_of({&thrown.lanes, 1}, thrown.from, kError);
+    whole += all.has_value();
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      for (int k = 0; k < 3; ++k)
+        for (const double end : {0.0, 1.0}) {
+          const Vec3 to = thrown.point(l, Vec3::Unit(k), end);
+          const double room = 4 * static_cast<double>(kError) / to.norm();
+          if ((cones.known >> l & 1) != 0) {
+            EXPECT_GE(cosine(cones[l], to.normalized()), cones[l].cosine + room);
+          }
+          if (all) {
+            EXPECT_GE(cosine(*all, to.normalized()), all->cosine + room);
+          }
+        }
+  }
+  EXPECT_GT(whole, 10u);
+}
+
 // A strip is what the second and third corner of a triangle sweep on their way to where they are in other
 // lanes. Mutations: the corners of one set of lanes are left out; the first corner is taken too.
 TEST(DirectionCones, HoldAStripAtEveryTime) {

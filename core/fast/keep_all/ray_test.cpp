@@ -1,6 +1,8 @@
 #include "core/fast/keep_all/ray.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <random>
 
 namespace cscd::fast {
@@ -81,6 +83,29 @@ TEST(Ray, CrossesWhatDoublePrecisionSaysItDoesWithinTheErrorOfCoordinates) {
   EXPECT_GT(not_crossed, 3000u);
   EXPECT_LT(undecided, crossed / 10);
   EXPECT_GT(rejected, 300u);
+}
+
+// A triangle across the ray, whose corners are `away` errors of the ray (ray.cpp) from it. By the bound of
+// the proof the ray crosses it certainly only beyond about 6 errors. Mutation: the bound is half of that.
+TEST(Ray, RuleErrorBoundCrossesNothingThatIsAsSmallAsTheError) {
+  constexpr float kError = 1e-4F;
+  const float through[3] = {1, 0, 0};
+  for (const auto& [away, decides] : {std::pair(4.5F, false), {12.0F, true}})
+    for (const bool turned : {false, true}) {
+      Fixture f;
+      for (std::size_t l = 0; l < kLanes16; ++l) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(l % 3) / 3;
+        const float size = away * 20 * kError;
+        f.lanes.at[0][0][l] = 1;
+        f.lanes.at[0][1][l] = size * static_cast<float>(std::cos(angle));
+        f.lanes.at[0][2][l] = size * static_cast<float>(std::sin(angle));
+        for (std::size_t k = 0; k < 3; ++k)
+          f.patch.corner[k][l] = static_cast<std::uint8_t>(turned ? 2 - k : k);
+      }
+      const Ray::Crossed out = Ray(f.from, through, kError).crossed(f.lanes, f.patch);
+      EXPECT_EQ(out.certainly, decides && !turned ? 0xffff : 0) << away;
+      EXPECT_EQ(out.certainly_not, decides && turned ? 0xffff : 0) << away;
+    }
 }
 
 // Mutation: may_cross ignores the error.

@@ -67,6 +67,20 @@ TEST(LocalPositions, KnowHowFarPositionsAreOff) {
   }
 }
 
+// Local coordinates name the points of the scene that they were made of. Mutation: an axis is taken for
+// another.
+TEST(LocalPositions, AreShownInTheSceneWhereTheyAre) {
+  const test::Body body(0.05, 2, {100, -20, 3}, 8);
+  LocalPositions local(body.start);
+  local.update(body.motion());
+  for (std::size_t v = 0; v < body.start.size(); ++v) {
+    const float(&at)[8] = local.records()[v].at;
+    const float start[3] = {at[0], at[1], at[2]}, end[3] = {at[4], at[5], at[6]};
+    EXPECT_LT((local.in_scene(start) - body.start[v]).norm(), 1e-4);
+    EXPECT_LT((local.in_scene(end) - body.end[v]).norm(), 1e-4);
+  }
+}
+
 TEST(LocalPositions, AMotionOutOfRangeIsNotKnown) {
   test::Body body(0, 1);
   LocalPositions local(body.start);

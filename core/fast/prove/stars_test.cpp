@@ -83,6 +83,28 @@ TEST(Stars, DegenerateTrianglesAreNotFlat) {
   EXPECT_TRUE(stars.flat(VertexId{1}, local));
 }
 
+// A hexagon of radius r has triple products of 0.87 r^2. By the proof in stars.cpp they are off by up to 24 r
+// times the error of a coordinate, so r has to exceed 28 errors. A far vertex sets the error. Mutation: an
+// edge counts as exact.
+TEST(Stars, RuleErrorBoundOneThatIsNearlyAsSmallAsTheErrorIsNotFlat) {
+  for (const auto& [errors, flat] : {std::pair(4, false), {8, false}, {16, false}, {24, false}, {60, true}}) {
+    test::Shape star{{{0, 0, 0}}, {}};
+    const double r = errors * 0x1p-24;  // the scale is such that the far vertex is one unit away
+    for (int i = 0; i < 6; ++i) {
+      const double angle = std::numbers::pi / 3 * i;
+      star.positions.emplace_back(r * std::cos(angle), r * std::sin(angle), 0);
+      star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % 6));
+    }
+    star.positions.emplace_back(1, 1, 1);
+    star.triangles.push_back(test::corners(1, 3, 7));
+    const TriangleMesh mesh = star.mesh();
+    LocalPositions local(star.positions);
+    local.update(Motion(star.positions, star.positions));
+    EXPECT_NEAR(static_cast<double>(local.error()), 0x1p-24, 0x1p-40);
+    EXPECT_EQ(Stars(mesh).flat(VertexId{0}, local), flat) << errors;
+  }
+}
+
 // Mutation: the turns of the star are not counted.
 TEST(Stars, OneThatGoesRoundTwiceIsNotFlat) {
   for (const int turns : {1, 2}) {

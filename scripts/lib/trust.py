@@ -1,0 +1,104 @@
+"""Records of what was done to find faults, in results/trust, and the page that is made of them.
+
+A record is a JSON file named DATE-KIND.json, or DATE-KIND-2.json where that exists, and holds:
+
+  kind      mutants, coverage, kill-cycles, fuzz, ...: part of the name
+  title     heading of its section
+  says      what was done, in a paragraph
+  date, commit, command
+  headline  the result, in half a line
+  figures   [[name, number or text], ...]
+  tables    [{title, head, rows, text_columns, reasons}, ...]
+
+All but figures and tables are texts, and so are the cells of rows. `reasons` is optional and names a file of the repository
+with a list of {"of": [...], "reason": text}: a row whose first cells are those of `of` gets the reason as its last cell, and a
+row without a reason is shown as such.
+"""
+import datetime
+import json
+import pathlib
+import subprocess
+
+from pages import table
+from records import read_json, refuse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+FOLDER = ROOT / "results" / "trust"
+WITHOUT = "**no reason given**"
+
+
+def write_record(record):
+    """Adds date and commit, writes the record, and returns its path."""
+    git = ["git", "-C", str(ROOT)]
+    commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
+    changes = subprocess.run([*git, "status", "--porcelain", "--", "core", "library", "CMakeLists.txt"],
+                             capture_output=True, text=True, check=True).stdout.strip()
+    whole = {"kind": record["kind"], "title": record["title"], "date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(),
+             "commit": commit + (" with changes" if changes else ""), **record}
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    stem, count = f"{whole['date']}-{whole['kind']}", 1
+    while (FOLDER / (stem + (f"-{count}" if count > 1 else "") + ".json")).exists():
+        count += 1
+    path = FOLDER / (stem + (f"-{count}" if count > 1 else "") + ".json")
+    path.write_text(json.dumps(whole, indent=1, ensure_ascii=False) + "\n")
+    return path
+
+
+def read_records():
+    """(path, record), the oldest first."""
+    records = []
+    for path in FOLDER.glob("*.json"):
+        record = read_json(path)
+        missing = {"kind", "title", "says", "date", "commit", "command", "headline", "figures", "tables"} - record.keys()
+        if missing:
+            refuse(f"{path}: lacks {', '.join(sorted(missing))}; scripts/lib/trust.py says what a record holds")
+        records.append((path, record))
+    return sorted(records, key=lambda pair: (pair[1]["date"], pair[0].name))
+
+
+def reasons_of(name):
+    return {tuple(entry["of"]): entry["reason"] for entry in read_json(ROOT / name)} if name else {}
+
+
+def reason_for(row, reasons):
+    return next((reasons[tuple(row[:n])] for n in range(len(row), 0, -1) if tuple(row[:n]) in reasons), None)
+
+
+def without_reason(record):
+    """How many rows lack the reason that their table asks for."""
+    return sum(reason_for(row, reasons_of(one["reasons"])) is None
+               for one in record["tables"] if "reasons" in one for row in one["rows"])
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def section(record):
+    lines = [f"## {record['title']}", "", record["says"], "",
+             f"`{record['command']}`, {record['date']}, commit `{record['commit'][:10]}`"
+             + (" with changes" if record["commit"].endswith("changes") else "") + ".", ""]
+    lines += table(["figure", ""], [[name, str(value)] for name, value in record["figures"]])
+    for one in record["tables"]:
+        head, rows, text_columns = one["head"], [[cell(text) for text in row] for row in one["rows"]], one["text_columns"]
+        if "reasons" in one:
+            reasons = reasons_of(one["reasons"])
+            head, text_columns = [*head, "reason"], len(head) + 1
+            rows = [[*row, cell(reason_for(plain, reasons) or WITHOUT)] for row, plain in zip(rows, one["rows"])]
+        lines += ["", f"### {one['title']}", ""]
+        lines += table(head, rows, text_columns) if rows else ["None."]
+    return lines
+
+
+def page():
+    records = read_records()
+    newest = {record["kind"]: record for _, record in records}
+    lines = ["# What was done to find faults", "",
+             "Made by `scripts/trust-page` from the records beside it; `scripts/lib/trust.py` says what a record holds. The table lists",
+             "every record. Below it, the newest record of each kind is shown in full.", ""]
+    lines += table(["date", "what", "result", "record"],
+                   [[record["date"], record["title"], record["headline"], f"[{path.name}]({path.name})"]
+                    for path, record in reversed(records)], 4)
+    for kind in sorted(newest):
+        lines += ["", *section(newest[kind])]
+    return "\n".join(lines) + "\n"
