@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace cscd {
@@ -110,10 +111,26 @@ TemporaryHelper::~TemporaryHelper() {
   helper.store(0);
 }
 
+namespace {
+
+// Asks the helper to end, so that it can remove its own temporaries, and kills it if it takes long.
+void end_helper(pid_t process) noexcept {
+  constexpr int kAttempts = 100;
+  constexpr timespec kBetween{0, 2'000'000};
+  kill(process, SIGTERM);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (waitpid(process, nullptr, WNOHANG) != 0) return;
+    nanosleep(&kBetween, nullptr);
+  }
+  kill(process, SIGKILL);
+}
+
+}  // namespace
+
 void remove_temporaries() noexcept {
   const pid_t self = getpid();
   auto* entry = static_cast<Temporary::Entry*>(first.load());
-  if (const pid_t process = helper.load(); process > 0 && entry != nullptr) kill(process, SIGKILL);
+  if (const pid_t process = helper.load(); process > 0 && entry != nullptr) end_helper(process);
   for (; entry != nullptr; entry = entry->next) {
     if (entry->owner.load() != self) continue;  // registered by the process from which this one was forked
     if (const char* path = entry->path.exchange(nullptr); path != nullptr) remove_one(path);

@@ -22,7 +22,8 @@ class Temporary {
 };
 
 // Registers the process that writes into a temporary folder, for as long as this object lives.
-// remove_temporaries() kills that process first. At most one such object may exist at a time.
+// remove_temporaries() ends that process first, by SIGTERM, so that it can remove its own, and by SIGKILL if
+// that takes long. At most one such object may exist at a time.
 class TemporaryHelper {
  public:
   explicit TemporaryHelper(int process) noexcept;
