@@ -159,14 +159,16 @@ class PairTester : public TrianglePairSink {
   // Each range of pairs is filtered into a list of its own, and the lists are joined in order.
   void filter_carried() {
     const std::span<const CarriedPairs> carried = carried_;
-    lists_.resize(team_.ranges_of(carried.size(), kFilteredTogether));
+    const std::size_t ranges = team_.ranges_of(carried.size(), kFilteredTogether);
+    if (lists_.size() < ranges) lists_.resize(ranges);  // lists that are not needed keep their memory
     team_.ranges(carried.size(), kFilteredTogether,
                  [&](std::size_t first, std::size_t last, std::size_t part) {
                    lists_[part].clear();
                    filter(mesh_, *motion_, carried.subspan(first, last - first), test_.single_precision_first,
                           lists_[part]);
                  });
-    for (const std::vector<FeaturePair>& list : lists_) left_.insert(left_.end(), list.begin(), list.end());
+    for (const std::vector<FeaturePair>& list : std::span(lists_).first(ranges))
+      left_.insert(left_.end(), list.begin(), list.end());
   }
 
   void take_all_carried(const TrianglePair& pair) {

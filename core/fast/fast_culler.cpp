@@ -10,8 +10,6 @@ constexpr std::size_t kRange = 32;     // the number of patches that is worth an
 constexpr std::size_t kAhead = 2;      // positions are fetched so many patches before the look
 constexpr std::size_t kSampled = 256;  // about so many patches are asked how far they move
 constexpr float kFar = 1;              // widths of a patch
-// A pair of triangles that is passed on costs as much as so many overlap tests.
-constexpr std::uint64_t kTestsOfPair = 40;
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,

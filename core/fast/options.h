@@ -15,8 +15,8 @@ struct DrvbcFastOptions {
   bool stars = true;        // prove/stars.h
   bool planes = true;       // prove/parting.h
   bool follows = true;      // follow/following_cover.h
-  // A step in which the surface moves far is looked at in parts from so many overlap tests for each patch on
-  // (fast_culler.h). kNever: it never is.
+  // A step in which the surface moves far is looked at in parts (fast_culler.h) if its descent takes more
+  // than this many overlap tests for each patch; kNever: no step is looked at in parts.
   std::uint32_t long_descent = 288;
   static constexpr std::uint32_t kNever = 0xffffffff;
   enum class Clusters { by_trial, of_bones, of_surface };  // the clusters that the covers are made from

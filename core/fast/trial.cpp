@@ -23,9 +23,8 @@ class CountingSink : public TrianglePairSink {
 };
 
 // Work is counted in overlap tests of bounding volumes. These constants say how many overlap tests cost about
-// as much as one patch in an interval, one look, one observer that is placed, and one pair of triangles that
-// is left for the elementary test.
-constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10, kTestsOfPair = 40;
+// as much as one patch in an interval, one look, and one observer that is placed.
+constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
 constexpr std::size_t kTrials = 6;
 // The trial poses are not the motion to come, so small differences between candidates say nothing.
 constexpr std::uint64_t kClose = 64;
@@ -101,19 +100,21 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
     return made(setup, surface_clusters(setup.mesh, setup.reference), options);
 
+  const auto bones = [&] { return radial::bones_of_triangles(setup, {}, clock); };
+  const auto clusters_of = [&](std::span<const BoneId> bone_of) {
+    return radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
+  };
+  if (options.clusters == Clusters::of_bones) return made(setup, clusters_of(bones()), options);
+
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.
   const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
   std::vector<Trial> trials;
   const auto of_bones = [&] {
-    const std::vector<BoneId> bone_of = radial::bones_of_triangles(setup, {}, clock);
-    std::vector<std::int32_t> cluster_of = radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
-    if (options.clusters == Clusters::of_bones) return made(setup, std::move(cluster_of), options);
+    const std::vector<BoneId> bone_of = bones();
     trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-    return made(setup, std::move(cluster_of), whole);
+    return made(setup, clusters_of(bone_of), whole);
   };
-  if (options.clusters == Clusters::of_bones) return of_bones();
-
   // The candidates are prepared side by side. The caller's thread learns of what was thrown.
   std::array<Candidate, 2> candidates;
   std::array<std::exception_ptr, 2> thrown;

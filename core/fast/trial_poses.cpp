@@ -39,8 +39,7 @@ Transforms turned(const Rig& rig, std::span<const Vec3> axes, double angle) {
 // How far a vertex is moved at both ends of a trial: x, y, z and an unused number each.
 using Shift = Float8;
 
-// Turns each vertex by the mean of the turns of the bones that the triangles at it follow.`bones_at`,
-// [vertices], holds those bones.
+// Moves each vertex by the mean of what the bones of the triangles at the vertex would move it by.
 std::vector<Shift> turned_shifts(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                  std::span<const BoneId> bone_of, const std::array<Transforms, 2>& turns) {
   std::vector<Shift> shifts(reference.size());
@@ -61,27 +60,33 @@ std::vector<Shift> turned_shifts(const TriangleMesh& mesh, std::span<const Vec3>
   return shifts;
 }
 
-// Replaces every shift by the mean over the corners of the triangles at the vertex, again and again. On a
-// closed and oriented surface each neighbour is a corner of two of these triangles, and comes behind the
-// vertex in one of them.
-void smooth(const TriangleMesh& mesh, std::vector<Shift>& shifts) {
-  std::vector<std::int32_t> behind;  // the vertices behind each vertex, one after the other
+// The neighbours of each vertex, in compressed rows. On a closed and oriented surface each neighbour is a
+// corner of two of the triangles at the vertex, and comes behind the vertex in one of them.
+struct Neighbours {
+  std::vector<std::int32_t> of;
   std::vector<std::size_t> first{0};
-  for (std::size_t v = 0; v < shifts.size(); ++v) {
-    const VertexId vertex{static_cast<std::int32_t>(v)};
-    for (const TriangleId t : mesh.triangles_at(vertex)) {
-      const Triangle& c = mesh.corners(t);
-      behind.push_back(+c[c[0] == vertex ? 1 : c[1] == vertex ? 2 : 0]);
+
+  explicit Neighbours(const TriangleMesh& mesh) {
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+      const VertexId vertex{static_cast<std::int32_t>(v)};
+      for (const TriangleId t : mesh.triangles_at(vertex)) {
+        const Triangle& c = mesh.corners(t);
+        of.push_back(+c[c[0] == vertex ? 1 : c[1] == vertex ? 2 : 0]);
+      }
+      first.push_back(of.size());
     }
-    first.push_back(behind.size());
   }
+};
+
+// Replaces every shift by the mean over the corners of the triangles at the vertex, again and again.
+void smooth(const Neighbours& neighbours, std::vector<Shift>& shifts) {
+  const auto& [of, first] = neighbours;
   std::vector<Shift> before(shifts.size());
   for (int i = 0; i < kSmoothed; ++i) {
     before.swap(shifts);
     for (std::size_t v = 0; v < shifts.size(); ++v) {
       Shift sum{};
-      for (std::size_t k = first[v]; k < first[v + 1]; ++k)
-        sum += before[static_cast<std::size_t>(behind[k])];
+      for (std::size_t k = first[v]; k < first[v + 1]; ++k) sum += before[static_cast<std::size_t>(of[k])];
       const std::size_t count = first[v + 1] - first[v];
       shifts[v] = count == 0 ? before[v] : (before[v] + sum * (2 / static_cast<float>(count))) / 3.0F;
     }
@@ -94,6 +99,7 @@ std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> r
                                std::span<const BoneId> bone_of, std::size_t count) {
   std::mt19937 random(kPreparationSeed);
   const auto dice = [&] { return static_cast<double>(random() >> 8) * 0x1p-23 - 1; };
+  const Neighbours neighbours(mesh);
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<Vec3> axes;
@@ -104,7 +110,7 @@ std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> r
     }
     std::vector<Shift> shifts = turned_shifts(
         mesh, reference, bone_of, {turned(rig, axes, kTurned), turned(rig, axes, kTurned + kFurther)});
-    smooth(mesh, shifts);
+    smooth(neighbours, shifts);
     Trial& trial = trials.emplace_back();
     for (std::size_t end = 0; end < 2; ++end)
       for (std::size_t v = 0; v < shifts.size(); ++v)

@@ -85,7 +85,9 @@ FollowingPoint take_observer(Reader& reader, std::size_t vertex_count) {
   FollowingPoint observer;
   const auto count = reader.take<std::uint32_t>();
   const auto height = reader.take<float>();
-  if (count == 0 || count > FollowingPoint::kMost || !std::isfinite(height)) refuse("has a wrong observer");
+  // The height is bounded as the weights are, so that no triple product overflows.
+  if (count == 0 || count > FollowingPoint::kMost || !(std::abs(height) <= FollowingPoint::kMostWeight))
+    refuse("has a wrong observer");
   const auto vertices = reader.take<VertexId>(count);
   const auto weights = reader.take<float>(count);
   float sizes = 0;
@@ -179,7 +181,7 @@ RestoredCut restored_cut(const TriangleMesh& mesh, std::span<const Vec3> referen
                          std::span<const std::byte> bytes) {
   Reader reader(bytes);
   const Head head = reader.take<Head>();
-  if (head.magic != kMagic) refuse("is none");
+  if (head.magic != kMagic) refuse("is no saved preparation");
   if (head.version != kVersion) refuse("was made by another version of the program");
   if (head.contents != digest_of(bytes.subspan(sizeof head))) refuse("is damaged");
   if (head.surface != digest_of_surface(mesh, reference)) refuse("was made for another surface");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/fast/cut/test_body.h"
@@ -99,6 +100,8 @@ TEST(SavedCut, OneThatBreaksARuleIsRefused) {
     cut.covers[1].observers[0].add(VertexId{0}, 1e9F);
   });
   expect_refused("a wrong observer", [](Cut& cut) { cut.covers[1].observers[0] = {}; });
+  for (const float height : {1e30F, -2000.0F, std::numeric_limits<float>::quiet_NaN()})
+    expect_refused("a wrong observer", [&](Cut& cut) { cut.covers[1].observers[0].stand_off(height); });
 }
 
 TEST(SavedCut, AClusterInTwoComponentsIsRefused) {

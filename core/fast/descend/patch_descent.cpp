@@ -81,7 +81,7 @@ void PatchDescent::found(NodePair below) {
 
 // Passes on pairs of triangles inside one patch.
 inline void PatchDescent::inside(std::size_t p) {
-  if (sink_->closed() || tests_ > most_tests_) return;
+  if (sink_->closed()) return;
   const Certificates::Shared shared = input_.certificates.shared(p, p);
   const Common* common = input_.tree.common_of(p, p);
   const Mask16 lanes = patches_[p].lanes;
@@ -92,7 +92,7 @@ inline void PatchDescent::inside(std::size_t p) {
 // Passes on pairs between the patches of two leaves. Only triangles that meet the bounds of the other patch
 // are held against each other.
 inline void PatchDescent::between(std::size_t a, std::size_t b) {
-  if (sink_->closed() || tests_ > most_tests_) return;
+  if (sink_->closed()) return;
   std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
   Certificates::Shared shared = input_.certificates.shared(p, q);
   Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;
