@@ -1,11 +1,10 @@
 #include "scenes/clip/mesh_file.h"
 
-#include <optional>
 #include <span>
 
 #include "core/base/error.h"
-#include "core/base/output_target.h"
 #include "scenes/clip/hdf5_dataset.h"
+#include "scenes/clip/new_hdf5_file.h"
 
 namespace cscd::scenes {
 namespace {
@@ -27,24 +26,8 @@ Hdf5Handle timeless(hid_t kind) {
 
 }  // namespace
 
-struct MeshFileWriter::File {
-  std::filesystem::path path;
-  std::optional<UnfinishedFile> unfinished;
-  Hdf5Handle file;
-
-  File(std::filesystem::path name, bool force) : path(std::move(name)) {
-    silence_hdf5();
-    const OutputTarget target = find_output_target(path, force);
-    if (target.is_stream) fail("it is a device or a pipe, and HDF5 writes to ordinary files alone");
-    unfinished.emplace(target.path, force);
-    file =
-        Hdf5Handle(H5Fcreate(unfinished->path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) fail("HDF5 made no file");
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError("output " + path.string() + ": cannot be written: " + what + "; choose another place");
-  }
+struct MeshFileWriter::File : NewHdf5File {
+  using NewHdf5File::NewHdf5File;
 
   void add_group(const std::string& name) {
     const Hdf5Handle creation = timeless(H5P_GROUP_CREATE);
@@ -127,8 +110,7 @@ void MeshFileWriter::add(const std::string& name, const PosedMesh& mesh) {
 }
 
 void MeshFileWriter::finish() {
-  if (!file_->file.close()) file_->fail("the last data did not reach the disk (is it full?)");
-  file_->unfinished->finish();
+  file_->finish();
 }
 
 struct MeshFileReader::File {

@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <optional>
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/output_target.h"
-#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/new_hdf5_file.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::scenes {
@@ -22,48 +20,19 @@ struct Growing {
 
 }  // namespace
 
-struct PointCacheWriter::File {
-  std::filesystem::path path;
+struct PointCacheWriter::File : NewHdf5File {
   ClipHeader header;
-  bool force;
-  std::optional<UnfinishedFile> unfinished;
-  Hdf5Handle file;
   Growing positions, head, tail, predicted, predicted_head, predicted_tail;
   std::vector<Vec3> scratch;
 
   File(std::filesystem::path name, ClipHeader shared, bool overwrite)
-      : path(std::move(name)), header(std::move(shared)), force(overwrite) {
-    silence_hdf5();
-    const OutputTarget target = find_output_target(path, force);
-    if (target.is_stream) fail("it is a device or a pipe, and HDF5 writes to ordinary files alone");
-    unfinished.emplace(target.path, force);
-    file =
-        Hdf5Handle(H5Fcreate(unfinished->path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-    if (!file.valid()) fail("HDF5 made no file");
-    try {
-      create();
-    } catch (...) {
-      discard();
-      throw;
-    }
-  }
-  ~File() { discard(); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError("output " + path.string() + ": cannot be written: " + what + "; choose another place");
+      : NewHdf5File(std::move(name), overwrite), header(std::move(shared)) {
+    create();
   }
 
   void close_datasets() {
     for (Growing* dataset : {&positions, &head, &tail, &predicted, &predicted_head, &predicted_tail})
       dataset->id = Hdf5Handle();
-  }
-
-  void discard() {
-    close_datasets();
-    file = Hdf5Handle();
-    unfinished.reset();
   }
 
   void create() {
@@ -188,8 +157,7 @@ void PointCacheWriter::finish() {
     throw InputError(file.path.string() + ": " + std::to_string(file.positions.frames) +
                      " frames; a point cache needs at least 2");
   file.close_datasets();
-  if (!file.file.close()) file.fail("the last data did not reach the disk (is it full?)");
-  file.unfinished->finish();
+  file.finish();
 }
 
 }  // namespace cscd::scenes
