@@ -61,7 +61,7 @@ TEST(BenchmarkAnswers, MayBeLines) {
   EXPECT_EQ(answers.intervals[1].collides, std::optional(false));
 }
 
-// Untried mutations: with the checks of times, of unknown keys, or of pairs that are there twice left out,
+// Mutations: with the checks of times, of unknown keys, or of pairs that are there twice left out,
 // the lines about them are taken.
 TEST(BenchmarkAnswers, AreRefusedWithPlaceAndRemedy) {
   const struct {

@@ -57,7 +57,7 @@ TEST(Judge, FindsNothingWrongWithTheTruth) {
   }
 }
 
-// Untried mutation: without count_missed_pairs() a lost contact goes unseen.
+// Mutation: without count_missed_pairs() a lost contact goes unseen.
 TEST(Judge, CountsALostContact) {
   const Score score = judged(touching(), answer(Claim::complete, {{kEdges, 0.25}}));
   EXPECT_EQ(score.misses, 1u);
@@ -68,7 +68,7 @@ TEST(Judge, CountsALostContact) {
   EXPECT_EQ(unpromised.broken, 0u);
 }
 
-// Untried mutation: with the pairs of the truth alone looked at, an invented one goes unseen.
+// Mutation: with the pairs of the truth alone looked at, an invented one goes unseen.
 TEST(Judge, CountsAnInventedContact) {
   const Score score =
       judged(touching(), answer(Claim::complete, {{kEdges, 0.25}, {kFace, 0.5}, {kNone, 0.1}}));
@@ -76,7 +76,7 @@ TEST(Judge, CountsAnInventedContact) {
   EXPECT_EQ(score.misses + score.broken, 0u);
 }
 
-// Untried mutation: with lo and hi swapped in look_at_time(), times inside of an enclosure are called late
+// Mutation: with hi taken for lo in look_at_time(), times inside of an enclosure are called late
 // and early.
 TEST(Judge, CountsWrongTimes) {
   const double hi = std::nextafter(0.25, 1.0);
@@ -96,7 +96,7 @@ TEST(Judge, CountsWrongTimes) {
   EXPECT_EQ(tolerated.earliest, 0.0625);
 }
 
-// Untried mutation: with any contact of the truth taken for the first, the later pair alone is no miss.
+// Mutation: with any contact of the truth taken for the first, the later pair alone is no miss.
 TEST(Judge, AsksAFirstContactForTheEarliestTimeAlone) {
   const Score first = judged(touching(), answer(Claim::first_contact, {{kEdges, 0.25}}));
   EXPECT_EQ(first.misses, 0u);
@@ -138,7 +138,7 @@ TEST(Judge, TakesYesOrNo) {
   EXPECT_EQ(invented.collides_wrong, 1u);
 }
 
-// Untried mutation: with undecided pairs left out of those that are named, they are missed.
+// Mutation: with undecided pairs left out of those that are named, they are missed.
 TEST(Judge, CountsWhatIsUndecidedApart) {
   const Score score = judged(
       touching(), answer(Claim::complete, {{kEdges, std::nullopt}, {kFace, 0.5}, {kNone, std::nullopt}}));

@@ -71,7 +71,7 @@ class MeshFile : public testing::Test {
   }
 };
 
-// Untried mutation: with start and end of the bones swapped in the reader, the second comparison fails.
+// Mutation: with start and end of the bones swapped in the reader, the second comparison fails.
 TEST_F(MeshFile, ReadsWhatWasWritten) {
   const PosedMesh plain = tetrahedron(3, false), boned = tetrahedron(2, true);
   write(plain, boned);
