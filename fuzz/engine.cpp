@@ -110,6 +110,11 @@ void target(Bytes bytes) {
     if (!truth.contacts.empty() && first.contacts[0].time != truth.contacts[0].time)
       broken("drvbc_fast is late");
   }
+  const Prepared all = make_drvbc_fast(
+      setup, {.name = "drvbc_fast_all", .long_descent = kInParts, .complete = true, .starts_embedded = true});
+  for (int asked = 0; asked < kAsked; ++asked)
+    if (digest(sorted_contacts(*all.detector, motion)) != digest(truth))
+      broken("drvbc_fast_all has other contacts than all pairs");
 }
 
 }  // namespace cscd::fuzz

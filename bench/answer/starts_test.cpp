@@ -115,5 +115,31 @@ TEST(KnownStarts, NeedAnswersWithoutAnythingUndecided) {
                       kUndecided);
 }
 
+// Counts how often it is told that a start is embedded, and whether that is true.
+class Trusting : public Silent<Reports::nothing_from_a_start_that_crosses> {
+ public:
+  explicit Trusting(const Setup& setup) : Silent(setup), start_test_(setup.mesh, setup.reference) {}
+  Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    ++told;
+    EXPECT_TRUE(start_test_.embedded(motion.start()));
+    return detect(motion, bones, out);
+  }
+  static inline int told = 0;
+
+ private:
+  EmbeddingTest start_test_;
+};
+
+// Mutations: every known start is taken for embedded; none is.
+TEST(KnownStarts, AreNotTakenForEmbeddedWhereSomethingCrosses) {
+  Trusting::told = 0;
+  const auto make = [](const cscd::Setup& setup) { return Prepared{std::make_unique<Trusting>(setup), {}}; };
+  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make},
+                      elementary_test_named("exact"));
+  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make},
+                      elementary_test_named("exact"), true);
+  EXPECT_GT(Trusting::told, 10);
+}
+
 }  // namespace
 }  // namespace cscd::bench

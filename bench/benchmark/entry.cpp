@@ -27,8 +27,8 @@ class Asked {
     if (const auto reason = why_not(*row.strategy, mesh_, rig_.has_value())) throw InputError(*reason);
     const Setup setup{mesh_, posed.reference.positions, rig_ ? &*rig_ : nullptr, elementary, 1, row.first};
     detector_ = row.strategy->make(setup).detector;
-    // The promise of a first contact needs to know the start, and these strategies do not see it themselves.
-    if (row.strategy->guarantee == Guarantee::first_contact)
+    // These promises need to know the start, and these strategies do not see it themselves.
+    if (needs_embedded_start(row.strategy->guarantee))
       embedding_ = std::make_unique<EmbeddingTest>(make_embedding_test(setup));
   }
 
@@ -79,6 +79,9 @@ class Asked {
         return row_.first ? Claim::first_contact : Claim::complete;
       case Guarantee::first_contact:
         return starts_embedded ? Claim::first_contact : Claim::none;
+      case Guarantee::all_from_embedded:
+        if (!starts_embedded) return Claim::none;
+        return row_.first ? Claim::first_contact : Claim::complete;
       case Guarantee::heuristic:
         return Claim::none;
     }

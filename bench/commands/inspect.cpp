@@ -102,6 +102,8 @@ json strategies_json(const TriangleMesh& mesh, bool has_bones, const json& embed
     std::string promise = "finds every contact";
     if (strategy.guarantee == Guarantee::first_contact)
       promise = always ? "finds the first contact" : "finds the first contact where the start is embedded";
+    if (strategy.guarantee == Guarantee::all_from_embedded && !always)
+      promise = "finds every contact where the start is embedded";
     if (strategy.guarantee == Guarantee::heuristic) promise = "promises nothing";
     rows.push_back({{"name", strategy.name}, {"can", !reason}, {"why_not", why}});
     if (!reason) rows.back()["promise"] = promise;

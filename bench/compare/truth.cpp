@@ -10,7 +10,8 @@ namespace {
 
 using Findings = std::vector<TruthFinding>;
 
-constexpr std::string_view kComplete = "complete", kFirstContact = "first_contact";
+constexpr std::string_view kComplete = "complete", kFirstContact = "first_contact",
+                           kAllFromEmbedded = "all_from_embedded";
 
 bool has_own_test(const Record& record, const std::string& row) {
   return std::any_of(record.verification.own_tests.begin(), record.verification.own_tests.end(),
@@ -111,13 +112,16 @@ void compare_complete(const Record& before, const StrategyRecord& old_row, const
     out.push_back({after.scene.name, new_row.name, "finds other contacts on " + listed(differ), true});
 }
 
-void compare_first(const Record& before, const StrategyRecord& old_row, const Record& after,
-                   const StrategyRecord& new_row, Findings& out) {
+// For rows that promise nothing where a start is not embedded.
+void compare_from_embedded(const Record& before, const StrategyRecord& old_row, const Record& after,
+                           const StrategyRecord& new_row, Findings& out) {
   std::vector<std::size_t> lost, allowed, later;
-  const bool have_times = !old_row.first_times.empty() && !new_row.first_times.empty();
+  const bool all = old_row.guarantee == kAllFromEmbedded && new_row.guarantee == kAllFromEmbedded;
+  const bool have_times = !all && !old_row.first_times.empty() && !new_row.first_times.empty();
   for (const SharedInterval& i : shared_intervals(before.counted_intervals, after.counted_intervals)) {
-    const bool same = have_times ? old_row.first_times[i.before] == new_row.first_times[i.after]
-                                 : has_contact(old_row, i.before) == has_contact(new_row, i.after);
+    const bool same = all          ? old_row.digests[i.before] == new_row.digests[i.after]
+                      : have_times ? old_row.first_times[i.before] == new_row.first_times[i.after]
+                                   : has_contact(old_row, i.before) == has_contact(new_row, i.after);
     if (!same && !promises_nothing(before, i.interval) && !promises_nothing(after, i.interval))
       lost.push_back(i.interval);
     else if (!same)
@@ -125,8 +129,9 @@ void compare_first(const Record& before, const StrategyRecord& old_row, const Re
     else if (old_row.digests[i.before] != new_row.digests[i.after])
       later.push_back(i.interval);
   }
-  const std::string what =
-      have_times ? "tells another first time on " : "disagrees on whether there is contact on ";
+  const std::string what = all          ? "finds other contacts on "
+                           : have_times ? "tells another first time on "
+                                        : "disagrees on whether there is contact on ";
   if (!lost.empty()) out.push_back({after.scene.name, new_row.name, what + listed(lost), true});
   if (!allowed.empty())
     out.push_back({after.scene.name, new_row.name,
@@ -149,8 +154,8 @@ void compare_rows(const Record& before, const Record& after, Findings& out) {
     if (has_own_test(before, new_row.name) || has_own_test(after, new_row.name)) continue;
     if (old_row->guarantee == kComplete && new_row.guarantee == kComplete)
       compare_complete(before, *old_row, after, new_row, out);
-    else if (new_row.guarantee == kFirstContact)
-      compare_first(before, *old_row, after, new_row, out);
+    else if (new_row.guarantee == kFirstContact || new_row.guarantee == kAllFromEmbedded)
+      compare_from_embedded(before, *old_row, after, new_row, out);
   }
 }
 

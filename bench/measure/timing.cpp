@@ -68,7 +68,10 @@ bool agree(std::span<const Contestant> contestants, std::span<const Answer> answ
   }
   first = complete;
   for (std::size_t c = 0; c < contestants.size(); ++c) {
-    if (contestants[c].strategy->guarantee != Guarantee::first_contact) continue;
+    const Guarantee guarantee = contestants[c].strategy->guarantee;
+    if (!needs_embedded_start(guarantee)) continue;
+    const bool all = guarantee == Guarantee::all_from_embedded && complete != nullptr;
+    if (all && complete->digest != answers[c].digest) return !starts_embedded();
     if (first != nullptr && first->first != answers[c].first) return !starts_embedded();
     first = &answers[c];
   }
@@ -106,7 +109,7 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
     expect_verified(embedded, verifier, i, input);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
       const Strategy& strategy = *contestants[c].strategy;
-      if (strategy.guarantee == Guarantee::first_contact)
+      if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken.count(), records[c].ms, repetition);
       if (strategy.role != Role::stand_in) continue;
       lead_up(strategy, *contestants[c].timed, *input.clip, i);

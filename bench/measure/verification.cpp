@@ -97,7 +97,7 @@ void keep_shared(const ContactSet& truth, ContactSet& answer) {
 
 bool promises(Guarantee guarantee, bool starts_embedded, const ContactSet& reference) {
   if (reference.contacts.empty()) return false;
-  return guarantee == Guarantee::complete || (guarantee == Guarantee::first_contact && starts_embedded);
+  return guarantee == Guarantee::complete || (needs_embedded_start(guarantee) && starts_embedded);
 }
 
 void add(const Verification& judgement, bool promised, std::size_t interval, VerifiedStrategy& row) {

@@ -89,6 +89,12 @@ constexpr std::array kStrategies = {
                                                      {.name = "drvbc_fast_complete", .complete = true});
                             }},
                            Role::stand_in))),
+    following({"drvbc_fast_all", "drvbc_fast_complete from starts that are known to be embedded",
+               Guarantee::all_from_embedded, kClosedMesh,
+               [](const Setup& setup) {
+                 return make_drvbc_fast(
+                     setup, {.name = "drvbc_fast_all", .complete = true, .starts_embedded = true});
+               }}),
 #ifdef CSCD_BASELINES_FCL
     in_library({"fcl", "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
                 Guarantee::heuristic, kAnySurface, make_fcl, "checker", true}),

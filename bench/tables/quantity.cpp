@@ -13,7 +13,8 @@ namespace {
 using nlohmann::ordered_json;
 
 // A row of this guarantee relies on a test of the start, whose time is a stage of this name.
-constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact";
+constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact",
+                           kAllFromEmbedded = "all_from_embedded";
 // The stage in which the stand-in, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
 
@@ -96,7 +97,8 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
   std::vector<std::vector<double>> sums;
   for (const std::string& stage : split(stages, '+')) {
     const auto column = strategy.ms.find(stage);
-    if (column == strategy.ms.end() && stage == kStartTest && strategy.guarantee == kFirstContact)
+    if (column == strategy.ms.end() && stage == kStartTest &&
+        (strategy.guarantee == kFirstContact || strategy.guarantee == kAllFromEmbedded))
       throw Missing{"this record does not have the time of the test of the start"};
     if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_stand_in().name)
       throw Missing{"this record does not have the time of looking at the start"};

@@ -246,16 +246,23 @@ class PairTester : public TrianglePairSink {
 class ComposedDetector : public Detector {
  public:
   ComposedDetector(std::unique_ptr<Culler> culler, const Setup& setup, PairOptions options)
-      : culler_(std::move(culler)), tester_(setup, std::move(options), clock_) {}
+      : starts_embedded_(options.starts_embedded),
+        excludes_(setup.exclusions != nullptr),
+        first_only_(setup.first_only),
+        culler_(std::move(culler)),
+        tester_(setup, std::move(options), clock_) {}
 
   Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    return run(motion, bones, out, 0, nullptr);
+    return run(motion, bones, out, starts_embedded_, 0, nullptr);
+  }
+  Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    return run(motion, bones, out, true, 0, nullptr);
   }
   Report detect_and_see_start(const Motion& motion, const Rig::Interval* bones, ContactSet& out,
                               std::size_t most, Crossings& start) override {
     start.pairs.clear();
     start.total = 0;
-    const Report report = run(motion, bones, out, most, &start);
+    const Report report = run(motion, bones, out, false, most, &start);
     std::ranges::sort(start.pairs);
     return report;
   }
@@ -264,9 +271,11 @@ class ComposedDetector : public Detector {
   RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:
-  Report run(const Motion& motion, const Rig::Interval* bones, ContactSet& out, std::size_t most,
-             Crossings* start) {
+  Report run(const Motion& motion, const Rig::Interval* bones, ContactSet& out, bool embedded,
+             std::size_t most, Crossings* start) {
     out.clear();
+    // The first contact may be an excluded one, and then says nothing of the others.
+    culler_->start_is_embedded(embedded && !excludes_);
     tester_.start_interval(motion, out, most, start);
     clock_.reset();
 
@@ -278,6 +287,11 @@ class ComposedDetector : public Detector {
     Report report;
     report.cull = culler_->cull(tester_);
     tester_.finish_interval();
+    if (!out.contacts.empty() && !first_only_)
+      if (const auto rest = culler_->cull_rest(tester_)) {
+        *report.cull.bvot += *rest;
+        tester_.finish_interval();
+      }
     clock_.stop();
 
     report.cull.pctp = tester_.count();
@@ -290,6 +304,7 @@ class ComposedDetector : public Detector {
     return report;
   }
 
+  const bool starts_embedded_, excludes_, first_only_;
   StageClock clock_;
   std::unique_ptr<Culler> culler_;
   PairTester tester_;

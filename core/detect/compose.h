@@ -22,13 +22,16 @@ struct PairOptions {
   // The threads that filter and test, for a strategy whose culler uses as many. Contacts, their order and all
   // counters are the same on any number.
   int threads = 1;
+  // detect() takes every start for embedded, as detect_from_embedded() does.
+  bool starts_embedded = false;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy
 // shares what happens behind the culler: relative boxes (optional), expansion into feature pairs, each of
 // which is tested once, the certified non-penetration filter, and the elementary test. The detector owns the
-// clock of the interval. In the pipeline `published`, the filter is the plain sign, whatever the options say.
-// What `setup` refers to must outlive the detector.
+// clock of the interval. Where a culler has looked for the first contact alone, and anything passed on
+// touches or is undecided, it is asked for the rest. In the pipeline `published`, the filter is the plain
+// sign, whatever the options say. What `setup` refers to must outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup,
                                   PairOptions options = {});
 

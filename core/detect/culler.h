@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -67,6 +69,13 @@ class Culler {
   // Passes every triangle pair that is not proven apart to `sink` and returns the culling counters, except
   // pctp, which the caller takes from the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
+  // Says of the intervals from here on whether their starts are known to be embedded. Where they are, cull()
+  // may look for the first contact alone, and cull_rest() then passes on the others.
+  virtual void start_is_embedded(bool /*known*/) {}
+  // Called after cull() has passed on a pair that touches: passes on all pairs that cull() may have left out
+  // because it looked for the first contact alone. Returns the number of overlap tests; nothing where cull()
+  // has kept all contacts. Stage `traversal`.
+  virtual std::optional<std::uint64_t> cull_rest(TrianglePairSink& /*sink*/) { return std::nullopt; }
   // Forgets all intervals (Detector::forget).
   virtual void forget() {}
   // Returns what preparation has found out (Detector::saved_preparation).

@@ -56,6 +56,12 @@ class Detector {
   // interval; it is null for a mesh without a rig. A detector logs nothing; it throws only where a package
   // that it calls fails or refuses the positions (baselines/embree, baselines/fcl).
   virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
+  // Does what detect() does, for an interval whose start the caller knows to be embedded (rule
+  // embedded-start, core/soundness.md). A complete strategy may then take less time, and finds the same
+  // contacts.
+  virtual Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) {
+    return detect(motion, bones, out);
+  }
   // Does what detect() does, and also finds which triangles cross at the start: it tests exactly, in that
   // pose, the pairs of triangles that the culling passes on. At most `most` crossing pairs are kept. Throws
   // std::logic_error where the strategy does not promise it (Strategy::sees_start).

@@ -19,8 +19,13 @@ class Exclusions;
 // What a strategy promises (core/soundness.md). `complete`: on every input, every feature pair in contact is
 // passed on to the elementary test. `first_contact`: on a closed, consistently oriented mesh with an embedded
 // start, at least one feature pair that attains the earliest contact time is passed on; later contacts may be
-// missing. `heuristic`: nothing.
-enum class Guarantee { complete, first_contact, heuristic };
+// missing. `all_from_embedded`: on such a mesh with such a start, all of them, provided that the elementary
+// test takes no contact for apart. `heuristic`: nothing.
+enum class Guarantee { complete, first_contact, all_from_embedded, heuristic };
+// Whether a guarantee promises nothing from a start that is not embedded.
+constexpr bool needs_embedded_start(Guarantee guarantee) {
+  return guarantee == Guarantee::first_contact || guarantee == Guarantee::all_from_embedded;
+}
 // Returns the name of the enumerator.
 std::string_view to_string(Guarantee guarantee);
 
@@ -40,7 +45,8 @@ struct Setup {
   // (contact.h) drops them. A strategy that brings its own elementary test throws InputError.
   bool first_only = false;
   // Feature pairs that do not count as contacts; null for none. They are dropped before they are tested. The
-  // guarantee `first_contact` is void with exclusions, because the surface may then pass through itself. A
+  // guarantee `first_contact` is void with exclusions, because the surface may then pass through itself;
+  // `all_from_embedded` then holds from any start. A
   // strategy that brings its own elementary test throws InputError.
   const Exclusions* exclusions = nullptr;
   // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.

@@ -33,6 +33,8 @@ std::string_view to_string(Guarantee guarantee) {
       return "complete";
     case Guarantee::first_contact:
       return "first_contact";
+    case Guarantee::all_from_embedded:
+      return "all_from_embedded";
     case Guarantee::heuristic:
       return "heuristic";
   }
@@ -67,8 +69,9 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
     fail("the reference lacks " + describe(surplus.front()));
   } else if (wrong != found.end()) {
     fail("wrong time: " + describe(*wrong));
-  } else if (guarantee == Guarantee::complete && !missing.empty()) {
-    fail("lost " + describe(missing.front()) + " (guarantee complete)");
+  } else if (!missing.empty() && (guarantee == Guarantee::complete ||
+                                  (guarantee == Guarantee::all_from_embedded && starts_embedded))) {
+    fail("lost " + describe(missing.front()) + " (guarantee " + std::string(to_string(guarantee)) + ")");
   } else if (guarantee == Guarantee::first_contact && starts_embedded && !expected.empty()) {
     const double first = reference.contacts.front().time;
     const bool kept = std::any_of(answer.contacts.begin(), answer.contacts.end(),

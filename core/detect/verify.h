@@ -21,8 +21,8 @@ struct Verification {
   std::uint64_t found_contacts = 0;  // contacts of the reference that the strategy found too
 };
 
-// Judges an answer; both sets have to be sorted. `starts_embedded` matters for the guarantee `first_contact`
-// alone, which promises nothing without it.
+// Judges an answer; both sets have to be sorted. `starts_embedded` matters for the guarantees that promise
+// nothing without it.
 Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
                     bool starts_embedded);
 

@@ -11,7 +11,8 @@
 namespace cscd {
 
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
-  if (!options.complete) require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
+  if (!options.complete || options.starts_embedded)
+    require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
   if (setup.threads < 1)
     throw InputError("strategy " + std::string(options.name) + ": " + std::to_string(setup.threads) +
                      " threads; give at least one");
@@ -27,7 +28,9 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   preparation.atomic_clusters = 1 + *std::max_element(best.cluster_of.begin(), best.cluster_of.end());
   preparation.atomic_cluster = std::move(best.cluster_of);
   preparation.threads = setup.threads;
-  return {compose(std::move(best.culler), setup, {.threads = setup.threads}), preparation};
+  return {compose(std::move(best.culler), setup,
+                  {.threads = setup.threads, .starts_embedded = options.starts_embedded}),
+          preparation};
 }
 
 }  // namespace cscd

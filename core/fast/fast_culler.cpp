@@ -28,6 +28,7 @@ FastCuller::FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOption
       reference_(setup.reference),
       cut_(std::move(cut)),
       options_(options),
+      signs_suffice_(options.complete && setup.mesh.closed_and_oriented()),
       positions_(setup.reference),
       certificates_(cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),
       stars_(setup.mesh),
@@ -52,6 +53,7 @@ bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
 
 void FastCuller::look_at(const Motion& motion) {
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
+  certificates_.keep_all(options_.complete && !by_signs_);
   certificates_.start(positions_);
   team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) look(p);
@@ -66,13 +68,24 @@ void FastCuller::look_at(const Motion& motion) {
 CullCounts FastCuller::cull(TrianglePairSink& sink) {
   CullCounts counts;
   counts.radial = certificates_.counts();
-  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known() && moves_far()) {
-    counts.bvot = cull_parts(sink);
-  } else {
-    tests_ = descent_.run(bounds_, grid_, sink);
-    counts.bvot = *tests_;
-  }
+  counts.bvot = descend(sink);
   return counts;
+}
+
+std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
+  if (!by_signs_) return std::nullopt;
+  by_signs_ = false;
+  tests_.reset();  // the cover stays as it is within an interval
+  refit(*motion_);
+  look_at(*motion_);
+  return descend(sink);
+}
+
+// Passes on the pairs of the interval that has been looked at, and returns the number of overlap tests.
+std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
+  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known() && moves_far())
+    return cull_parts(sink);
+  return *(tests_ = descent_.run(bounds_, grid_, sink));
 }
 
 // Whether places of the surface move apart by more than the width of a patch, on the average.

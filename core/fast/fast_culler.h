@@ -48,6 +48,10 @@ class FastCuller : public Culler {
   // once for its bounds and its orientations. Returns true.
   bool classify(const Motion& motion, const Rig::Interval* bones) override;
   CullCounts cull(TrianglePairSink& sink) override;
+  // Only a complete culler of a closed and consistently oriented mesh makes use of an embedded start: signs
+  // alone certify until something touches, and capped clusters only then.
+  void start_is_embedded(bool known) override { by_signs_ = known && signs_suffice_; }
+  std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
   void forget() override;
   std::vector<std::byte> saved_preparation() const override {
     return saved_cut(mesh_, reference_, cut_, covers_used_);
@@ -76,6 +80,7 @@ class FastCuller : public Culler {
   };
 
   bool moves_far() const;
+  std::uint64_t descend(TrianglePairSink& sink);
   std::uint64_t cull_parts(TrianglePairSink& sink);
   std::uint64_t cull_part(const Part& part);
   void begin(const Part& part);
@@ -88,6 +93,8 @@ class FastCuller : public Culler {
   CutSurface cut_;
   std::size_t covers_used_ = 0;
   DrvbcFastOptions options_;
+  bool signs_suffice_;     // from an embedded start, as long as nothing touches
+  bool by_signs_ = false;  // of a complete culler
   LocalPositions positions_;
   Certificates certificates_;
   Stars stars_;

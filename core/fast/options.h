@@ -23,6 +23,9 @@ struct DrvbcFastOptions {
   Clusters clusters = Clusters::by_trial;
   // Keeps every contact, on any surface and from any start, by the contour test of capped clusters.
   bool complete = false;
+  // With `complete`, on a closed and consistently oriented mesh: takes every start for embedded, and so
+  // spares the contour test in intervals without contacts.
+  bool starts_embedded = false;
 
   bool operator==(const DrvbcFastOptions&) const = default;
 };

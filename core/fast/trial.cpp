@@ -29,10 +29,11 @@ constexpr std::size_t kTrials = 6;
 // The trial poses are not the motion to come, so small differences between candidates say nothing.
 constexpr std::uint64_t kClose = 64;
 
-// Returns the work of all trials. Stops early, and returns a sum above `most`, once the work is more than
-// `most`.
-std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, std::uint64_t most) {
+// Returns the work of all trials, for a complete culler by signs or by caps. Stops early, and returns a sum
+// above `most`, once the work is more than `most`.
+std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, bool by_signs, std::uint64_t most) {
   std::uint64_t tests = 0;
+  culler.start_is_embedded(by_signs);
   for (const Trial& trial : trials) {
     if (tests > most) break;
     CountingSink sink;
@@ -65,7 +66,7 @@ Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
 class Choice {
  public:
   // `trials` must outlive the choice.
-  explicit Choice(std::span<const Trial> trials) : trials_(trials) {}
+  Choice(std::span<const Trial> trials, bool by_signs) : trials_(trials), by_signs_(by_signs) {}
 
   // Tries the candidate with three covers, two and one. It has to be better than those before it by more than
   // one in kClose.
@@ -74,7 +75,7 @@ class Choice {
     bool better = false;
     for (std::size_t count = kCovers; count > 0; --count) {
       candidate.culler->use_covers(count);
-      const std::uint64_t needed = work(*candidate.culler, trials_, least);
+      const std::uint64_t needed = work(*candidate.culler, trials_, by_signs_, least);
       if (needed >= least) continue;
       better = true, covers_ = count, least = needed;
     }
@@ -87,6 +88,7 @@ class Choice {
 
  private:
   std::span<const Trial> trials_;
+  bool by_signs_;
   Candidate best_;
   std::size_t covers_ = 0;
   std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
@@ -108,7 +110,8 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
 
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.
-  const DrvbcFastOptions whole{.name = options.name, .complete = options.complete};
+  const DrvbcFastOptions whole{
+      .name = options.name, .complete = options.complete, .starts_embedded = options.starts_embedded};
   std::vector<Trial> trials;
   const auto of_bones = [&] {
     const std::vector<BoneId> bone_of = bones();
@@ -127,7 +130,7 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
   });
   for (const std::exception_ptr& exception : thrown)
     if (exception) std::rethrow_exception(exception);
-  Choice choice(trials);
+  Choice choice(trials, options.starts_embedded);
   for (Candidate& candidate : candidates) choice.consider(std::move(candidate));
   Candidate best = std::move(choice.best());
   if (options != whole) best = made(setup, std::move(best.cluster_of), options);

@@ -61,8 +61,9 @@ Session::Row& Session::stand_in() {
 }
 
 bool Session::finds_all(const Row& row) const {
-  return row.strategy->guarantee == Guarantee::complete && !row.strategy->own_test && can_follow() &&
-         !first_only();
+  const bool all = row.strategy->guarantee == Guarantee::complete ||
+                   (row.strategy->guarantee == Guarantee::all_from_embedded && poses_.crossings().total == 0);
+  return all && !row.strategy->own_test && can_follow() && !first_only();
 }
 
 // Chooses the row that answers a step, and sees to it that what crosses at the start is known, or that the
@@ -110,7 +111,11 @@ bool Session::follow_to(std::span<const Vec3> start, const Rig::Interval* bones)
   if (!provable || !has_bones || same_bits(touched_end_, start)) return false;
   std::optional<Rig::Interval> way;
   if (bones != nullptr && setup_.rig != nullptr) way = Rig::Interval{pose_bones_, bones->start};
-  main_.detector->detect(Motion(poses_.positions(), start), way ? &*way : nullptr, touched_);
+  const Motion motion(poses_.positions(), start);
+  if (embedded)
+    main_.detector->detect_from_embedded(motion, way ? &*way : nullptr, touched_);
+  else
+    main_.detector->detect(motion, way ? &*way : nullptr, touched_);
   const bool all_known = touched_.contacts.empty() || finds_all(main_);
   if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
   poses_.follow(start, touched_);
@@ -147,7 +152,9 @@ void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, St
   const Rig::Interval* const used = setup_.rig != nullptr ? bones : nullptr;
   out.strategy = row.strategy;
   if (start_known_) {
-    out.report = row.detector->detect(motion, used, out.found);
+    const bool embedded = !options_.ignore_starts && poses_.crossings().total == 0 && can_follow();
+    out.report = embedded ? row.detector->detect_from_embedded(motion, used, out.found)
+                          : row.detector->detect(motion, used, out.found);
   } else {
     out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
     poses_.know(motion.start(), seen_);
@@ -192,7 +199,9 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
     ask(row, motion, bones, out);
     // A row that promises the first contact may miss those after it. If that first one is left out as a
     // crossing at rest, the answer has to come from a complete row.
-    if (needs_start() && &row == &main_ && out.rest_contacts > 0) ask(stand_in(), motion, bones, out);
+    if (row.strategy->guarantee == Guarantee::first_contact && needs_start() && &row == &main_ &&
+        out.rest_contacts > 0)
+      ask(stand_in(), motion, bones, out);
   } catch (...) {  // nothing is known of the end then
     if (moved_on_) poses_.go_back(motion.start());
     throw;
@@ -203,6 +212,7 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   const Guarantee guarantee = out.strategy->guarantee;
   out.proven = setup_.elementary.apart_is_proof &&
                (guarantee == Guarantee::complete ||
+                (guarantee == Guarantee::all_from_embedded && out.starts_embedded) ||
                 (guarantee == Guarantee::first_contact && out.starts_embedded && out.rest_contacts == 0));
   out.wall_ms = whole.milliseconds();
 }

@@ -81,13 +81,11 @@ class Session {
   bool first_only() const { return options_.first && left_out_.empty(); }
   // Whether the contacts of a step say what crosses at its end.
   bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
-  // Whether the answers of a row hold all contacts of a motion whose start is embedded or not.
+  // Whether the answers of a row hold all contacts of a motion from the pose that poses_ knows.
   bool finds_all(const Row& row) const;
   // Whether the strategy promises nothing from a start that is not embedded, and a stand-in is to answer
   // there.
-  bool needs_start() const {
-    return main_.strategy->guarantee == Guarantee::first_contact && !options_.unproven;
-  }
+  bool needs_start() const { return needs_embedded_start(main_.strategy->guarantee) && !options_.unproven; }
   // Begins a step: takes its end for the last known pose where it starts in the last known pose.
   void move_on(const Motion& motion);
   Row& row_for(const Motion& motion, const Rig::Interval* bones);

@@ -28,7 +28,7 @@ STRATEGIES = {  # colour and dash by name; a family has one colour
     "drvbc": (BLUE, "-"), "drvbc_unrefined": (BLUE, "--"), "drvbc_unmerged": (BLUE, ":"), "drvbc_unrelative": (BLUE, "-."),
     "drvbc_uncached": (BLUE, (0, (5, 1, 1, 1))), "drvbc_one_vertex": (BLUE, (0, (1, 3))),
     "drvbc_bones": (SKY, "-."), "drvbc_pieces": (SKY, (0, (5, 1, 1, 1))),
-    "drvbc_fast": (RED, "-"), "drvbc_fast_complete": (RED, "--"), "drvbc_fast_one_cover": (OLIVE, "-"),
+    "drvbc_fast": (RED, "-"), "drvbc_fast_all": (RED, (0, (8, 2))), "drvbc_fast_complete": (RED, "--"), "drvbc_fast_one_cover": (OLIVE, "-"),
     "drvbc_fast_two_covers": (OLIVE, "--"), "drvbc_fast_swept_bounds": (OLIVE, ":"), "drvbc_fast_no_stars": (OLIVE, "-."),
     "drvbc_fast_no_planes": (OLIVE, (0, (5, 1, 1, 1))), "drvbc_fast_bones": (RED, "-."), "drvbc_fast_no_bones": (RED, ":"),
     "drvbc_fast_whole_steps": (OLIVE, (0, (1, 2))),

@@ -24,7 +24,6 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       single_triangle_signs_(tree.patches.size()),
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
-      one_is_enough_(capped.empty() ? 0 : 1),
       capped_(std::move(capped)),
       may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()) {
   // The first cover holds every triangle; `look` relies on that.
@@ -32,6 +31,14 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
   for (const Patch& patch : tree_.patches)
     cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
   use_covers(kCovers);
+  keep_all(!capped_.empty());
+}
+
+void Certificates::keep_all(bool all) {
+  if (all == keeps_all_) return;
+  keeps_all_ = all;
+  one_is_enough_ = all ? 1 : 0;
+  forget();
 }
 
 void Certificates::use_covers(std::size_t count) {
@@ -82,15 +89,14 @@ std::size_t Certificates::looks_per_interval() const {
 void Certificates::start(const LocalPositions& positions) {
   positions_ = &positions;
   place_viewpoints(positions.records());
-  for (std::size_t c = 0; c < std::min(covers_used_, capped_.size()); ++c)
-    capped_[c].start(positions, viewpoint_[c]);
+  for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c) capped_[c].start(positions, viewpoint_[c]);
 }
 
 void Certificates::finish() {
-  if (capped_.empty())
-    certify_all_round();
-  else
+  if (keeps_all_)
     certify_clear();
+  else
+    certify_all_round();
   if (!positions_->known()) forget();
   label_nodes();
 }
@@ -111,7 +117,7 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   orientations(lanes, patch, from, positions_->error(), seen);
-  if (!capped_.empty()) {
+  if (keeps_all_) {
     may_cross_ray_[p] = 0;
     for (std::size_t c = 0; c < covers_used_; ++c)
       if (from[c] != nullptr && capped_[c].may_cross_ray(static_cast<std::size_t>(patch.cluster[c]), lanes))
@@ -141,7 +147,7 @@ void Certificates::make_usual(std::size_t p) {
   certified_[p] = {};
   certified_[p][0].positive = cell_[p].lanes;
   for (std::size_t c = 1; c < covers_used_; ++c)
-    certified_[p][c].positive = capped_.empty()                ? cell_[p].inside[c]
+    certified_[p][c].positive = !keeps_all_                    ? cell_[p].inside[c]
                                 : cell_[p].cluster[c] != kNone ? cell_[p].lanes
                                                                : Mask16{0};
 }

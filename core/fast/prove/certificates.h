@@ -23,10 +23,13 @@ namespace cscd::fast {
 // (capped_clusters.h).
 class Certificates {
  public:
-  // With `capped`, one for each cover, no contact is lost whatever the start. Without, the first contact of
-  // an embedded start is kept. `tree` and `covers` must outlive the certificates.
+  // With `capped`, one for each cover, no contact is lost whatever the start (keep_all). Without, the first
+  // contact of an embedded start is kept. `tree` and `covers` must outlive the certificates.
   Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped = {});
 
+  // With `all`, capped clusters certify from the next interval on, which takes that they were given. Without,
+  // signs alone do. At first, capped clusters do where they were given.
+  void keep_all(bool all);
   // Looks from the first `count` covers alone, at least one, from the next interval on.
   void use_covers(std::size_t count);
   // The number of looks in an interval. A look is the orientation of one patch's triangles towards the
@@ -83,7 +86,7 @@ class Certificates {
   Shared shared(std::size_t p, std::size_t q) const {
     Shared sets{{}, {}, cell_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
-      if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && !capped_.empty()) {
+      if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && keeps_all_) {
         // One clear triangle of the two is enough.
         sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = cell_[q].lanes;
         sets.p[2 * c + 1] = cell_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
@@ -171,8 +174,9 @@ class Certificates {
   std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch
   std::vector<State> state_;  // [patches], padded with usual ones to a whole word
   std::vector<Label> label_;  // of each node
-  std::int32_t
-      one_is_enough_;  // 1 with capped clusters, for then one clear triangle of two is enough, else 0
+  bool keeps_all_ = false;    // by capped clusters
+  std::int32_t one_is_enough_ =
+      0;  // 1 where clusters are capped, for then one clear triangle of two is enough
   std::vector<CappedClusters> capped_;
   std::vector<std::uint8_t>
       may_cross_ray_;  // [patches]: the covers whose ray the patch may cross, a bit each
