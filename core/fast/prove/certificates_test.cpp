@@ -333,6 +333,42 @@ TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
   EXPECT_EQ(*std::max_element(both.positive.begin(), both.positive.end()), scene.mesh.triangle_count());
 }
 
+// Signs certify less near seams than capped clusters do, and other triangles. Mutation: what one of the two
+// certified stays when the other takes its place.
+TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
+  Scene scene(0, 0, 1);
+  const auto with_caps = [&] {
+    std::vector<CappedClusters> capped;
+    for (std::size_t c = 0; c < scene.covers.size(); ++c)
+      capped.emplace_back(scene.mesh, scene.shape.positions, scene.covers[c], c);
+    return Certificates(scene.tree, scene.covers, std::move(capped));
+  };
+  const auto look = [&](Certificates& certificates, bool all) {
+    certificates.keep_all(all);
+    certificates.start(scene.local);
+    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+      certificates.look(p, load(scene.local.records(), scene.tree.patches[p].vertex));
+    certificates.finish();
+  };
+  Certificates used = with_caps();
+  std::size_t different = 0;
+  for (const bool all : {true, false, false, true, false}) {
+    look(used, all);
+    Certificates fresh = with_caps(), other = with_caps();
+    look(fresh, all), look(other, !all);
+    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
+        const Certificates::Shared found = used.shared(p, q), expected = fresh.shared(p, q);
+        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
+        different += found.p != other.shared(p, q).p;
+      }
+    for (std::size_t a = 0; a < scene.tree.nodes.size(); ++a)
+      for (std::size_t b = a; b < scene.tree.nodes.size(); ++b)
+        ASSERT_EQ(used.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
+  }
+  EXPECT_GT(different, 100u);
+}
+
 // A picture shows what the certificates say: signs of the first cover, clusters of all covers, patches, and
 // observers where they stand in the scene.
 TEST(Certificates, AreShownAsTheyAre) {
