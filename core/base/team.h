@@ -40,8 +40,12 @@ class Team {
   void ranges(std::size_t count, std::size_t least, const Work& work) const {
     const std::size_t parts = ranges_of(count, least);
     each(parts, [&](std::size_t part, std::size_t) {
-      work(count * part / parts, count * (part + 1) / parts, part);
+      work(range_begin(count, parts, part), range_begin(count, parts, part + 1), part);
     });
+  }
+  // Returns where one of `parts` ranges of [0, count) begins.
+  static std::size_t range_begin(std::size_t count, std::size_t parts, std::size_t part) {
+    return count * part / parts;
   }
   // Returns the number of ranges that ranges() makes: one for a team of one thread, else up to four a thread.
   std::size_t ranges_of(std::size_t count, std::size_t least) const {

@@ -58,10 +58,10 @@ void FastCuller::look_at(const Motion& motion) {
   team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) look(p);
   });
-  cut_.tree.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+  cut_.tree.for_each_inner_upwards(team_, [&](std::size_t n, const PatchTree::Node& node) {
     bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
   });
-  certificates_.finish();
+  certificates_.finish(team_);
   if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
 }
 

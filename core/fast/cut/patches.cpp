@@ -93,9 +93,25 @@ class TreeBuilder {
     });
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n)
       if (!tree_.nodes[n].is_leaf()) tree_.inner.push_back(static_cast<std::int32_t>(n));
+    find_inner_ends();
   }
 
  private:
+  // What lies below a node ends where what lies below its last inner child ends.
+  void find_inner_ends() {
+    std::vector<std::int32_t> place(tree_.nodes.size(), kNone);
+    for (std::size_t i = 0; i < tree_.inner.size(); ++i)
+      place[static_cast<std::size_t>(tree_.inner[i])] = static_cast<std::int32_t>(i);
+    tree_.inner_end.resize(tree_.inner.size());
+    for (std::size_t i = tree_.inner.size(); i-- > 0;) {
+      const PatchTree::Node& node = tree_.nodes[static_cast<std::size_t>(tree_.inner[i])];
+      std::int32_t end = static_cast<std::int32_t>(i) + 1;
+      for (const std::size_t child : {node.left(), node.right()})
+        if (place[child] != kNone)
+          end = std::max(end, tree_.inner_end[static_cast<std::size_t>(place[child])]);
+      tree_.inner_end[i] = end;
+    }
+  }
   std::vector<Item> grouped(const std::vector<std::size_t>& patches,
                             const std::vector<std::int32_t>& key) const {
     std::map<std::int32_t, Item> groups;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/team.h"
 #include "core/fast/cut/covers.h"
 #include "core/geometry/lanes16.h"
 #include "core/mesh/triangle_mesh.h"
@@ -78,6 +79,8 @@ struct PatchTree {
   std::vector<Node> nodes;
   std::vector<std::int32_t> leaf;   // [patches]: the leaf of each patch
   std::vector<std::int32_t> inner;  // the inner nodes, ascending, so that children come after their parents
+  // [inner nodes]: the end of what lies below each, which follows it in `inner`
+  std::vector<std::int32_t> inner_end;
   std::vector<Patch> patches;
   // [patches]: the triangles of each patch; a patch with fewer than sixteen repeats its last one. They are
   // kept apart from the patches, because an interval asks for the triangles of few patches.
@@ -89,11 +92,29 @@ struct PatchTree {
 
   // Visits the inner nodes, children before their parents. Walking through all nodes instead would cost a
   // branch a node that no processor foresees.
-  template <class Take>  // (node, its entry)
-  void for_each_inner_upwards(const Take& take) const {
-    for (std::size_t i = inner.size(); i-- > 0;)
+  template <class Take>  // (node, its entry), from any thread
+  void for_each_inner_upwards(const Team& team, const Take& take) const {
+    const std::size_t count = inner.size(), ranges = team.ranges_of(count, kInnerTogether);
+    const auto visit = [&](std::size_t i) {
       take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
+    };
+    if (ranges == 1) {
+      for (std::size_t i = count; i-- > 0;) visit(i);
+      return;
+    }
+    // The few nodes of a range below which there are nodes of other ranges wait for the end.
+    team.ranges(count, kInnerTogether, [&](std::size_t first, std::size_t last, std::size_t) {
+      for (std::size_t i = last; i-- > first;)
+        if (static_cast<std::size_t>(inner_end[i]) <= last) visit(i);
+    });
+    for (std::size_t part = ranges; part-- > 0;) {
+      const std::size_t first = Team::range_begin(count, ranges, part),
+                        last = Team::range_begin(count, ranges, part + 1);
+      for (std::size_t i = last; i-- > first;)
+        if (static_cast<std::size_t>(inner_end[i]) > last) visit(i);
+    }
   }
+  static constexpr std::size_t kInnerTogether = 256;  // so many inner nodes are worth another thread
 
   // [patches][covers]: the triangles that lie inside the patch's cluster, so that all triangles round their
   // corners belong to it.

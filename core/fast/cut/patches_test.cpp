@@ -137,5 +137,23 @@ TEST(Patches, TheTreeHoldsThePatchesInOrder) {
   EXPECT_EQ(cut.tree.nodes.size(), 2 * next - 1);
 }
 
+// Mutations: a range does not wait for the nodes of later ones; a node that waits is never visited.
+TEST(Patches, InnerNodesAreVisitedAfterTheirChildrenOnAnyNumberOfThreads) {
+  const test::Shape tube = test::uneven_tube(24, 600, 15, [](double) { return 0.8; });
+  const TriangleMesh mesh = tube.mesh();
+  const CutSurface cut =
+      cut_surface(mesh, tube.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  ASSERT_GT(cut.tree.inner.size(), 4 * PatchTree::kInnerTogether);
+  for (const int threads : {1, 2, 3, 8}) {
+    const Team team(threads);
+    std::vector<std::size_t> below(cut.tree.nodes.size(), 0);  // patches
+    for (std::size_t n = 0; n < below.size(); ++n) below[n] = cut.tree.nodes[n].is_leaf();
+    cut.tree.for_each_inner_upwards(team, [&](std::size_t n, const PatchTree::Node& node) {
+      below[n] += below[node.left()] + below[node.right()];
+    });
+    EXPECT_EQ(below[0], cut.tree.patches.size()) << threads << " threads";
+  }
+}
+
 }  // namespace
 }  // namespace cscd::fast

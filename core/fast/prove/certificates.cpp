@@ -92,13 +92,13 @@ void Certificates::start(const LocalPositions& positions) {
   for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c) capped_[c].start(positions, viewpoint_[c]);
 }
 
-void Certificates::finish() {
+void Certificates::finish(const Team& team) {
   if (keeps_all_)
     certify_clear();
   else
     certify_all_round();
   if (!positions_->known()) forget();
-  label_nodes();
+  label_nodes(team);
 }
 
 void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
@@ -218,7 +218,7 @@ void Certificates::certify_clear() {
   }
 }
 
-void Certificates::label_nodes() {
+void Certificates::label_nodes(const Team& team) {
   counts_.positive = covers_[0].cluster_of.size();
   counts_.negative = counts_.uncertain = 0;
   for_each_unusual([&](std::size_t p) {
@@ -241,7 +241,7 @@ void Certificates::label_nodes() {
   });
   // Recompute the labels of all inner nodes, although few have changed: the descent reads most of them soon,
   // and this pass brings them into the cache.
-  tree_.for_each_inner_upwards([&](std::size_t n, const PatchTree::Node& node) {
+  tree_.for_each_inner_upwards(team, [&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = (left ^ right) >> one_is_enough_ == 0 ? left | right : Label{} + kNone;
   });

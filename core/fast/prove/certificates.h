@@ -57,7 +57,7 @@ class Certificates {
   // thread, then one call of `finish`.
   void start(const LocalPositions& positions);
   void look(std::size_t patch, const PatchLanes& lanes);
-  void finish();
+  void finish(const Team& team = Team());
 
   // Whether no triangle below node `a` has to be held against a triangle below node `b`; for a == b, whether
   // no pair below the node has to be.
@@ -132,7 +132,7 @@ class Certificates {
   void look_round(std::size_t patch);
   Mask16 positive(std::size_t patch, std::size_t cover) const;
   void certify_clear();
-  void label_nodes();
+  void label_nodes(const Team& team);
 
   // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
   // next, and what is certified of them stays as it is.
