@@ -65,7 +65,14 @@ class Plan {
                          " is neither a share of a frame nor a whole number of frames; round it");
   }
 
-  std::vector<std::string> scenes() const { return or_planned(options_.scenes, "scenes"); }
+  // Scenes of which only the study of contacts is planned come last.
+  std::vector<std::string> scenes() const {
+    std::vector<std::string> names = or_planned(options_.scenes, "scenes");
+    if (!options_.scenes.empty()) return names;
+    for (const std::string name : data_.at("contact_scenes"))
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names;
+  }
 
   // Returns the settings that all studies begin from.
   ScaleSubject common(const std::string& scene) const {
@@ -80,6 +87,7 @@ class Plan {
   }
 
   void size(ScaleSubject subject) {
+    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
     subject.rows = chosen_rows(options_, data_.at("size_strategies"));
     std::vector<std::size_t> sizes = sizes_;
     if (options_.largest)
@@ -88,6 +96,7 @@ class Plan {
     for (const std::size_t size : sizes) subject.triangles = size, add(subject);
   }
   void step(ScaleSubject subject) {
+    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
     subject.rows = chosen_rows(options_, data_.at("step_strategies"));
     subject.steps.clear();
     for (const double step : steps_) subject.steps.push_back({subject.scene, step});
@@ -129,8 +138,12 @@ class Plan {
     return std::ranges::find(data_.at(key), ordered_json(scene)) != data_.at(key).end();
   }
   void add(ScaleSubject subject, const char* intervals = "intervals") {
-    subject.starts = spread_starts(scenes::load_scene(subject.scene).frames,
-                                   or_planned(options_.intervals, intervals), subject.steps.back().frames);
+    // A variant with contacts may be shorter than its scene.
+    std::size_t frames = scenes::load_scene(subject.scene).frames;
+    for (const ScaleStep& step : subject.steps)
+      if (step.scene != subject.scene) frames = std::min(frames, scenes::load_scene(step.scene).frames);
+    subject.starts =
+        spread_starts(frames, or_planned(options_.intervals, intervals), subject.steps.back().frames);
     all_.push_back(std::move(subject));
   }
 
@@ -218,6 +231,11 @@ void print(const ordered_json& subject) {
               subject.at("study").get<std::string>().c_str(), subject.at("scene").get<std::string>().c_str(),
               subject.at("triangles").get<std::size_t>(), subject.at("bones").get<std::size_t>(),
               subject.at("threads").get<int>(), subject.at("ok") ? "" : ", NOT VERIFIED");
+  for (const ordered_json& row : subject.at("left_out")) {
+    const std::string why = row.at("why");  // what follows a colon is about single triangles
+    std::printf("  left out: %s, because %s\n", row.at("name").get<std::string>().c_str(),
+                why.substr(0, why.find(':')).c_str());
+  }
   for (const ordered_json& step : subject.at("steps")) {
     for (const ordered_json& failure : step.at("verified").at("failures"))
       std::printf("  %s\n", failure.get<std::string>().c_str());
@@ -289,7 +307,9 @@ void add_scale(CLI::App& app) {
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
   command->add_option("--study", options->studies, study_names() + ", with commas; default all")
       ->delimiter(',');
-  command->add_option("--scene", options->scenes, "scenes with commas; default the six")->delimiter(',');
+  command
+      ->add_option("--scene", options->scenes, "scenes with commas; default the six, and cloth for contacts")
+      ->delimiter(',');
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")
       ->delimiter(',')
       ->check(CLI::Range(500, 20'000'000));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -151,11 +152,12 @@ TEST(ContactRatios, AreMediansOfRepetitionsWithOverWithout) {
 // The program, on surfaces so small that it takes seconds.
 class ScaleProgram : public testing::Test {
  protected:
-  static nlohmann::ordered_json record(std::vector<std::string> arguments, const std::string& name) {
+  static nlohmann::ordered_json record(std::vector<std::string> arguments, const std::string& name,
+                                       const Limits& limits = {}) {
     const std::string out = scratch_->operator/(name);
     arguments.insert(arguments.begin(), "scale");
     arguments.insert(arguments.end(), {"--json", out});
-    const Outcome outcome = cscd(arguments);
+    const Outcome outcome = cscd(arguments, limits);
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     return nlohmann::ordered_json::parse(read(out));
   }
@@ -212,6 +214,43 @@ TEST_F(ScaleProgram, TakesAsManyThreadsAsTheMachineHas) {
     EXPECT_EQ(subject.at("steps")[0].at("strategies")[0].at("counts"),
               out.at("subjects")[0].at("steps")[0].at("strategies")[0].at("counts"));
   }
+}
+
+// Cloth has no bones, and a sheet has a border. Its variant with contacts is shorter than the scene.
+TEST_F(ScaleProgram, LeavesOutRowsThatClothDoesNotAllowAndSaysWhy) {
+  const fs::path folder = *scratch_ / "cloth";
+  fs::create_directories(folder);
+  write(folder / "sheet.json", R"({
+    "schema": "cscd.scene/1", "story": "A small sheet falls. It lands on a floor.",
+    "shape": {"name": "sheet", "cells": 12, "strips": 14, "edge": 1, "centre": [0, 0, 1], "u": [1, 0, 0],
+              "v": [0, 1, 0.2]},
+    "frames": 12, "substeps": 4,
+    "effects": [{"name": "cloth_dynamics", "gravity": [0, 0, -0.2], "drag": 0.02, "bend_compliance": 0.1,
+                 "thickness": 0.9, "floor": 0}]})");
+  write(folder / "sheet_contact.json", R"({
+    "base": "sheet", "story": "The same sheet falls. It is shown for a shorter time.", "frames": 9,
+    "patch": [{"op": "add", "path": "/effects/-", "value": {"name": "contact_response", "pull": 1}}]})");
+  setenv("CSCD_SCENES", folder.c_str(), 1);
+  setenv("CSCD_CACHE", folder.c_str(), 1);
+  const auto out =
+      record({"--study", "contacts", "--scene", "sheet", "--intervals", "3", "--repetitions", "2"},
+             "cloth.json", {.keeps_environment = true});
+  unsetenv("CSCD_SCENES");
+  unsetenv("CSCD_CACHE");
+  EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
+  const auto& subject = out.at("subjects").at(0);
+  EXPECT_EQ(subject.at("bones"), 0);
+  std::vector<std::string> left_out, run;
+  for (const auto& row : subject.at("left_out")) {
+    left_out.push_back(row.at("name"));
+    EXPECT_NE(row.at("why"), "");
+  }
+  for (const auto& row : subject.at("strategies")) run.push_back(row.at("name"));
+  EXPECT_EQ(left_out, (std::vector<std::string>{"drvbc_fast", "drvbc_fast --first", "drvbc"}));
+  EXPECT_NE(std::ranges::find(run, "drvbc_fast_complete"), run.end());
+  EXPECT_NE(std::ranges::find(run, "base"), run.end());
+  for (const auto& step : subject.at("steps")) EXPECT_LT(step.at("starts").back(), 8);
+  EXPECT_FALSE(out.at("contact_ratios").empty());
 }
 
 TEST_F(ScaleProgram, TakesLongerStepsAndOtherBonesOnTheSameSurface) {

@@ -61,15 +61,16 @@ Moments posed_moments(const scenes::Scene& scene, const scenes::Shape& shape, co
 
 Moments recorded_moments(const ScaleSubject& subject) {
   Moments out;
-  const auto keep = [&](std::span<const Vec3> positions, const std::vector<Bone>& bones) {
-    out.moments.push_back({{positions.begin(), positions.end()}, bones});
+  const auto keep = [&](std::span<const Vec3> positions, std::span<const Bone> bones) {
+    out.moments.push_back({{positions.begin(), positions.end()}, {bones.begin(), bones.end()}});
   };
   for (const ScaleStep& step : subject.steps) {
     const Input recorded = open_input(step.scene);
     for (const std::size_t start : subject.starts) {
       const scenes::ClipInterval interval = recorded.clip->load(start);
-      keep(interval.motion.start(), {interval.bones->start.begin(), interval.bones->start.end()});
-      keep(interval.motion.end(), {interval.bones->end.begin(), interval.bones->end.end()});
+      const Rig::Interval bones = interval.bones.value_or(Rig::Interval{});
+      keep(interval.motion.start(), bones.start);
+      keep(interval.motion.end(), bones.end);
       out.intervals.push_back({out.moments.size() - 2, out.moments.size() - 1});
     }
   }
@@ -97,7 +98,9 @@ ScaleInput scale_input(const ScaleSubject& subject) {
   auto clip = std::make_unique<MomentSource>(
       scenes::ClipHeader{std::move(shape.triangles), shape.positions.size(), rig.parent, false},
       std::move(moments.moments), std::move(moments.intervals));
-  Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(rig)};
+  std::optional<Rig> bones;  // cloth has none
+  if (!rig.parent.empty()) bones = std::move(rig);
+  Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(bones)};
   input.threads = subject.threads;
   return {std::move(input),
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count()};

@@ -10,6 +10,7 @@
 #include "bench/measure/footprint.h"
 #include "bench/measure/timing.h"
 #include "bench/record/record.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
@@ -71,7 +72,10 @@ class Measurement {
     const StrategyRow reference{&complete_reference()};
     if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
     for (const StrategyRow& row : rows) {
-      if (!allows(input(), *row.strategy)) continue;
+      if (const auto why = why_not(*row.strategy, input().mesh, input().rig.has_value())) {
+        left_out_.push_back({{"name", row.name()}, {"why", *why}});
+        continue;
+      }
       entrants_.push_back({row, make(row, test), row == reference, {}, {}, {}, {}});
     }
     for (Entrant& c : entrants_) {
@@ -159,11 +163,12 @@ class Measurement {
             {"scene", subject_.scene},
             {"triangles", input().mesh.triangle_count()},
             {"vertices", input().mesh.vertex_count()},
-            {"bones", input().rig->parent.size()},
+            {"bones", input().rig ? input().rig->parent.size() : 0},
             {"threads", subject_.threads},
             {"build_ms", scaled_.build_ms},
             {"ok", ok()},
             {"strategies", std::move(strategies)},
+            {"left_out", left_out_},
             {"steps", std::move(steps)}};
   }
 
@@ -307,7 +312,8 @@ class Measurement {
   const ScaleSubject& subject_;
   ScaleInput scaled_;
   std::vector<Entrant> entrants_;
-  std::vector<Verified> verified_;  // by step
+  ordered_json left_out_ = ordered_json::array();  // rows that the surface does not allow, and why
+  std::vector<Verified> verified_;                 // by step
 };
 
 }  // namespace

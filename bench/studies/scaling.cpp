@@ -61,7 +61,9 @@ MomentSource::MomentSource(scenes::ClipHeader header, std::vector<Moment> moment
 scenes::ClipInterval MomentSource::load(std::size_t interval) {
   const Moment& start = moments_[intervals_[interval].first];
   const Moment& end = moments_[intervals_[interval].second];
-  return {Motion(start.positions, end.positions), Rig::Interval{start.bones, end.bones}};
+  scenes::ClipInterval out{Motion(start.positions, end.positions), std::nullopt};
+  if (!header_.bone_parent.empty()) out.bones = Rig::Interval{start.bones, end.bones};
+  return out;
 }
 
 scenes::FrameView MomentSource::load_frame(std::size_t frame) {

@@ -63,7 +63,7 @@ TEST(Resized, RefusesWhatItCannotCarry) {
   const std::size_t past[] = {1000};
   EXPECT_THROW(poses_at(load_scene("rope"), past), InputError);
   const std::size_t first[] = {0};
-  for (const char* name : {"hand_contact", "sheet", "bag"})
+  for (const char* name : {"hand_contact", "sheet", "bag", "skirt"})
     EXPECT_THROW(poses_at(load_scene(name), first), InputError) << name;
 }
 

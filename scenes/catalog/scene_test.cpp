@@ -57,7 +57,8 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
             "small.json: frames must be a whole number from 2 to 100000000");
   EXPECT_EQ(refusal("\"frames\": 6,", ""), "small.json: frames is missing; add it");
   EXPECT_EQ(refusal("\"name\": \"tube\"", "\"name\": \"pot\""),
-            "small.json, shape pot: unknown shape pot; known are: tube, box, limbed_sphere, sheet, ball");
+            "small.json, shape pot: unknown shape pot; known are: tube, box, limbed_sphere, "
+            "skirted_limbed_sphere, sheet, ball");
   EXPECT_EQ(refusal("\"rings\"", "\"rigns\"").substr(0, 61),
             "small.json, shape tube: parameter rigns is unknown; known are");
   EXPECT_EQ(refusal("\"rings\": 10", "\"rings\": true"),

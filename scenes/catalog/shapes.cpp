@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "scenes/cloth/ball.h"
 #include "scenes/cloth/sheet.h"
+#include "scenes/cloth/skirt.h"
 #include "scenes/shape/box.h"
 #include "scenes/shape/limbed_sphere.h"
 #include "scenes/shape/tube.h"
@@ -12,7 +13,8 @@
 namespace cscd::scenes {
 
 std::span<const ShapeRow> shapes() {
-  static const ShapeRow rows[] = {tube_row(), box_row(), limbed_sphere_row(), sheet_row(), ball_row()};
+  static const ShapeRow rows[] = {tube_row(),  box_row(), limbed_sphere_row(), skirted_limbed_sphere_row(),
+                                  sheet_row(), ball_row()};
   return rows;
 }
 

@@ -11,6 +11,8 @@ namespace {
 // against the mean of all vertices.
 constexpr double kLongestStep = 0.45;
 constexpr double kSlack = 0.5;
+// In gaps: a vertex that is deeper than this inside a body is not found.
+constexpr double kDeepest = 2;
 
 double volume_of(const TriangleMesh& mesh, std::span<const Vec3> positions) {
   double six = 0;
@@ -42,13 +44,14 @@ Cloth::Cloth(const TriangleMesh& mesh, std::span<const Vec3> rest, const ClothOp
 }
 
 void Cloth::step(std::vector<Vec3>& positions, double h, std::span<const Led> led,
-                 std::span<const MovingBall> balls, std::optional<double> volume) {
+                 std::span<const MovingBall> balls, std::optional<double> volume, const MovingSurface* body) {
   predict(positions, h, led);
   if (options_.thickness > 0) find_close_vertices(positions);
   restore(positions, edges_, options_.stretch_compliance / (h * h));
   restore(positions, bends_, options_.bend_compliance / (h * h));
   if (volume) restore_volume(positions, *volume, options_.volume_compliance / (h * h));
   keep_outside(positions, balls);
+  if (body) keep_off(positions, *body);
   if (options_.thickness > 0) {
     push_apart(positions);
     limit_speed(positions);
@@ -169,6 +172,29 @@ void Cloth::keep_outside(std::vector<Vec3>& positions, std::span<const MovingBal
     slid.z() = 0;
     place -= rubbed(slid, depth);
     place.z() += depth;
+  }
+}
+
+void Cloth::keep_off(std::vector<Vec3>& positions, const MovingSurface& body) const {
+  Vec3 low = positions.front(), high = positions.front();
+  for (const Vec3& position : positions) {
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+  }
+  body.near.place(body.end, low, high, kDeepest * body.gap);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (inverse_mass_[v] == 0) continue;
+    const auto nearest = body.near.nearest(positions[v]);
+    if (!nearest || nearest->distance >= body.gap) continue;
+    const double depth = body.gap - nearest->distance;
+    Vec3 carried = Vec3::Zero();
+    const Triangle& corners = body.near.mesh().corners(nearest->triangle);
+    for (std::size_t k = 0; k < 3; ++k)
+      carried +=
+          nearest->weights[static_cast<Eigen::Index>(k)] * (body.end[+corners[k]] - body.start[+corners[k]]);
+    const Vec3 slid = (positions[v] - before_[v]) - carried;
+    positions[v] +=
+        depth * nearest->outward - rubbed(slid - slid.dot(nearest->outward) * nearest->outward, depth);
   }
 }
 

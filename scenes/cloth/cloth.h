@@ -7,6 +7,7 @@
 
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/cloth/near_points.h"
+#include "scenes/cloth/near_surface.h"
 
 namespace cscd::scenes {
 
@@ -27,6 +28,16 @@ struct ClothOptions {
 struct MovingBall {
   double radius;
   Vec3 start, end;
+};
+
+// A closed surface that moves, such as the body that wears the cloth, at the start and the end of a step. The
+// vertices of the cloth stay `gap` away from its outer side. If the gap is larger than the circumscribed
+// circles of the cloth's triangles, which is 0.58 edges where they are equilateral, then no point of the
+// surface reaches a triangle either.
+struct MovingSurface {
+  NearSurface& near;                 // of the surface's mesh
+  std::span<const Vec3> start, end;  // [vertices of the surface]
+  double gap;
 };
 
 // Simulates a cloth by position-based dynamics with compliant constraints (Macklin, Mueller, Chentanez,
@@ -56,10 +67,12 @@ class Cloth {
     Vec3 place;
   };
   // Moves the positions [vertices] through one step of the length `h` in frames. `volume` is the volume that
-  // a closed surface is held to, or nullopt. Where somebody has moved vertices since the last step, such as a
-  // response to contacts, the cloth goes on from there, and the move counts as motion during one frame.
+  // a closed surface is held to, or nullopt. `body` is a surface that the cloth stays out of, or nullptr.
+  // Where somebody has moved vertices since the last step, such as a response to contacts, the cloth goes on
+  // from there, and the move counts as motion during one frame.
   void step(std::vector<Vec3>& positions, double h, std::span<const Led> led,
-            std::span<const MovingBall> balls, std::optional<double> volume);
+            std::span<const MovingBall> balls, std::optional<double> volume,
+            const MovingSurface* body = nullptr);
 
   double rest_volume() const { return rest_volume_; }
 
@@ -74,6 +87,7 @@ class Cloth {
   void find_close_vertices(const std::vector<Vec3>& positions);
   void push_apart(std::vector<Vec3>& positions);
   void keep_outside(std::vector<Vec3>& positions, std::span<const MovingBall> balls) const;
+  void keep_off(std::vector<Vec3>& positions, const MovingSurface& body) const;
   void limit_speed(std::vector<Vec3>& positions) const;
   Vec3 rubbed(const Vec3& slip, double depth) const;
 

@@ -10,6 +10,8 @@
 #include "core/detect/start/embedding.h"
 #include "scenes/cloth/ball.h"
 #include "scenes/cloth/sheet.h"
+#include "scenes/cloth/skirt.h"
+#include "scenes/cloth/worn_parts.h"
 
 namespace cscd::scenes {
 namespace {
@@ -90,6 +92,108 @@ TEST(Ball, IsASphereOfNearlyEqualTriangles) {
   }
   EXPECT_THROW(ball({0, 1}), InputError);
   EXPECT_THROW(ball({1, 0}), InputError);
+}
+
+// A ball that hangs on one bone.
+Shape boned_ball(double radius) {
+  Shape shape = ball({6, radius});
+  shape.rig = {{BoneId{-1}}, {{Vec3(0, 0, -1), Vec3(0, 0, 1)}}};
+  shape.bone_names = {"middle"};
+  for (JointWeights& weights : shape.weights) weights.bone[0] = BoneId{0}, weights.weight[0] = 1;
+  return shape;
+}
+
+TEST(Skirt, IsAnOpenConeOfEquilateralTriangles) {
+  for (const int points : {1, 2, 3, 4, 5}) {
+    Shape shape = boned_ball(1);
+    const std::size_t ball_vertices = shape.positions.size(), ball_triangles = shape.triangles.size();
+    add_skirt({points, 0.7, 0.5, 20, 45, 3, Vec3(1, 2, 30)}, shape, "here");
+    const WornParts parts = worn_parts(shape);
+    ASSERT_EQ(parts.body.triangles.size(), ball_triangles);
+    const TriangleMesh mesh(parts.cloth.triangles, parts.cloth.in_shape.size());
+    EXPECT_EQ(mesh.triangle_count(), static_cast<std::size_t>(points * (45 * 45 - 20 * 20)));
+    EXPECT_EQ(mesh.vertex_count() + mesh.triangle_count(), mesh.edge_count()) << "a ring";
+    EXPECT_EQ(mesh.component_count(), 1);
+    for (const TriangleMesh::DefectReport& defect : mesh.defects())
+      EXPECT_EQ(defect.kind, Defect::boundary_edge) << defect.first;
+    const std::vector<Vec3> positions = parts.cloth.of(shape.positions);
+    const Lengths lengths = edge_lengths(mesh, positions);
+    EXPECT_LT(lengths.longest, 0.5 + 1e-9) << "rolled up, no edge grows";
+    EXPECT_GT(lengths.shortest, 0.49) << "and chords are little shorter";
+    EXPECT_TRUE(EmbeddingTest(mesh, positions).embedded(positions));
+    for (const Triangle& t : mesh.triangles()) {
+      const Vec3& a = positions[+t[0]];
+      EXPECT_GT((positions[+t[1]] - a).cross(positions[+t[2]] - a).dot(Vec3(a.x() - 1, a.y() - 2, 0)), 0)
+          << "faces outward";
+    }
+    std::size_t carried = 0;
+    for (std::size_t v = ball_vertices; v < shape.positions.size(); ++v)
+      carried += shape.weights[v].bone[0] == BoneId{0};
+    EXPECT_EQ(carried, static_cast<std::size_t>(points * (20 + 21 + 22))) << "the band";
+  }
+  const auto refused = [](const SkirtParameters& parameters) {
+    Shape shape = boned_ball(1);
+    EXPECT_THROW(add_skirt(parameters, shape, "here"), InputError);
+  };
+  refused({.points = 0});
+  refused({.points = 6});
+  refused({.aspect = 0});
+  refused({.edge = 0});
+  refused({.first_row = 1});
+  refused({.first_row = 30, .last_row = 30});
+  refused({.band_rows = 31});
+}
+
+TEST(WornParts, AreAllClothUnlessSomeComponentsAreCarriedByBones) {
+  for (const Shape& shape : {boned_ball(1), ball({6, 1}), lying()}) {
+    const WornParts parts = worn_parts(shape);
+    EXPECT_TRUE(std::ranges::equal(parts.cloth.triangles, shape.triangles));
+    EXPECT_EQ(parts.cloth.of(shape.positions), shape.positions);
+    EXPECT_TRUE(parts.body.in_shape.empty());
+  }
+  Shape shape = boned_ball(1);
+  const Shape bare = shape;
+  add_skirt({.edge = 0.5, .apex = Vec3(0, 0, 20)}, shape, "here");
+  const WornParts parts = worn_parts(shape);
+  EXPECT_TRUE(std::ranges::equal(parts.body.triangles, bare.triangles));
+  EXPECT_EQ(parts.body.of(shape.positions), bare.positions);
+  EXPECT_EQ(parts.cloth.in_shape.front(), VertexId{static_cast<int>(bare.positions.size())});
+}
+
+TEST(NearSurface, KnowsTheDistanceFromACubeAndItsSide) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+  std::vector<Triangle> triangles;
+  const auto add_face = [&](int a, int b, int c, int d) {
+    triangles.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
+    triangles.push_back({VertexId{a}, VertexId{c}, VertexId{d}});
+  };
+  add_face(0, 4, 6, 2), add_face(1, 3, 7, 5), add_face(0, 1, 5, 4);
+  add_face(2, 6, 7, 3), add_face(0, 2, 3, 1), add_face(4, 5, 7, 6);
+  const TriangleMesh mesh(triangles, corners.size());
+  ASSERT_TRUE(mesh.closed_and_oriented());
+  NearSurface near(mesh);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> along(-2, 2);
+  for (const double reach : {0.3, 0.9, 3.0}) {
+    near.place(corners, Vec3(-2, -2, -2), Vec3(2, 2, 2), reach);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 point(along(random), along(random), along(random));
+      const Vec3 beyond = (point.cwiseAbs().array() - 1).matrix();
+      const double inside = beyond.maxCoeff();
+      const double distance = inside < 0 ? inside : beyond.cwiseMax(0).norm();
+      const auto found = near.nearest(point);
+      ASSERT_EQ(found.has_value(), std::abs(distance) < reach) << point.transpose();
+      if (!found) continue;
+      EXPECT_NEAR(found->distance, distance, 1e-12) << point.transpose();
+      EXPECT_NEAR(found->outward.norm(), 1, 1e-12);
+      const Triangle& t = mesh.corners(found->triangle);
+      const Vec3 on_surface = found->weights[0] * corners[+t[0]] + found->weights[1] * corners[+t[1]] +
+                              found->weights[2] * corners[+t[2]];
+      EXPECT_LT((on_surface + distance * found->outward - point).norm(), 1e-12);
+    }
+  }
+  EXPECT_FALSE(near.nearest(Vec3(0, 0, 2.1))) << "outside the place that was asked for";
 }
 
 TEST(NearPoints, FindsTheSamePairsAsALookAtAllPairs) {
@@ -180,6 +284,45 @@ TEST(Cloth, StaysOutOfABallAndAboveTheFloor) {
     lowest = std::min(lowest, position.z());
   }
   EXPECT_LT(lowest, -7.9) << "its corners lie on the floor";
+}
+
+TEST(Cloth, StaysOutOfABodyThatMovesAndIsCarriedByIt) {
+  const Shape shape = lying();
+  const TriangleMesh mesh(shape.triangles, shape.positions.size());
+  const Shape body = ball({8, 5, Vec3(0, 0, -6)});
+  const TriangleMesh body_mesh(body.triangles, body.positions.size());
+  for (const double friction : {0.0, 1.0}) {
+    Cloth cloth(mesh, shape.positions,
+                {.gravity = Vec3(0, 0, -0.05),
+                 .drag = 0.05,
+                 .viscosity = 1,
+                 .bend_compliance = 0.1,
+                 .thickness = 0.9,
+                 .friction = friction});
+    NearSurface near(body_mesh);
+    std::vector<Vec3> positions = shape.positions, start = body.positions, end = start;
+    Vec3 centre(0, 0, -6);
+    for (int i = 0; i < 800; ++i) {
+      const Vec3 move(i < 400 ? 0 : 0.01, 0, 0);
+      start = end;
+      for (Vec3& position : end) position += move;
+      centre += move;
+      const MovingSurface moving{near, start, end, 0.7};
+      cloth.step(positions, 1.0 / 16, {}, {}, std::nullopt, &moving);
+    }
+    // The facets lie up to a hundredth of the radius below the ball. The cloth is pushed off itself after it
+    // is pushed out of the body.
+    double nearest = 1e300;
+    for (const Vec3& position : positions) nearest = std::min(nearest, (position - centre).norm());
+    EXPECT_GT(nearest, 4.95 + 0.7 - 0.1) << friction;
+    EXPECT_LT(nearest, 5 + 0.7 + 0.1) << "the cloth lies on the body";
+    const double carried = mean_of(positions).x() - mean_of(shape.positions).x();
+    if (friction > 0) {
+      EXPECT_GT(carried, 0.5 * centre.x());
+    } else {
+      EXPECT_LT(carried, 0.5 * centre.x()) << "it slips";
+    }
+  }
 }
 
 // Half of a sheet is led over the other half and pressed onto it.

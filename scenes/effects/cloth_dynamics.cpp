@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "scenes/cloth/cloth.h"
+#include "scenes/cloth/worn_parts.h"
 #include "scenes/effects/effect.h"
 #include "scenes/shape/key_curve.h"
 
@@ -38,13 +39,62 @@ struct Grip {
   std::vector<Vec3> gripped = {};  // [vertices]: their places at the first key; empty before
 };
 
+// The body that wears the cloth. Skinning moves it once a frame, and it moves in a straight line between two
+// frames, as it does for whoever asks for contacts of that interval.
+class Wearer {
+ public:
+  Wearer(const SurfacePart& part, std::span<const Vec3> rest, double gap, const std::string& where)
+      : part_(part), mesh_(part.triangles, part.in_shape.size(), where), near_(mesh_), gap_(gap) {
+    require_closed_and_oriented(mesh_, where + ": parameter body_gap");
+    from_ = to_ = end_ = part_.of(rest);
+  }
+  Wearer(const Wearer&) = delete;
+  Wearer& operator=(const Wearer&) = delete;
+
+  void begin_frame(std::span<const Vec3> positions) {
+    from_ = std::move(to_);
+    to_ = part_.of(positions);
+    end_ = from_;
+  }
+  // The motion of a step that ends after `share` of the frame.
+  MovingSurface until(double share) {
+    start_ = end_;
+    for (std::size_t v = 0; v < end_.size(); ++v) end_[v] = from_[v] + share * (to_[v] - from_[v]);
+    return {near_, start_, end_, gap_};
+  }
+
+ private:
+  const SurfacePart& part_;
+  TriangleMesh mesh_;
+  NearSurface near_;
+  double gap_;
+  std::vector<Vec3> from_, to_;    // [vertices]: at the frame's start and end
+  std::vector<Vec3> start_, end_;  // [vertices]: at the step's start and end
+};
+
 // Cloth by XPBD, position-based dynamics with compliant constraints (Macklin, Mueller, Chentanez, "XPBD:
 // position-based simulation of compliant constrained dynamics", MIG 2016). See scenes/cloth/cloth.h.
+//
+// A shape with bones may wear cloth (scenes/cloth/worn_parts.h). The effect then moves the cloth alone, and
+// runs after skinning. Vertices of the cloth that have bones are led where skinning takes them.
 class ClothDynamics final : public Effect {
  public:
   ClothDynamics(const Parameters& p, const Shape& shape)
-      : mesh_(shape.triangles, shape.positions.size(), p.where()),
-        cloth_(mesh_, shape.positions, options(p)) {
+      : parts_(worn_parts(shape)),
+        rest_(parts_.cloth.of(shape.positions)),
+        mesh_(parts_.cloth.triangles, rest_.size(), p.where()),
+        cloth_(mesh_, rest_, options(p)) {
+    if (!parts_.body.in_shape.empty())
+      for (std::size_t v = 0; v < rest_.size(); ++v)
+        if (shape.weights[+parts_.cloth.in_shape[v]].bone[0] != BoneId{-1})
+          carried_.push_back({VertexId{static_cast<int>(v)}, rest_[v], rest_[v]});
+    if (p.has("body_gap")) {
+      if (parts_.body.in_shape.empty())
+        throw InputError(p.where() +
+                         ": parameter body_gap needs a shape with a body that wears the cloth; "
+                         "remove the parameter or name such a shape");
+      wearer_.emplace(parts_.body, shape.positions, p.number("body_gap"), p.where());
+    }
     if (p.has("balls"))
       for (const Parameters& ball : p.objects("balls")) {
         check(ball, kBallRows);
@@ -53,7 +103,7 @@ class ClothDynamics final : public Effect {
     if (p.has("grips"))
       for (const Parameters& grip : p.objects("grips")) {
         check(grip, kGripRows);
-        grips_.push_back({inside(shape, grip), {grip.table("path"), grip.where() + ": parameter path"}});
+        grips_.push_back({inside(rest_, grip), {grip.table("path"), grip.where() + ": parameter path"}});
       }
     if (!p.has("volume")) return;
     require_closed_and_oriented(mesh_, p.where() + ": parameter volume");
@@ -61,7 +111,13 @@ class ClothDynamics final : public Effect {
   }
 
   void step(SceneState& state) override {
+    positions_ = parts_.cloth.of(state.positions);
+    const int frame = static_cast<int>(std::ceil(state.time));
+    const double share = state.time - (frame - 1);
+    if (frame != frame_) begin_frame(state);
+    frame_ = frame;
     led_.clear();
+    for (const Carried& one : carried_) led_.push_back({one.vertex, one.from + share * (one.to - one.from)});
     for (Grip& grip : grips_) lead(grip, state);
     moving_.clear();
     for (const Ball& ball : balls_)
@@ -69,7 +125,11 @@ class ClothDynamics final : public Effect {
           {ball.radius, place_at(ball.path, state.time - state.step), place_at(ball.path, state.time)});
     std::optional<double> volume;
     if (volume_) volume = volume_->at(state.time, 1) * cloth_.rest_volume();
-    cloth_.step(state.positions, state.step, led_, moving_, volume);
+    std::optional<MovingSurface> body;
+    if (wearer_) body.emplace(wearer_->until(share));
+    cloth_.step(positions_, state.step, led_, moving_, volume, body ? &*body : nullptr);
+    for (std::size_t v = 0; v < positions_.size(); ++v)
+      state.positions[+parts_.cloth.in_shape[v]] = positions_[v];
   }
 
  private:
@@ -87,11 +147,27 @@ class ClothDynamics final : public Effect {
     return options;
   }
 
-  static std::vector<VertexId> inside(const Shape& shape, const Parameters& grip) {
+  // A vertex of the cloth that bones carry, and its places at the frame's start and end.
+  struct Carried {
+    VertexId vertex;
+    Vec3 from, to;
+  };
+
+  // Takes over what skinning made of the frame.
+  void begin_frame(const SceneState& state) {
+    for (Carried& one : carried_) {
+      one.from = one.to;
+      one.to = positions_[+one.vertex];
+    }
+    for (const Carried& one : carried_) positions_[+one.vertex] = one.from;
+    if (wearer_) wearer_->begin_frame(state.positions);
+  }
+
+  static std::vector<VertexId> inside(std::span<const Vec3> rest, const Parameters& grip) {
     const Vec3 from = grip.vector("from"), to = grip.vector("to");
     std::vector<VertexId> vertices;
-    for (std::size_t v = 0; v < shape.positions.size(); ++v) {
-      const Vec3& at = shape.positions[v];
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+      const Vec3& at = rest[v];
       if ((at.array() >= from.array()).all() && (at.array() <= to.array()).all())
         vertices.push_back(VertexId{static_cast<int>(v)});
     }
@@ -103,19 +179,25 @@ class ClothDynamics final : public Effect {
   void lead(Grip& grip, const SceneState& state) {
     if (state.time < grip.path.first_frame() || state.time > grip.path.last_frame()) return;
     if (grip.gripped.empty())
-      for (const VertexId v : grip.vertices) grip.gripped.push_back(state.positions[+v]);
+      for (const VertexId v : grip.vertices) grip.gripped.push_back(positions_[+v]);
     const Vec3 way = place_at(grip.path, state.time) - place_at(grip.path, grip.path.first_frame());
     for (std::size_t i = 0; i < grip.vertices.size(); ++i)
       led_.push_back({grip.vertices[i], grip.gripped[i] + way});
   }
 
-  TriangleMesh mesh_;
+  WornParts parts_;
+  std::vector<Vec3> rest_;  // [vertices of the cloth]
+  TriangleMesh mesh_;       // of the cloth
   Cloth cloth_;
+  std::vector<Carried> carried_;
+  std::optional<Wearer> wearer_;
   std::vector<Ball> balls_;
   std::vector<Grip> grips_;
   std::optional<KeyCurve> volume_;
   std::vector<MovingBall> moving_;
   std::vector<Cloth::Led> led_;
+  std::vector<Vec3> positions_;  // [vertices of the cloth]
+  int frame_ = 0;                // the frame that the last step was a part of
 };
 
 }  // namespace
@@ -133,17 +215,19 @@ EffectRow cloth_dynamics_row() {
        "least distance of vertices that share no edge; 0 lets the cloth pass through itself", true, 0, 1e9},
       {"friction", ParameterKind::number, "Coulomb's coefficient", false, 0, 1e3},
       {"floor", ParameterKind::number, "height of a floor", false},
+      {"body_gap", ParameterKind::number, "least distance from the body that wears the cloth", false, 1e-9,
+       1e9},
       {"balls", ParameterKind::objects, "balls that the cloth stays out of", false},
       {"grips", ParameterKind::objects, "parts of the cloth that are led", false},
       {"volume", ParameterKind::table, "frame, share of the volume at rest that a closed surface holds",
        false, -1e300, 1e300, 2},
       {"volume_compliance", ParameterKind::number, "change of the volume per pressure", false, 0, 1e300},
   };
-  EffectRow row{"cloth_dynamics",
-                "cloth under gravity that keeps off itself, off balls and off a floor (XPBD)", Pace::substep,
-                rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-                  return std::make_unique<ClothDynamics>(parameters, shape);
-                }};
+  EffectRow row{
+      "cloth_dynamics", "cloth under gravity that keeps off itself, its wearer, balls and a floor (XPBD)",
+      Pace::substep, rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+        return std::make_unique<ClothDynamics>(parameters, shape);
+      }};
   row.of_surface = true;
   return row;
 }

@@ -2,6 +2,7 @@
 
 #include "scenes/cloth/ball.h"
 #include "scenes/cloth/sheet.h"
+#include "scenes/cloth/skirt.h"
 #include "scenes/effects/test_effects.h"
 
 namespace cscd::scenes {
@@ -81,12 +82,67 @@ TEST(ClothDynamics, FollowsTheVolumeOfItsKeys) {
   EXPECT_NEAR(volume_after(25) / volume_after(0), 0.5, 0.02);
 }
 
+// A ball on one bone, under a skirt whose band rests over its upper half.
+Shape skirted_ball() {
+  Shape shape = ball({10, 2.6});
+  shape.rig = {{BoneId{-1}}, {{Vec3(0, 0, -1), Vec3(0, 0, 1)}}};
+  shape.bone_names = {"middle"};
+  for (JointWeights& weights : shape.weights) weights.bone[0] = BoneId{0}, weights.weight[0] = 1;
+  add_skirt({3, 1, 0.5, 7, 20, 1, Vec3(0, 0, 6.5)}, shape, "test");
+  return shape;
+}
+
+TEST(ClothDynamics, MovesWhatABodyWearsAndKeepsItOffTheBody) {
+  const Shape shape = skirted_ball();
+  const std::size_t body = ball({10, 2.6}).positions.size();
+  const auto swung = [&](Values more) {
+    more.insert({"thickness", 0.45});
+    return run(shape,
+               {call("keyframes", {{"middle", Table{{0, 0, 0, 0}, {20, 0, 0, 0.1}, {40, 0, 0, -0.1}}},
+                                   {"root", Table{{0, 0, 0, 0}, {20, 3, 0, 0}, {40, 0, 0, 1}}}}),
+                call("skinning_linear"), call("cloth_dynamics", laws(std::move(more)))},
+               40, 16);
+  };
+  const SceneState state = swung({{"body_gap", 0.4}});
+  const SceneState bare =
+      run(shape,
+          {call("keyframes", {{"middle", Table{{0, 0, 0, 0}, {20, 0, 0, 0.1}, {40, 0, 0, -0.1}}},
+                              {"root", Table{{0, 0, 0, 0}, {20, 3, 0, 0}, {40, 0, 0, 1}}}}),
+           call("skinning_linear")},
+          40, 16);
+  double lowest = 0, nearest = 1e300;
+  for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+    const bool has_bones = shape.weights[v].bone[0] != BoneId{-1};
+    if (has_bones) {
+      expect_near(state.positions[v], bare.positions[v]);
+    } else {
+      EXPECT_EQ(bare.positions[v], shape.positions[v]) << "skinning leaves cloth alone";
+    }
+    if (v < body) continue;
+    lowest = std::min(lowest, state.positions[v].z() - 1 - shape.positions[v].z());
+    if (!has_bones) nearest = std::min(nearest, (state.positions[v] - Vec3(0, 0, 1)).norm());
+  }
+  EXPECT_LT(lowest, -0.2) << "the skirt has fallen";
+  EXPECT_GT(nearest, 2.58 + 0.4 - 0.1);
+  double through = 1e300;
+  const SceneState free = swung({});
+  for (std::size_t v = body; v < shape.positions.size(); ++v)
+    through = std::min(through, (free.positions[v] - Vec3(0, 0, 1)).norm());
+  EXPECT_LT(through, 2.5) << "without a gap the cloth does not know the body";
+  EXPECT_EQ(swung({{"body_gap", 0.4}}).positions, state.positions) << "each run gives the same frames";
+}
+
 TEST(ClothDynamics, RefusesWhatItCannotDo) {
   const Shape shape = small_sheet();
   const auto refused = [&](Values more) {
     return refusal(shape, call("cloth_dynamics", laws(std::move(more))));
   };
   EXPECT_EQ(refused({}), "");
+  EXPECT_NE(refused({{"body_gap", 0.5}}).find("needs a shape with a body"), std::string::npos);
+  const Shape worn = skirted_ball();
+  EXPECT_EQ(refusal(worn, call("cloth_dynamics", laws({{"body_gap", 0.5}}))), "");
+  EXPECT_NE(refusal(worn, call("cloth_dynamics", laws({{"body_gap", 0.0}}))).find("body_gap is 0"),
+            std::string::npos);
   EXPECT_NE(refused({{"grips", one(grip({{0, 0, 0, 0}}, 99))}}).find("no vertex at rest lies between"),
             std::string::npos);
   EXPECT_NE(refused({{"volume", Table{{0, 1}}}}).find("parameter volume"), std::string::npos)

@@ -109,7 +109,7 @@ EffectRow contact_response_row() {
         // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
         // follows.
         return make_contact_response(parameters, shape, [](const Setup& setup) -> std::unique_ptr<Detector> {
-          if (!setup.rig)
+          if (!setup.rig || !setup.mesh.closed_and_oriented())
             return compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});
           return make_drvbc(setup, {.division = radial::Division::none}).detector;
         });

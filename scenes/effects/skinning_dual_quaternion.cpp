@@ -65,8 +65,11 @@ class SkinningDualQuaternion final : public Effect {
       const Quaternion real = quaternion(state.rotations[bone]);
       motion_[bone] = {real, Quaternion{0, moved / 2} * real};
     }
-    for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex)
-      state.positions[vertex] = carried(state.shape.weights[vertex], state.shape.positions[vertex]);
+    for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex) {
+      const JointWeights& weights = state.shape.weights[vertex];
+      if (weights.bone[0] == BoneId{-1}) continue;  // cloth that moves by itself
+      state.positions[vertex] = carried(weights, state.shape.positions[vertex]);
+    }
   }
 
  private:

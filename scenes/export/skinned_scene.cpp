@@ -78,6 +78,9 @@ class Recorder {
       part.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
                                 static_cast<std::int32_t>(t[2])});
     for (const JointWeights& weights : shape.weights) {
+      if (weights.bone[0] == BoneId{-1})
+        throw InputError("scene " + scene_.name +
+                         ": its cloth has no bones, and every vertex of a skin needs one; export it as .h5");
       part.first.push_back(part.influences.size());
       for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k)
         part.influences.push_back({static_cast<int>(weights.bone[k]), weights.weight[k]});

@@ -89,6 +89,15 @@ TEST(SkinnedScene, TreesOfBonesAreReadBackAsTheyWere) {
       "box", frames + R"(, {"op": "replace", "path": "/effects/3", "value": {"name": "skinning_linear"}})"));
 }
 
+TEST(SkinnedScene, ClothWithoutBonesIsRefused) {
+  const Scene scene = changed("man", R"({"op": "replace", "path": "/frames", "value": 2},
+      {"op": "replace", "path": "/effects", "value": [{"name": "skinning_linear"}]},
+      {"op": "replace", "path": "/shape/name", "value": "skirted_limbed_sphere"},
+      {"op": "add", "path": "/shape/skirts", "value": [{"points": 3, "aspect": 1, "edge": 2, "first_row": 20,
+        "last_row": 40, "band_rows": 1, "apex": [0, 0, 130]}]})");
+  EXPECT_NE(refusal(scene).find("its cloth has no bones"), std::string::npos);
+}
+
 // With far too few substeps, the bones of a chain do not stay rigid.
 TEST(SkinnedScene, BonesThatStretchAreRefused) {
   EXPECT_NE(refusal(changed("rope", R"({"op": "replace", "path": "/frames", "value": 4},

@@ -23,7 +23,9 @@ struct JointWeights {
 };
 
 // A character at rest: a consistently oriented surface with its skeleton. The surface of a shape with bones
-// is closed and faces outward. A shape without bones has empty weights, and its surface may have a border.
+// is closed and faces outward, except for cloth that the character wears. Skinning leaves the vertices of
+// such cloth alone, as far as they have empty weights. A shape without bones has empty weights, and its
+// surface may have a border.
 struct Shape {
   std::vector<Vec3> positions;        // [vertices]
   std::vector<Triangle> triangles;    // [triangles]

@@ -107,7 +107,8 @@ TEST(Shapes, AreFoundByName) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "here: unknown shape teapot; known are: tube, box, limbed_sphere, sheet, ball");
+                 "here: unknown shape teapot; known are: tube, box, limbed_sphere, skirted_limbed_sphere, "
+                 "sheet, ball");
   }
 }
 
