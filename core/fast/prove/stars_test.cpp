@@ -86,7 +86,7 @@ TEST(Stars, DegenerateTrianglesAreNotFlat) {
 // A hexagon of radius r has triple products of 0.87 r^2. Let e be the error of a coordinate, which a far
 // vertex sets. The edges' largest components are up to r and 0.87 r, and the proof in stars.cpp takes each
 // for 2 e longer. So the products are off by up to 12.2 e (1.87 r + 4 e), and r has to exceed 28.3 e.
-// Mutations: an edge counts as exact; one of the two is not taken for longer.
+// Mutation: an edge counts as exact.
 TEST(Stars, RuleErrorBoundOneThatIsNearlyAsSmallAsTheErrorIsNotFlat) {
   for (const auto& [errors, flat] :
        {std::pair(4.0, false), {8, false}, {16, false}, {27.8, false}, {29, true}, {60, true}}) {
