@@ -44,6 +44,16 @@ TEST(Additive, TheToleranceIsAShareOfTheStartingDistance) {
   EXPECT_EQ(additive_vertex_face(beside, {.tolerance = 0.01, .steps = 10'000}).verdict, Verdict::apart);
 }
 
+// The first step leaves the tolerance's share of the distance at least, even where that is more than the
+// tenth that other steps leave. A vertex falls by 1 and moves sideways, so that it comes down by 0.8 of the
+// bound on its speed. Mutation: the first step goes all the way.
+TEST(Additive, TheFirstStepLeavesTheShareOfTheDistance) {
+  const MovingVertexFace query = against_triangle({1, 1, 1}, {1.75, 1, 0});
+  const Answer answer = additive_vertex_face(query, {.tolerance = 0.5, .steps = 10'000});
+  ASSERT_EQ(answer.verdict, Verdict::contact);
+  EXPECT_NEAR(answer.time, 0.4, 1e-3);
+}
+
 TEST(Additive, ContactAtTheStartAndStandingStill) {
   const Answer touching = additive_vertex_face(against_triangle({1, 1, 0}, {1, 1, 1}), kUsual);
   EXPECT_EQ(touching.verdict, Verdict::contact);

@@ -103,5 +103,20 @@ TEST(Inclusion, LosesNothingFarFromTheOrigin) {
   }
 }
 
+// The end of one edge passes through the other edge, all of which is as far along the x axis as that end, and
+// the rest of the first edge is nearer. So rounding alone puts the origin outside a box that holds the
+// contact. Mutation: the error bound is one rounding.
+TEST(Inclusion, RuleErrorBoundLosesNothingWhereOneEdgeEndsAtAnother) {
+  QueryMaker make{7};
+  for (int i = 0; i < 300; ++i) {
+    const double x = make.uniform(1, 2), before = make.uniform(0.1, 1), behind = make.uniform(0.1, 1);
+    const auto still = [&](double at, double y) { return MovingPoint{{at, y, 0}, {at, y, 0}}; };
+    const MovingEdgeEdge query{{still(0, 0), {{x, 0, 1}, {x, 0, -2}}}, {still(x, -before), still(x, behind)}};
+    const Answer answer = inclusion_edge_edge(query, {1e-12, 100'000});
+    ASSERT_EQ(answer.verdict, Verdict::contact) << i;
+    EXPECT_NEAR(answer.time, 1.0 / 3, 1e-10);
+  }
+}
+
 }  // namespace
 }  // namespace cscd

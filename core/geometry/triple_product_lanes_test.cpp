@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <gtest/gtest.h>
 #include <random>
+#include <vector>
 
 namespace cscd {
 namespace {
@@ -59,6 +60,28 @@ TEST(TripleProductLanes, SayWhatTheScalarTwinSays) {
     }
   }
   for (const int count : seen) EXPECT_GT(count, 1000);
+}
+
+// Vertices are gathered in their lanes, and vectors between them go from the second to the first. Mutations:
+// an axis, an end or a lane is taken for another; the difference is turned round.
+TEST(TripleProductLanes, VectorsAreThoseBetweenTheVerticesOfTheirLanes) {
+  std::vector<Vec3> start, end;
+  for (int v = 0; v < 2 * static_cast<int>(kLanes); ++v) {
+    start.emplace_back(v, 100 + v * v, 10'000 + 3 * v);
+    end.emplace_back(-v, 200 + v, 20'000 + v * v);
+  }
+  const Motion motion(start, end);
+  VertexLanes from, to;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    from.set(lane, VertexId{static_cast<std::int32_t>(lane)});
+    to.set(lane, VertexId{static_cast<std::int32_t>(2 * kLanes - 1 - lane)});
+  }
+  const VectorLanes vectors = gather(motion, to) - gather(motion, from);
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(vectors.at[0][i][lane], start[2 * kLanes - 1 - lane][i] - start[lane][i]);
+      EXPECT_EQ(vectors.at[1][i][lane], end[2 * kLanes - 1 - lane][i] - end[lane][i]);
+    }
 }
 
 }  // namespace

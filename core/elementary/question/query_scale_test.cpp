@@ -67,5 +67,28 @@ TEST(QueryScale, ScalesEachAxisToUnit) {
   }
 }
 
+// A relative query is the query seen from one of its points, which is then at rest at the origin. Mutations:
+// a point is moved the other way; the way at the start is taken at the end, too.
+template <class Query>
+void expect_seen_from_first(int seed, const MovingPoint& (*first)(const Query&)) {
+  test::QueryMaker make(seed);
+  for (int i = 0; i < 50; ++i) {
+    const auto query = test::query_of<Query>(make.lattice(4));
+    const std::vector<double> before = coordinates(query), after = coordinates(relative(query));
+    const MovingPoint from = first(query);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      const auto axis = static_cast<Eigen::Index>(k % 3);
+      EXPECT_EQ(after[k], before[k] - (k % 6 < 3 ? from.start : from.end)[axis]);
+    }
+  }
+}
+
+TEST(QueryScale, RelativeQueriesAreSeenFromTheirFirstPoint) {
+  expect_seen_from_first<MovingVertexFace>(
+      4, [](const MovingVertexFace& q) -> const MovingPoint& { return q.corner[0]; });
+  expect_seen_from_first<MovingEdgeEdge>(
+      5, [](const MovingEdgeEdge& q) -> const MovingPoint& { return q.first[0]; });
+}
+
 }  // namespace
 }  // namespace cscd

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/fast/cut/cut_surface.h"
+#include "core/mesh/test_shapes.h"
+
 namespace cscd::fast {
 namespace {
 
@@ -41,6 +44,24 @@ TEST(PatchDescent, NothingMadeOutlastsItsInterval) {
   EXPECT_EQ(numbers.of(0, [] { return 2; }), 1);
   numbers.start_interval();
   EXPECT_EQ(numbers.of(0, [] { return 3; }), 3);
+}
+
+// Two leaves have no pairs below them, and all other nodes do. A surface may be a single patch, whose leaf is
+// the root. Mutation: leaves are split, and nothing else is.
+TEST(PatchDescent, NodesCanBeSplitUnlessBothAreLeaves) {
+  for (const test::Shape& shape : {test::octahedron(), test::icosphere(2)}) {
+    const TriangleMesh mesh = shape.mesh();
+    const CutSurface cut =
+        cut_surface(mesh, shape.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+    const LocalPositions local(shape.positions);
+    const Certificates certificates(cut.tree, cut.covers);
+    const PatchDescent descent({cut.tree, local, certificates, nullptr, true, false});
+    const std::vector<PatchTree::Node>& nodes = cut.tree.nodes;
+    EXPECT_EQ(nodes.size() == 1, mesh.triangle_count() == 8);
+    for (std::size_t a = 0; a < nodes.size(); ++a)
+      for (std::size_t b = 0; b < nodes.size(); ++b)
+        EXPECT_EQ(descent.can_split({a, b}), !nodes[a].is_leaf() || !nodes[b].is_leaf()) << a << ", " << b;
+  }
 }
 
 }  // namespace

@@ -369,6 +369,79 @@ TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
   EXPECT_GT(different, 100u);
 }
 
+// The triangles of each cover that are certainly positive and clear, as the contour tests of its clusters say
+// if they are asked directly: [covers][patches].
+std::vector<std::vector<Mask16>> clear_triangles(const Scene& scene) {
+  std::vector<std::vector<Mask16>> clear;
+  for (std::size_t c = 0; c < scene.covers.size(); ++c) {
+    const Cover& cover = scene.covers[c];
+    std::vector<Viewpoint> from;
+    for (const FollowingPoint& observer : cover.observers)
+      from.push_back(placed(observer, scene.local.records()));
+    CappedClusters capped(scene.mesh, scene.shape.positions, cover, c);
+    capped.start(scene.local, from);
+    std::vector<Mask16>& of_patch = clear.emplace_back(scene.tree.patches.size());
+    const auto for_each = [&](const auto& take) {
+      for (std::size_t p = 0; p < of_patch.size(); ++p) {
+        const Patch& patch = scene.tree.patches[p];
+        if (patch.cluster[c] == kNone) continue;
+        const auto cluster = static_cast<std::size_t>(patch.cluster[c]);
+        const Signs signs =
+            orientation(load(scene.local.records(), patch.vertex), patch, from[cluster], scene.local.error());
+        take(p, patch, cluster, static_cast<Mask16>(patch.lanes & signs.positive));
+      }
+    };
+    for_each(
+        [&](std::size_t, const Patch& patch, std::size_t, Mask16 positive) { capped.take(patch, positive); });
+    while (capped.choose_other_rays())
+      for_each([&](std::size_t, const Patch& patch, std::size_t cluster, Mask16 positive) {
+        if (capped.has_other_ray(cluster)) capped.count(patch, positive);
+      });
+    for_each([&](std::size_t p, const Patch& patch, std::size_t, Mask16 positive) {
+      of_patch[p] = capped.clear(patch, positive);
+    });
+  }
+  return clear;
+}
+
+// With capped clusters a pair of triangles of one cluster is dropped exactly if one of the two is clear.
+// Mutations: patches that the ray of one cover may cross are not counted; a patch counts as clear in all
+// covers if it is in one; clear triangles of the second patch are entered elsewhere.
+TEST(Certificates, CapsDropAPairOfAClusterWhereOneTriangleIsClear) {
+  for (const auto& [bend, bones] : {std::pair(0.5, Scene::Bones::chain), {3.0, Scene::Bones::sixths}}) {
+    Scene scene(0.02, bend, 1, false, bones);
+    std::vector<CappedClusters> capped;
+    for (std::size_t c = 0; c < scene.covers.size(); ++c)
+      capped.emplace_back(scene.mesh, scene.shape.positions, scene.covers[c], c);
+    Certificates certificates(scene.tree, scene.covers, std::move(capped));
+    certificates.start(scene.local);
+    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+      certificates.look(p, load(scene.local.records(), scene.tree.patches[p].vertex));
+    certificates.finish();
+    const std::vector<std::vector<Mask16>> clear = clear_triangles(scene);
+    std::size_t dropped_by_one_cover = 0, wrong = 0;
+    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
+        const Patch &first = scene.tree.patches[p], &second = scene.tree.patches[q];
+        const Certificates::Shared shared = certificates.shared(p, q);
+        for_each_lane(first.lanes, [&](std::size_t lane) {
+          unsigned needed = second.lanes;
+          std::size_t covers = 0;
+          for (std::size_t c = 0; c < kCovers; ++c)
+            if (first.cluster[c] == second.cluster[c] && first.cluster[c] != kNone) {
+              const unsigned dropped = (clear[c][p] >> lane & 1) != 0 ? second.lanes : clear[c][q];
+              covers += dropped != 0;
+              needed &= ~dropped;
+            }
+          wrong += shared.needed(lane) != needed;
+          dropped_by_one_cover += covers == 1;
+        });
+      }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(dropped_by_one_cover, 1000u);
+  }
+}
+
 // A picture shows what the certificates say: signs of the first cover, clusters of all covers, patches, and
 // observers where they stand in the scene.
 TEST(Certificates, AreShownAsTheyAre) {

@@ -83,11 +83,13 @@ TEST(Stars, DegenerateTrianglesAreNotFlat) {
   EXPECT_TRUE(stars.flat(VertexId{1}, local));
 }
 
-// A hexagon of radius r has triple products of 0.87 r^2. By the proof in stars.cpp they are off by up to 24 r
-// times the error of a coordinate, so r has to exceed 28 errors. A far vertex sets the error. Mutation: an
-// edge counts as exact.
+// A hexagon of radius r has triple products of 0.87 r^2. Let e be the error of a coordinate, which a far
+// vertex sets. The edges' largest components are up to r and 0.87 r, and the proof in stars.cpp takes each
+// for 2 e longer. So the products are off by up to 12.2 e (1.87 r + 4 e), and r has to exceed 28.3 e.
+// Mutation: an edge counts as exact.
 TEST(Stars, RuleErrorBoundOneThatIsNearlyAsSmallAsTheErrorIsNotFlat) {
-  for (const auto& [errors, flat] : {std::pair(4, false), {8, false}, {16, false}, {24, false}, {60, true}}) {
+  for (const auto& [errors, flat] :
+       {std::pair(4.0, false), {8, false}, {16, false}, {27.8, false}, {29, true}, {60, true}}) {
     test::Shape star{{{0, 0, 0}}, {}};
     const double r = errors * 0x1p-24;  // the scale is such that the far vertex is one unit away
     for (int i = 0; i < 6; ++i) {
