@@ -47,7 +47,7 @@ class Wide {
     Wide result;
     if (a.size_ == 0 || b.size_ == 0) return result;
     const Wide &longer = a.size_ < b.size_ ? b : a, &shorter = a.size_ < b.size_ ? a : b;
-    assert(a.size_ + b.size_ <= kWords);
+    assert(a.bits() + b.bits() <= kBits);
     result.negative_ = a.negative_ != b.negative_;
     result.word_[longer.size_] = multiply_word(longer, shorter.word_[0], result.word_);
     for (int i = 1; i < shorter.size_;
@@ -160,7 +160,8 @@ class Wide {
 
   int size_ = 0;  // words in use; the highest of them is not zero
   bool negative_ = false;
-  std::uint64_t word_[kWords];
+  // The words of two factors can be one more than those of their product.
+  std::uint64_t word_[kWords + 1];
 };
 
 }  // namespace cscd

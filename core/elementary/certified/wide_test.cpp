@@ -58,6 +58,16 @@ void expect_same(const Wide& wide, const mpz_class& gmp) {
   ASSERT_EQ(gmp_rest, 0);
 }
 
+// Factors of 144 and 145 words, of which the product has 288. Mutation: there are no more words than that,
+// which the sanitizers tell.
+TEST(Wide, TheLongestProductHasRoomForTheWordsOfItsFactors) {
+  const auto power = [](int exponent) { return Both{Wide(1) << exponent, mpz_class(1) << exponent}; };
+  const Both a = power(9152), b = power(9278);
+  ASSERT_EQ(a.wide.bits() + b.wide.bits(), Wide::kBits);
+  expect_same(a.wide * b.wide, a.gmp * b.gmp);
+  expect_same(b.wide * a.wide, a.gmp * b.gmp);
+}
+
 TEST(Wide, AgreesWithGmp) {
   Numbers numbers(3);
   for (int i = 0; i < 3000; ++i) {
