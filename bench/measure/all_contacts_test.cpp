@@ -60,8 +60,7 @@ void for_each_embedded(std::uint64_t count, const Visit& visit) {
   }
 }
 
-// Mutations: the rest is never asked for; it is asked for by signs again; certificates of signs stay when
-// capped clusters certify.
+// Mutations: the rest is never asked for; it is asked for by signs again.
 TEST(AllContacts, AreFoundBySignsAndCaps) {
   std::size_t touching = 0, later = 0, spared = 0;
   for_each_embedded(seeds(), [&](const Step& step, std::uint64_t seed) {
