@@ -23,7 +23,7 @@ const ElementaryTest& exact() {
 // CSCD_ALL_CONTACTS tries another number of intervals.
 std::uint64_t seeds() {
   const char* const asked = std::getenv("CSCD_ALL_CONTACTS");
-  return asked != nullptr ? std::stoull(asked) : 160;
+  return asked != nullptr ? std::stoull(asked) : 100;
 }
 
 struct Step {
