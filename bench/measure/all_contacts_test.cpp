@@ -4,13 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "baselines/brute.h"
+#include "bench/testing/random_step.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"
-#include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
-#include "scenes/clip/clip.h"
-#include "scenes/random/random_interval.h"
 
 namespace cscd::bench {
 namespace {
@@ -22,29 +20,17 @@ const ElementaryTest& exact() {
 
 // CSCD_ALL_CONTACTS tries another number of intervals.
 std::uint64_t seeds() {
-  const char* const asked = std::getenv("CSCD_ALL_CONTACTS");
-  return asked != nullptr ? std::stoull(asked) : 100;
+  return test::steps_asked("CSCD_ALL_CONTACTS", 100);
 }
 
-struct Step {
-  scenes::RandomInterval random;
-  TriangleMesh mesh;
-  std::vector<Vec3> start, end;
-
-  explicit Step(std::uint64_t seed)
-      : random(scenes::make_random_interval(seed)),
-        mesh(random.clip.header().triangles, random.clip.header().vertex_count) {
-    const scenes::ClipInterval interval = random.clip.interval(0);
-    start.assign(interval.motion.start().begin(), interval.motion.start().end());
-    end.assign(interval.motion.end().begin(), interval.motion.end().end());
-  }
+struct Step : test::RandomStep {
+  using RandomStep::RandomStep;
   Setup setup(const ElementaryTest& test = exact(), const Exclusions* exclusions = nullptr) const {
     return {.mesh = mesh, .reference = start, .rig = nullptr, .elementary = test, .exclusions = exclusions};
   }
-  bool starts_embedded() const { return EmbeddingTest(mesh, start).embedded(start); }
   ContactSet ask(const Prepared& prepared, Report* report = nullptr) const {
     ContactSet found;
-    const Report own = prepared.detector->detect(Motion(start, end), nullptr, found);
+    const Report own = prepared.detector->detect(motion(), nullptr, found);
     if (report != nullptr) *report = own;
     found.sort();
     return found;

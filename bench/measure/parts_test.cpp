@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/rows/catalogue.h"
-#include "core/detect/start/embedding.h"
+#include "bench/testing/random_step.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/mesh/test_shapes.h"
-#include "scenes/clip/clip.h"
-#include "scenes/random/random_interval.h"
 
 namespace cscd::bench {
 namespace {
@@ -17,23 +15,11 @@ constexpr std::uint32_t kAlways = 0, kNever = DrvbcFastOptions::kNever;
 
 // CSCD_PARTS tries another number of intervals.
 std::uint64_t seeds() {
-  const char* const asked = std::getenv("CSCD_PARTS");
-  return asked != nullptr ? std::stoull(asked) : 400;
+  return test::steps_asked("CSCD_PARTS", 400);
 }
 
-struct Step {
-  scenes::RandomInterval random;
-  TriangleMesh mesh;
-  std::vector<Vec3> start, end;
-
-  explicit Step(std::uint64_t seed)
-      : random(scenes::make_random_interval(seed)),
-        mesh(random.clip.header().triangles, random.clip.header().vertex_count) {
-    const scenes::ClipInterval interval = random.clip.interval(0);
-    start.assign(interval.motion.start().begin(), interval.motion.start().end());
-    end.assign(interval.motion.end().begin(), interval.motion.end().end());
-  }
-  Motion motion() const { return Motion(start, end); }
+struct Step : test::RandomStep {
+  using RandomStep::RandomStep;
   Prepared prepared(const DrvbcFastOptions& options, int threads = 1) const {
     return make_drvbc_fast({mesh, start, nullptr, elementary_test_named("exact"), threads}, options);
   }
@@ -81,8 +67,7 @@ TEST(Parts, KeepTheFirstContactOfLongSteps) {
   std::size_t in_parts = 0, touching = 0;
   for (std::uint64_t seed = 1; seed <= seeds(); ++seed) {
     const Step step(seed);
-    if (!step.mesh.closed_and_oriented() || !EmbeddingTest(step.mesh, step.start).embedded(step.start))
-      continue;
+    if (!step.mesh.closed_and_oriented() || !step.starts_embedded()) continue;
     ContactSet whole, found;
     step.prepared({.long_descent = kNever, .complete = true}).detector->detect(step.motion(), nullptr, whole);
     const Report in = step.prepared({.follows = false, .long_descent = kAlways})

@@ -29,9 +29,8 @@ std::vector<StrategyRow> rows_called(std::span<const std::string> texts) {
 Verification verify(const ContactSet& reference, const ContactSet& answer, const StrategyRow& row,
                     bool starts_embedded) {
   const Guarantee guarantee = row.strategy->guarantee;
-  const bool all =
-      guarantee == Guarantee::complete || (guarantee == Guarantee::all_from_embedded && starts_embedded);
-  if (!row.first || !all) return cscd::verify(reference, answer, guarantee, starts_embedded);
+  if (!row.first || !promises_all(guarantee, starts_embedded))
+    return cscd::verify(reference, answer, guarantee, starts_embedded);
   const Verification in_time = cscd::verify(reference, answer, Guarantee::first_contact, true);
   if (!in_time.ok) return in_time;
   ContactSet earliest = reference;

@@ -30,8 +30,9 @@ struct PairOptions {
 // shares what happens behind the culler: relative boxes (optional), expansion into feature pairs, each of
 // which is tested once, the certified non-penetration filter, and the elementary test. The detector owns the
 // clock of the interval. Where a culler has looked for the first contact alone, and anything passed on
-// touches or is undecided, it is asked for the rest. In the pipeline `published`, the filter is the plain
-// sign, whatever the options say. What `setup` refers to must outlive the detector.
+// touches or is undecided, it is asked for the rest, unless the caller wants the first contact alone. In the
+// pipeline `published`, the filter is the plain sign, whatever the options say. What `setup` refers to must
+// outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup,
                                   PairOptions options = {});
 

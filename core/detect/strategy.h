@@ -26,6 +26,10 @@ enum class Guarantee { complete, first_contact, all_from_embedded, heuristic };
 constexpr bool needs_embedded_start(Guarantee guarantee) {
   return guarantee == Guarantee::first_contact || guarantee == Guarantee::all_from_embedded;
 }
+// Whether a guarantee promises all contacts from such a start.
+constexpr bool promises_all(Guarantee guarantee, bool starts_embedded) {
+  return guarantee == Guarantee::complete || (guarantee == Guarantee::all_from_embedded && starts_embedded);
+}
 // Returns the name of the enumerator.
 std::string_view to_string(Guarantee guarantee);
 

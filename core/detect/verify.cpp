@@ -69,8 +69,7 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
     fail("the reference lacks " + describe(surplus.front()));
   } else if (wrong != found.end()) {
     fail("wrong time: " + describe(*wrong));
-  } else if (!missing.empty() && (guarantee == Guarantee::complete ||
-                                  (guarantee == Guarantee::all_from_embedded && starts_embedded))) {
+  } else if (!missing.empty() && promises_all(guarantee, starts_embedded)) {
     fail("lost " + describe(missing.front()) + " (guarantee " + std::string(to_string(guarantee)) + ")");
   } else if (guarantee == Guarantee::first_contact && starts_embedded && !expected.empty()) {
     const double first = reference.contacts.front().time;

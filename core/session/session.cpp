@@ -61,9 +61,8 @@ Session::Row& Session::stand_in() {
 }
 
 bool Session::finds_all(const Row& row) const {
-  const bool all = row.strategy->guarantee == Guarantee::complete ||
-                   (row.strategy->guarantee == Guarantee::all_from_embedded && poses_.crossings().total == 0);
-  return all && !row.strategy->own_test && can_follow() && !first_only();
+  return promises_all(row.strategy->guarantee, poses_.crossings().total == 0) && !row.strategy->own_test &&
+         can_follow() && !first_only();
 }
 
 // Chooses the row that answers a step, and sees to it that what crosses at the start is known, or that the
@@ -211,8 +210,7 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   if (options_.first) keep_first(out.found);
   const Guarantee guarantee = out.strategy->guarantee;
   out.proven = setup_.elementary.apart_is_proof &&
-               (guarantee == Guarantee::complete ||
-                (guarantee == Guarantee::all_from_embedded && out.starts_embedded) ||
+               (promises_all(guarantee, out.starts_embedded) ||
                 (guarantee == Guarantee::first_contact && out.starts_embedded && out.rest_contacts == 0));
   out.wall_ms = whole.milliseconds();
 }

@@ -5,10 +5,6 @@
 namespace cscd::scenes {
 namespace {
 
-bool has_bones(const JointWeights& weights) {
-  return weights.bone[0] != BoneId{-1};
-}
-
 // The vertices and triangles of all triangles for which `wanted` is true.
 template <class Wanted>
 SurfacePart part(const TriangleMesh& mesh, const Wanted& wanted) {
@@ -43,11 +39,11 @@ std::vector<Vec3> SurfacePart::of(std::span<const Vec3> all) const {
 WornParts worn_parts(const Shape& shape) {
   const TriangleMesh mesh(shape.triangles, shape.positions.size());
   std::vector<bool> is_cloth(static_cast<std::size_t>(mesh.component_count()),
-                             std::ranges::all_of(shape.weights, has_bones));
+                             std::ranges::all_of(shape.weights, &JointWeights::has_bones));
   const auto component = [&](TriangleId t) { return static_cast<std::size_t>(mesh.component(t)); };
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     for (const VertexId corner : shape.triangles[t])
-      if (!has_bones(shape.weights[+corner])) is_cloth[component(TriangleId{static_cast<int>(t)})] = true;
+      if (!shape.weights[+corner].has_bones()) is_cloth[component(TriangleId{static_cast<int>(t)})] = true;
   return {part(mesh, [&](TriangleId t) { return is_cloth[component(t)]; }),
           part(mesh, [&](TriangleId t) { return !is_cloth[component(t)]; })};
 }

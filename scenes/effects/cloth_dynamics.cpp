@@ -86,7 +86,7 @@ class ClothDynamics final : public Effect {
         cloth_(mesh_, rest_, options(p)) {
     if (!parts_.body.in_shape.empty())
       for (std::size_t v = 0; v < rest_.size(); ++v)
-        if (shape.weights[+parts_.cloth.in_shape[v]].bone[0] != BoneId{-1})
+        if (shape.weights[+parts_.cloth.in_shape[v]].has_bones())
           carried_.push_back({VertexId{static_cast<int>(v)}, rest_[v], rest_[v]});
     if (p.has("body_gap")) {
       if (parts_.body.in_shape.empty())

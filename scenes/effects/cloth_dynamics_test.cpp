@@ -112,7 +112,7 @@ TEST(ClothDynamics, MovesWhatABodyWearsAndKeepsItOffTheBody) {
           40, 16);
   double lowest = 0, nearest = 1e300;
   for (std::size_t v = 0; v < shape.positions.size(); ++v) {
-    const bool has_bones = shape.weights[v].bone[0] != BoneId{-1};
+    const bool has_bones = shape.weights[v].has_bones();
     if (has_bones) {
       expect_near(state.positions[v], bare.positions[v]);
     } else {

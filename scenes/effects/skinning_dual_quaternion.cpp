@@ -67,7 +67,7 @@ class SkinningDualQuaternion final : public Effect {
     }
     for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex) {
       const JointWeights& weights = state.shape.weights[vertex];
-      if (weights.bone[0] == BoneId{-1}) continue;  // cloth that moves by itself
+      if (!weights.has_bones()) continue;  // cloth that moves by itself
       state.positions[vertex] = carried(weights, state.shape.positions[vertex]);
     }
   }

@@ -16,7 +16,7 @@ class SkinningLinear final : public Effect {
       offset_[bone] = state.bones[bone].head - rotated(state.rotations[bone], reference[bone].head);
     for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex) {
       const JointWeights& weights = state.shape.weights[vertex];
-      if (weights.bone[0] == BoneId{-1}) continue;  // cloth that moves by itself
+      if (!weights.has_bones()) continue;  // cloth that moves by itself
       Vec3 blended = Vec3::Zero();
       for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k) {
         const std::size_t bone = +weights.bone[k];

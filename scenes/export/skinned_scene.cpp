@@ -78,7 +78,7 @@ class Recorder {
       part.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
                                 static_cast<std::int32_t>(t[2])});
     for (const JointWeights& weights : shape.weights) {
-      if (weights.bone[0] == BoneId{-1})
+      if (!weights.has_bones())
         throw InputError("scene " + scene_.name +
                          ": its cloth has no bones, and every vertex of a skin needs one; export it as .h5");
       part.first.push_back(part.influences.size());

@@ -13,13 +13,14 @@
 
 namespace cscd::scenes {
 
-// The weights with which at most four bones move a vertex. Weights are not negative and sum to 1, or
-// are all 0 without bones. Unused
-// places come last and have bone -1 and weight 0.
+// The weights with which at most four bones move a vertex. Weights are not negative and sum to 1, or are all
+// 0 without bones. Unused places come last and have bone -1 and weight 0.
 struct JointWeights {
   static constexpr std::size_t most = 4;
   std::array<BoneId, most> bone{BoneId{-1}, BoneId{-1}, BoneId{-1}, BoneId{-1}};
   std::array<double, most> weight{};
+
+  bool has_bones() const { return bone[0] != BoneId{-1}; }
 };
 
 // A character at rest: a consistently oriented surface with its skeleton. The surface of a shape with bones

@@ -172,11 +172,10 @@ class Certificates {
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;                            // of each patch
   std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch
-  std::vector<State> state_;  // [patches], padded with usual ones to a whole word
-  std::vector<Label> label_;  // of each node
-  bool keeps_all_ = false;    // by capped clusters
-  std::int32_t one_is_enough_ =
-      0;  // 1 where clusters are capped, for then one clear triangle of two is enough
+  std::vector<State> state_;        // [patches], padded with usual ones to a whole word
+  std::vector<Label> label_;        // of each node
+  bool keeps_all_ = false;          // by capped clusters
+  std::int32_t one_is_enough_ = 0;  // 1 by capped clusters: one clear triangle of two is enough
   std::vector<CappedClusters> capped_;
   std::vector<std::uint8_t>
       may_cross_ray_;  // [patches]: the covers whose ray the patch may cross, a bit each
