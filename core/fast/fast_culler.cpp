@@ -54,7 +54,7 @@ bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
 void FastCuller::look_at(const Motion& motion) {
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   certificates_.keep_all(options_.complete && !by_signs_);
-  certificates_.start(positions_);
+  certificates_.start(positions_, team_);
   team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) look(p);
   });

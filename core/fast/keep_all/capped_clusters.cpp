@@ -9,6 +9,7 @@
 namespace cscd::fast {
 namespace {
 
+constexpr std::size_t kRange = 8;      // the number of clusters that is worth another thread
 constexpr int kFewUncertain = 4;       // the largest number of triangles of a patch that get a cone each
 constexpr std::size_t kFewCones = 16;  // up to so many cones, a cone about a whole patch spares no work
 
@@ -89,19 +90,25 @@ void CappedClusters::cut(std::size_t cluster, CapBuilder& builder, const Triangl
   targets_[cluster] = targets_of(mesh, positions, targets, observer.at(positions), kRays);
 }
 
-void CappedClusters::start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints) {
+void CappedClusters::start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints,
+                           const Team& team) {
   positions_ = &positions;
   viewpoints_ = viewpoints;
-  for (std::size_t i = 0; i < state_.size(); ++i) {
-    State& state = state_[i];
-    state.ray.emplace(ray_through(i, targets_[i].front()));
-    state.rays = 1;
-    state.crossings = 0;
-    state.ray_decides = state.cones_known = true;
-    state.has_other_ray = false;
-    state.uncertain.clear();
-    for (const Cap& cap : caps_[i]) take(cap, i);
-  }
+  looks_.resize(team.ranges_of(state_.size(), kRange));
+  team.ranges(state_.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
+    for (std::size_t i = first; i < last; ++i) start(i, looks_[part]);
+  });
+}
+
+void CappedClusters::start(std::size_t cluster, Look& look) {
+  State& state = state_[cluster];
+  state.ray.emplace(ray_through(cluster, targets_[cluster].front()));
+  state.rays = 1;
+  state.crossings = 0;
+  state.ray_decides = state.cones_known = true;
+  state.has_other_ray = false;
+  state.uncertain.clear();
+  for (const Cap& cap : caps_[cluster]) take(cap, cluster, look);
 }
 
 Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) const {
@@ -112,10 +119,10 @@ Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) con
   return {viewpoints_[cluster], middle, positions_->error()};
 }
 
-void CappedClusters::look(const Cap& cap, std::size_t cluster) {
+void CappedClusters::look_at(const Cap& cap, std::size_t cluster, Look& look) const {
   const Viewpoint &from = viewpoints_[cluster], towards = placed(cap.towards, positions_->records());
-  loop_.clear();
-  positive_.clear();
+  look.loop.clear();
+  look.positive.clear();
   for (const Patch& fan : cap.fans) {
     PatchLanes lanes = load(positions_->records(), fan.vertex);
     for (int end = 0; end < 2; ++end)
@@ -124,23 +131,23 @@ void CappedClusters::look(const Cap& cap, std::size_t cluster) {
         lanes.at[end][i][kLanes16 - 1] = apex;
       }
     const Signs signs = orientation(lanes, fan, from, positions_->error());
-    positive_.push_back(signs.positive & fan.lanes);
-    loop_.push_back(lanes);
+    look.positive.push_back(signs.positive & fan.lanes);
+    look.loop.push_back(lanes);
   }
 }
 
-void CappedClusters::take(const Cap& cap, std::size_t cluster) {
-  look(cap, cluster);
+void CappedClusters::take(const Cap& cap, std::size_t cluster, Look& look) {
+  look_at(cap, cluster, look);
   State& state = state_[cluster];
   for (std::size_t i = 0; i < cap.fans.size(); ++i) {
     const Patch& fan = cap.fans[i];
-    state.count(fan, loop_[i], positive_[i]);
-    const unsigned uncertain = fan.lanes & ~static_cast<unsigned>(positive_[i]);
+    const PatchLanes& loop = look.loop[i];
+    state.count(fan, loop, look.positive[i]);
+    const unsigned uncertain = fan.lanes & ~static_cast<unsigned>(look.positive[i]);
     const unsigned at_apex = uncertain & lanes_at_apex(fan);
     if ((uncertain & ~at_apex) != 0)
-      add_cones(uncertain & ~at_apex, cones_of(loop_[i], fan, viewpoints_[cluster], positions_->error()),
-                state);
-    if (at_apex != 0) take_in_slices(fan, loop_[i], at_apex, cluster);
+      add_cones(uncertain & ~at_apex, cones_of(loop, fan, viewpoints_[cluster], positions_->error()), state);
+    if (at_apex != 0) take_in_slices(fan, loop, at_apex, cluster);
   }
 }
 
@@ -214,9 +221,11 @@ bool CappedClusters::choose_other_rays() {
       any = state.ray_decides = state.has_other_ray = true;
     }
     if (!state.has_other_ray) continue;
+    Look& look = looks_.front();
     for (const Cap& cap : caps_[i]) {
-      look(cap, i);
-      for (std::size_t f = 0; f < cap.fans.size(); ++f) state.count(cap.fans[f], loop_[f], positive_[f]);
+      look_at(cap, i, look);
+      for (std::size_t f = 0; f < cap.fans.size(); ++f)
+        state.count(cap.fans[f], look.loop[f], look.positive[f]);
     }
   }
   return any;

@@ -42,10 +42,11 @@ class CappedClusters {
            std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
            std::span<const Vec3> positions, const FollowingPoint& observer);
 
-  // An interval is one call of `start`, then one call of `take` for each patch that may matter, in any order.
-  // Then, while choose_other_rays() returns true, one call of `count` for each patch of the clusters that
-  // have another ray. Then follows any number of questions.
-  void start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints);
+  // An interval is one call of `start`, which the team shares, then one call of `take` for each patch that
+  // may matter, in any order. Then, while choose_other_rays() returns true, one call of `count` for each
+  // patch of the clusters that have another ray. Then follows any number of questions.
+  void start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints,
+             const Team& team = Team());
   // A patch whose triangles are all positive need not be taken if this is false.
   bool may_cross_ray(std::size_t cluster, const PatchLanes& lanes) const {
     return state_[cluster].ray->may_cross(lanes);
@@ -83,10 +84,14 @@ class CappedClusters {
     }
     void count(const Patch& triangles, const PatchLanes& lanes, Mask16 positive);
   };
+  struct Look {                    // at a cap
+    std::vector<PatchLanes> loop;  // in registers
+    std::vector<Mask16> positive;  // the positive triangles
+  };
   Ray ray_through(std::size_t cluster, const Triangle& target) const;
-  // Fills `loop_` and `positive_`.
-  void look(const Cap& cap, std::size_t cluster);
-  void take(const Cap& cap, std::size_t cluster);
+  void start(std::size_t cluster, Look& look);
+  void look_at(const Cap& cap, std::size_t cluster, Look& look) const;
+  void take(const Cap& cap, std::size_t cluster, Look& look);
   void take_in_slices(const Patch& fan, const PatchLanes& lanes, unsigned triangles, std::size_t cluster);
   void add_cones(unsigned triangles, const Cones& cones, State& state);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);
@@ -96,8 +101,7 @@ class CappedClusters {
   // [clusters]: the triangles that a ray of the cluster may go through, the best one first
   std::vector<std::vector<Triangle>> targets_;
   std::vector<State> state_;
-  std::vector<PatchLanes> loop_;  // the loop of a cap, in registers
-  std::vector<Mask16> positive_;  // the positive triangles of that cap
+  std::vector<Look> looks_;  // [ranges of clusters]: room for the cap that a thread looks at
   const LocalPositions* positions_ = nullptr;
   std::span<const Viewpoint> viewpoints_;
 };

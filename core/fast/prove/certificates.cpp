@@ -11,6 +11,8 @@
 namespace cscd::fast {
 namespace {
 
+constexpr std::size_t kRange = 64;  // the number of patches that is worth another thread
+
 std::uint64_t count(unsigned mask) {
   return static_cast<std::uint64_t>(std::popcount(mask));
 }
@@ -86,15 +88,16 @@ std::size_t Certificates::looks_per_interval() const {
   return looks;
 }
 
-void Certificates::start(const LocalPositions& positions) {
+void Certificates::start(const LocalPositions& positions, const Team& team) {
   positions_ = &positions;
   place_viewpoints(positions.records());
-  for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c) capped_[c].start(positions, viewpoint_[c]);
+  for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c)
+    capped_[c].start(positions, viewpoint_[c], team);
 }
 
 void Certificates::finish(const Team& team) {
   if (keeps_all_)
-    certify_clear();
+    certify_clear(team);
   else
     certify_all_round();
   if (!positions_->known()) forget();
@@ -189,33 +192,36 @@ Mask16 Certificates::positive(std::size_t p, std::size_t c) const {
              : cell_[p].lanes;
 }
 
-void Certificates::certify_clear() {
-  const auto for_each_cover = [&](std::size_t p, const auto& take) {
-    for (std::size_t c = 0; c < covers_used_; ++c)
-      if (cell_[p].cluster[c] != kNone) take(c, static_cast<std::size_t>(cell_[p].cluster[c]));
-  };
+void Certificates::certify_clear(const Team& team) {
+  team.each(covers_used_, [&](std::size_t cover, std::size_t) { take_all(cover); });
+  team.ranges(cell_.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
+    for (std::size_t p = first; p < last; ++p) certify_clear(p);
+  });
+}
+
+// Tells the capped clusters of a cover which triangles are not positive, and which their rays may cross.
+void Certificates::take_all(std::size_t c) {
   for (std::size_t p = 0; p < cell_.size(); ++p)
-    if (state_[p] == State::seen || may_cross_ray_[p] != 0)
-      for_each_cover(p, [&](std::size_t c, std::size_t) {
-        if (positive(p, c) != cell_[p].lanes || (may_cross_ray_[p] >> c & 1) != 0)
-          capped_[c].take(tree_.patches[p], positive(p, c));
-      });
+    if ((state_[p] == State::seen || may_cross_ray_[p] != 0) && cell_[p].cluster[c] != kNone &&
+        (positive(p, c) != cell_[p].lanes || (may_cross_ray_[p] >> c & 1) != 0))
+      capped_[c].take(tree_.patches[p], positive(p, c));
+  while (capped_[c].choose_other_rays())
+    for (std::size_t p = 0; p < cell_.size(); ++p)
+      if (cell_[p].cluster[c] != kNone &&
+          capped_[c].has_other_ray(static_cast<std::size_t>(cell_[p].cluster[c])))
+        capped_[c].count(tree_.patches[p], positive(p, c));
+}
+
+void Certificates::certify_clear(std::size_t p) {
+  const auto cluster = [&](std::size_t c) { return static_cast<std::size_t>(cell_[p].cluster[c]); };
+  bool all_clear = state_[p] != State::seen;
   for (std::size_t c = 0; c < covers_used_; ++c)
-    while (capped_[c].choose_other_rays())
-      for (std::size_t p = 0; p < cell_.size(); ++p)
-        if (cell_[p].cluster[c] != kNone &&
-            capped_[c].has_other_ray(static_cast<std::size_t>(cell_[p].cluster[c])))
-          capped_[c].count(tree_.patches[p], positive(p, c));
-  for (std::size_t p = 0; p < cell_.size(); ++p) {
-    bool all_clear = state_[p] != State::seen;
-    for_each_cover(p,
-                   [&](std::size_t c, std::size_t cluster) { all_clear &= capped_[c].all_clear(cluster); });
-    if (all_clear) continue;
-    for_each_cover(p, [&](std::size_t c, std::size_t) {
+    all_clear &= cell_[p].cluster[c] == kNone || capped_[c].all_clear(cluster(c));
+  if (all_clear) return;
+  for (std::size_t c = 0; c < covers_used_; ++c)
+    if (cell_[p].cluster[c] != kNone)
       certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive(p, c)), 0};
-    });
-    if (state_[p] != State::seen) state_[p] = State::spoiled;
-  }
+  if (state_[p] != State::seen) state_[p] = State::spoiled;
 }
 
 void Certificates::label_nodes(const Team& team) {

@@ -55,7 +55,7 @@ class Certificates {
 
   // An interval is one call of `start`, then one call of `look` for every patch, in any order and from any
   // thread, then one call of `finish`.
-  void start(const LocalPositions& positions);
+  void start(const LocalPositions& positions, const Team& team = Team());
   void look(std::size_t patch, const PatchLanes& lanes);
   void finish(const Team& team = Team());
 
@@ -131,7 +131,9 @@ class Certificates {
   void certify_all_round();
   void look_round(std::size_t patch);
   Mask16 positive(std::size_t patch, std::size_t cover) const;
-  void certify_clear();
+  void certify_clear(const Team& team);
+  void take_all(std::size_t cover);
+  void certify_clear(std::size_t patch);
   void label_nodes(const Team& team);
 
   // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
