@@ -38,6 +38,8 @@ class Answerer {
   std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
   double preparation_ms() const { return session_.preparation_ms(); }
+  // How many triangles the preparation of the input did not know.
+  std::size_t new_triangles() const { return session_.new_triangles(); }
   // The triangles that cross at rest. They are left out of answers unless the options keep them.
   const Crossings& rest_crossings() const { return session_.rest_crossings(); }
   int threads() const { return session_.threads(); }

@@ -105,6 +105,9 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   const bool left_out = !options.answers.keep_rest_crossings;
   say_what_was_read(input, stdout);
   if (!input.import) std::printf("%s\n", options.input.c_str());
+  if (answerer.new_triangles() > 0)
+    std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
+                options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());
   std::printf("%s", summary_text(input, names, summary, answerer.rest_crossings(), left_out).c_str());
 
   ClipAnswer result{nullptr, summary.collides()};
@@ -200,7 +203,7 @@ void add_query(CLI::App& app) {
   command->add_option(
       "--preparation", options->preparation,
       "file in which what preparing the surface finds out is kept: written if there is none, else read, "
-      "which takes a fraction of the time");
+      "which takes a fraction of the time, also where the surface has changed in places since");
   command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_option(

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -152,6 +153,24 @@ TEST_F(Query, KeepsAPreparation) {
   expect_refused(run("cscd query small --preparation kept.preparation"), "is empty; remove it");
   expect_refused(run("cscd query small --strategy base --preparation other.preparation"),
                  "strategy base has no preparation worth keeping");
+}
+
+// Mutation: the sentence counts the triangles that were there.
+TEST_F(Query, SaysWhatIsNewToAPreparation) {
+  ASSERT_EQ(run("cscd export small walk.obj").status, 0);
+  EXPECT_FALSE(has(run("cscd query walk.0000.obj --preparation kept").out, "preparation kept"));
+  ASSERT_EQ(run("for f in walk.*.obj; do awk '/^v / && !n++ {$2 += 1e-4} 1' $f > t && mv t $f; done").status,
+            0);
+  const Ran changed = run("cscd query walk.0000.obj --preparation kept");
+  EXPECT_EQ(changed.status, 0) << changed.errors;
+  std::size_t fresh = 0, all = 0;
+  const std::size_t at = changed.out.find("preparation kept: ");
+  ASSERT_NE(at, std::string::npos) << changed.out;
+  ASSERT_EQ(
+      std::sscanf(changed.out.c_str() + at, "preparation kept: %zu of %zu triangles are new", &fresh, &all),
+      2);
+  EXPECT_GT(fresh, 0u);
+  EXPECT_LT(fresh, all / 4);
 }
 
 TEST_F(Query, ListsAsManyStartPairsAsAsked) {

@@ -235,6 +235,23 @@ void preparation(const std::string& name, const Way& way, int rounds) {
       name + ": is_free(), then preparing anew", one, rounds,
       [&](const Rows& start, const Rows& end) { body->is_free(start, end); },
       [&](const Rows& start, const Rows&) { SelfCollision(way.faces, start); });
+
+  SelfCollision::Options kept;
+  kept.preparation = body->preparation();
+  const Ask anew = [&](const Rows& start, const Rows&) { SelfCollision(way.faces, start); };
+  compare(name + ": preparing anew, then from what was kept", one, rounds, anew,
+          [&](const Rows& start, const Rows&) { SelfCollision(way.faces, start, kept); });
+  // Six faces meet at a vertex, and there are two for each, so these vertices change one face in a hundred.
+  const Eigen::Index vertices = way.poses[0].rows(), moved = vertices / 300 + 1;
+  for (const bool scattered : {true, false}) {
+    Way changed = one;
+    for (Rows& pose : changed.poses)
+      for (Eigen::Index i = 0; i < moved; ++i) pose(scattered ? 300 * i % vertices : i, 0) += 1e-9;
+    compare(name + ": preparing anew, then with 1 % of the faces changed, " +
+                (scattered ? "scattered" : "in one place"),
+            changed, rounds, anew,
+            [&](const Rows& start, const Rows&) { SelfCollision(way.faces, start, kept); });
+  }
 }
 
 int run(int rounds) {

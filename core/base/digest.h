@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 namespace cscd {
@@ -10,6 +12,19 @@ namespace cscd {
 inline constexpr std::uint64_t kDigestOfNothing = 14695981039346656037ull;
 inline std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t before = kDigestOfNothing) {
   for (const std::byte byte : bytes) before = (before ^ static_cast<std::uint64_t>(byte)) * 1099511628211ull;
+  return before;
+}
+
+// The same over words of eight bytes, of which the last one is filled up with zeros. It takes an eighth of
+// the time, and is another number.
+inline std::uint64_t digest_of_words(std::span<const std::byte> bytes,
+                                     std::uint64_t before = kDigestOfNothing) {
+  for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), sizeof before))) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data(), std::min(bytes.size(), sizeof word));
+    before = (before ^ word) * 1099511628211ull;
+    before ^= before >> 32;  // or the upper bits of words would reach no lower ones
+  }
   return before;
 }
 

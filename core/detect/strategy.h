@@ -56,8 +56,9 @@ struct Setup {
   // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.
   Pipeline pipeline = Pipeline::today;
   // What a detector of the same strategy and surface has said by Detector::saved_preparation(); empty to
-  // prepare from nothing. The strategy throws InputError if it is damaged or of another surface. Strategies
-  // that save nothing take no notice.
+  // prepare from nothing. The surface may have changed in places since, and only those are then prepared
+  // anew. The strategy throws InputError if it is damaged, or if less than half of the triangles were there.
+  // Strategies that save nothing take no notice.
   std::span<const std::byte> preparation = {};
 };
 
@@ -67,7 +68,8 @@ struct Preparation {
   std::optional<double> decomposition_ms;      // clusters from heat weights, observers
   std::vector<std::int32_t> atomic_cluster;    // [triangles]; empty for a strategy without clusters
   int atomic_clusters = 0;
-  int threads = 1;  // the number of threads that the strategy makes use of
+  int threads = 1;                // the number of threads that the strategy makes use of
+  std::size_t new_triangles = 0;  // that Setup::preparation, if given, did not know
 };
 
 struct Prepared {

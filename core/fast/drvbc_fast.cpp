@@ -28,6 +28,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
   preparation.atomic_clusters = 1 + *std::max_element(best.cluster_of.begin(), best.cluster_of.end());
   preparation.atomic_cluster = std::move(best.cluster_of);
   preparation.threads = setup.threads;
+  preparation.new_triangles = best.new_triangles;
   return {compose(std::move(best.culler), setup,
                   {.threads = setup.threads, .starts_embedded = options.starts_embedded}),
           preparation};

@@ -56,7 +56,7 @@ Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const D
 // Takes over what an earlier preparation of the surface has decided.
 Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
   RestoredCut restored = restored_cut(setup.mesh, setup.reference, setup.preparation);
-  Candidate candidate{restored.cut.covers[0].cluster_of, nullptr};
+  Candidate candidate{restored.cut.covers[0].cluster_of, nullptr, restored.new_triangles};
   candidate.culler = std::make_unique<FastCuller>(setup, std::move(restored.cut), options);
   candidate.culler->use_covers(std::min(restored.covers, options.covers));
   return candidate;

@@ -13,6 +13,7 @@ namespace cscd::fast {
 struct Candidate {
   std::vector<std::int32_t> cluster_of;  // [triangles]
   std::unique_ptr<FastCuller> culler;
+  std::size_t new_triangles = 0;  // that Setup::preparation did not know
 };
 
 // Prepares several cullers and returns the one that makes the least work in a few trial poses

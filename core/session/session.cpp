@@ -52,7 +52,8 @@ Session::Row Session::make(const Strategy& strategy) const {
   Setup setup = setup_;
   setup.first_only = first_only();
   Prepared prepared = strategy.make(setup);
-  return {&strategy, std::move(prepared.detector), prepared.preparation.threads};
+  return {&strategy, std::move(prepared.detector), prepared.preparation.threads,
+          prepared.preparation.new_triangles};
 }
 
 Session::Row& Session::stand_in() {

@@ -65,6 +65,8 @@ class Session {
   std::vector<std::byte> saved_preparation() const { return main_.detector->saved_preparation(); }
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
   double preparation_ms() const { return preparation_ms_ + rest_ms_; }
+  // How many triangles the preparation of the set-up did not know.
+  std::size_t new_triangles() const { return main_.new_triangles; }
   // The triangles that cross at rest. They are left out of answers unless the options keep them.
   const Crossings& rest_crossings() const { return rest_; }
   int threads() const { return main_.threads; }
@@ -74,6 +76,7 @@ class Session {
     const Strategy* strategy = nullptr;
     std::unique_ptr<Detector> detector;
     int threads = 1;
+    std::size_t new_triangles = 0;
   };
   Row make(const Strategy& strategy) const;
   Row& stand_in();

@@ -204,9 +204,8 @@ One object is used by one thread at a time; different objects are independent.)"
             const std::vector<std::byte> bytes = self.preparation();
             return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
           },
-          "Returns what preparing the mesh has found out, as bytes for SelfCollision(..., preparation=...) "
-          "of the "
-          "same mesh.")
+          "Returns what preparing the mesh has found out, as bytes for the argument `preparation` of another "
+          "object of the same mesh, or of one that has changed in places since.")
       .def_property_readonly("vertex_count", &SelfCollision::vertex_count)
       .def_property_readonly("face_count", &SelfCollision::face_count)
       .def_property_readonly("closed", &SelfCollision::closed);

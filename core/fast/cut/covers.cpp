@@ -120,13 +120,16 @@ void merge_thin_clusters(const TriangleMesh& mesh, std::vector<std::int32_t>& cl
 }
 
 std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
-  std::vector<bool> all(cluster_of.size());
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    all[t] = cluster_of[t] != kNone;
-    for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
-      if (cluster_of[+other] != cluster_of[t]) all[t] = false;
-    });
+  std::vector<bool> at_seam(mesh.vertex_count());
+  for (std::size_t v = 0; v < at_seam.size(); ++v) {
+    const std::span<const TriangleId> around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
+    at_seam[v] = std::ranges::any_of(
+        around, [&](TriangleId t) { return cluster_of[+t] != cluster_of[+around.front()]; });
   }
+  std::vector<bool> all(cluster_of.size());
+  for (std::size_t t = 0; t < all.size(); ++t)
+    all[t] = cluster_of[t] != kNone &&
+             std::ranges::none_of(mesh.triangles()[t], [&](VertexId v) { return at_seam[+v]; });
   return all;
 }
 

@@ -161,12 +161,17 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
     for (std::size_t l = 0; tree.patches[p].lanes >> l != 0; ++l)
       place_of[+tree.triangles[p][l]] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(l)};
   tree.adjacent_offset.push_back(0);
+  std::vector<std::pair<std::int32_t, Common>> touching;  // few, and in no order at first
   for (const Patch& patch : tree.patches) {
-    std::map<std::int32_t, Common> touching;
+    touching.clear();
     for_each_lane(patch.corners_of(patch.lanes), [&](std::size_t v) {
-      for (const TriangleId t : mesh.triangles_at(VertexId{patch.vertex[v]}))
-        touching[place_of[+t].patch].at[v] |= static_cast<Mask16>(1U << place_of[+t].lane);
+      for (const TriangleId t : mesh.triangles_at(VertexId{patch.vertex[v]})) {
+        auto at = std::ranges::find(touching, place_of[+t].patch, &std::pair<std::int32_t, Common>::first);
+        if (at == touching.end()) at = touching.insert(at, {place_of[+t].patch, Common{}});
+        at->second.at[v] |= static_cast<Mask16>(1U << place_of[+t].lane);
+      }
     });
+    std::ranges::sort(touching, {}, &std::pair<std::int32_t, Common>::first);
     for (const auto& [other, common] : touching) {
       tree.adjacent.push_back(other);
       tree.common.push_back(common);
@@ -179,16 +184,12 @@ void find_adjacent(const TriangleMesh& mesh, PatchTree& tree) {
 
 }  // namespace
 
-namespace {
-
 std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> reference) {
   std::vector<Vec3> centroid;
   for (const Triangle& c : mesh.triangles())
     centroid.push_back(reference[+c[0]] / 3 + reference[+c[1]] / 3 + reference[+c[2]] / 3);
   return centroid;
 }
-
-}  // namespace
 
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            const CuttingClusters& clusters, std::size_t least_cell) {

@@ -161,6 +161,9 @@ struct PatchList {
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            const CuttingClusters& clusters, std::size_t least_cell);
 
+// Returns the middle of each triangle, [triangles].
+std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> reference);
+
 // Builds the tree over patches, of which none crosses a seam of the first clusters, `cluster_of` [triangles].
 // The patches of the tree belong to no cluster, and `inside` is empty: cut_surface.h enters both.
 PatchTree make_tree(const TriangleMesh& mesh, std::span<const Vec3> reference, const PatchList& patches,

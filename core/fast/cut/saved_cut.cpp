@@ -1,34 +1,31 @@
 #include "core/fast/cut/saved_cut.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "core/base/digest.h"
-#include "core/base/error.h"
+#include "core/fast/cut/carried_cut.h"
 
 namespace cscd::fast {
 namespace {
 
 constexpr std::array<char, 16> kMagic = {'c', 's', 'c', 'd', ' ', 'p', 'r', 'e',
                                          'p', 'a', 'r', 'a', 't', 'i', 'o', 'n'};
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 struct Head {
   std::array<char, 16> magic = kMagic;
   std::uint64_t version = kVersion;
   std::uint64_t surface = 0;   // digest of triangles and reference pose
-  std::uint64_t contents = 0;  // digest of what follows
+  std::uint64_t contents = 0;  // digest of that and of what follows
 };
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw InputError("preparation: " + what + "; prepare anew without it");
-}
-
 std::uint64_t digest_of_surface(const TriangleMesh& mesh, std::span<const Vec3> reference) {
-  return digest_of(std::as_bytes(reference), digest_of(std::as_bytes(std::span(mesh.triangles()))));
+  return digest_of_words(std::as_bytes(reference),
+                         digest_of_words(std::as_bytes(std::span(mesh.triangles()))));
 }
 
 class Writer {
@@ -54,7 +51,7 @@ class Reader {
 
   template <class Number>
   std::vector<Number> take(std::size_t count) {
-    if (count > bytes_.size() / sizeof(Number)) refuse("ends too early");
+    if (count > bytes_.size() / sizeof(Number)) refuse_preparation("ends too early");
     std::vector<Number> numbers(count);
     std::memcpy(numbers.data(), bytes_.data(), count * sizeof(Number));
     bytes_ = bytes_.subspan(count * sizeof(Number));
@@ -70,7 +67,7 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
-void put(Writer& writer, const Cover& cover) {
+void put(Writer& writer, const Cover& cover, std::span<const Vec3> reference) {
   writer.put(std::span(cover.cluster_of));
   writer.put(static_cast<std::uint64_t>(cover.observers.size()));
   for (const FollowingPoint& observer : cover.observers) {
@@ -78,80 +75,79 @@ void put(Writer& writer, const Cover& cover) {
     writer.put(observer.height());
     writer.put(observer.vertices());
     writer.put(observer.weights());
+    for (const VertexId v : observer.vertices()) writer.put(std::span<const double>(reference[+v].data(), 3));
   }
 }
 
-FollowingPoint take_observer(Reader& reader, std::size_t vertex_count) {
+struct PlacedObserver {
+  FollowingPoint observer;
+  std::vector<Vec3> places;  // of the vertices that it follows
+};
+PlacedObserver take_observer(Reader& reader) {
   FollowingPoint observer;
   const auto count = reader.take<std::uint32_t>();
   const auto height = reader.take<float>();
   // The height is bounded as the weights are, so that no triple product overflows.
   if (count == 0 || count > FollowingPoint::kMost || !(std::abs(height) <= FollowingPoint::kMostWeight))
-    refuse("has a wrong observer");
+    refuse_preparation("has a wrong observer");
   const auto vertices = reader.take<VertexId>(count);
   const auto weights = reader.take<float>(count);
   float sizes = 0;
   for (std::size_t i = 0; i < count; ++i) {
     sizes += std::abs(weights[i]);
-    if (static_cast<std::int32_t>(vertices[i]) < 0 || +vertices[i] >= vertex_count)
-      refuse("has an observer at a vertex that the mesh lacks");
     observer.add(vertices[i], weights[i]);
   }
-  if (!(sizes <= FollowingPoint::kMostWeight)) refuse("has an observer of too large weights");
+  if (!(sizes <= FollowingPoint::kMostWeight)) refuse_preparation("has an observer of too large weights");
   observer.stand_off(height);
-  return observer;
+  const auto coordinates = reader.take<double>(3 * std::size_t{count});
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < count; ++i) places.emplace_back(Vec3::Map(&coordinates[3 * i]));
+  return {observer, std::move(places)};
 }
 
-// Every cluster has triangles, all of one component.
-Cover take_cover(Reader& reader, const TriangleMesh& mesh) {
-  Cover cover{reader.take<std::int32_t>(mesh.triangle_count()), {}};
+Cover take_cover(Reader& reader, std::size_t triangles, std::vector<std::vector<Vec3>>& places) {
+  Cover cover{reader.take<std::int32_t>(triangles), {}};
   const auto observers = reader.take<std::uint64_t>();
-  if (observers > mesh.triangle_count()) refuse("has more clusters than triangles");
-  for (std::uint64_t i = 0; i < observers; ++i)
-    cover.observers.push_back(take_observer(reader, mesh.vertex_count()));
-  std::vector<std::int32_t> component(observers, kNone);
-  for (std::size_t t = 0; t < cover.cluster_of.size(); ++t) {
-    const std::int32_t cluster = cover.cluster_of[t];
-    if (cluster == kNone) continue;
-    if (cluster < 0 || static_cast<std::uint64_t>(cluster) >= observers) refuse("has a wrong cluster");
-    std::int32_t& own = component[static_cast<std::size_t>(cluster)];
-    const std::int32_t here = mesh.component(TriangleId{static_cast<std::int32_t>(t)});
-    if (own != kNone && own != here) refuse("has a cluster in two components");
-    own = here;
+  if (observers > triangles) refuse_preparation("has more clusters than triangles");
+  for (const std::int32_t cluster : cover.cluster_of)
+    if (cluster != kNone && (cluster < 0 || static_cast<std::uint64_t>(cluster) >= observers))
+      refuse_preparation("has a wrong cluster");
+  for (std::uint64_t i = 0; i < observers; ++i) {
+    PlacedObserver placed = take_observer(reader);
+    cover.observers.push_back(placed.observer);
+    places.push_back(std::move(placed.places));
   }
-  if (std::ranges::find(component, kNone) != component.end()) refuse("has an empty cluster");
   return cover;
 }
 
-// Each triangle is in one patch, and the triangles of a patch are of one cluster in each cover.
-PatchList take_patches(Reader& reader, const TriangleMesh& mesh, const Covers& covers) {
+PatchList take_patches(Reader& reader, std::size_t triangles) {
   PatchList patches;
   const auto count = reader.take<std::uint64_t>();
-  if (count > mesh.triangle_count()) refuse("has more patches than triangles");
+  if (count > triangles) refuse_preparation("has more patches than triangles");
   patches.cell = reader.take<std::int32_t>(count);
-  const auto sizes = reader.take<std::uint8_t>(count);
-  std::vector<bool> met(mesh.triangle_count(), false);
-  std::size_t triangles = 0;
-  for (const std::uint8_t size : sizes) {
-    if (size == 0 || size > kLanes16) refuse("has a patch of a wrong size");
+  for (const std::uint8_t size : reader.take<std::uint8_t>(count)) {
+    if (size == 0 || size > kLanes16) refuse_preparation("has a patch of a wrong size");
     patches.triangles.push_back(reader.take<TriangleId>(size));
-    std::vector<VertexId> vertices;
-    const TriangleId first = patches.triangles.back().front();
-    for (const TriangleId t : patches.triangles.back()) {
-      if (static_cast<std::int32_t>(t) < 0 || +t >= met.size() || met[+t])
-        refuse("has a triangle in two patches");
-      met[+t] = true;
-      ++triangles;
-      vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
-      for (const Cover& cover : covers)
-        if (cover.cluster_of[+t] != cover.cluster_of[+first]) refuse("has a patch in two clusters");
-    }
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (vertices.size() > kLanes16) refuse("has a patch of too many vertices");
+    for (const TriangleId t : patches.triangles.back())
+      if (static_cast<std::int32_t>(t) < 0 || +t >= triangles)
+        refuse_preparation("has a patch of a triangle that the mesh lacks");
   }
-  if (triangles != met.size()) refuse("has a triangle in no patch");
   return patches;
+}
+
+EarlierCut take_cut(Reader& reader) {
+  EarlierCut earlier;
+  DecidedCut& decided = earlier.decided;
+  decided.covers_used = reader.take<std::uint64_t>();
+  if (decided.covers_used < 1 || decided.covers_used > kCovers)
+    refuse_preparation("has a wrong number of covers");
+  earlier.digests = reader.take<std::uint64_t>(reader.take<std::uint64_t>());
+  const std::size_t triangles = earlier.digests.size();
+  for (std::size_t c = 0; c < kCovers; ++c)
+    decided.covers[c] = take_cover(reader, triangles, earlier.places[c]);
+  decided.patches = take_patches(reader, triangles);
+  if (!reader.at_end()) refuse_preparation("goes on behind its end");
+  return earlier;
 }
 
 }  // namespace
@@ -160,7 +156,9 @@ std::vector<std::byte> saved_cut(const TriangleMesh& mesh, std::span<const Vec3>
                                  const CutSurface& cut, std::size_t covers) {
   Writer writer;
   writer.put(static_cast<std::uint64_t>(covers));
-  for (const Cover& cover : cut.covers) put(writer, cover);
+  writer.put(static_cast<std::uint64_t>(mesh.triangle_count()));
+  writer.put(std::span<const std::uint64_t>(triangle_digests(mesh, reference)));
+  for (const Cover& cover : cut.covers) put(writer, cover, reference);
   const std::size_t patches = cut.tree.patches.size();
   writer.put(static_cast<std::uint64_t>(patches));
   writer.put(std::span(cut.tree.cell));
@@ -170,7 +168,7 @@ std::vector<std::byte> saved_cut(const TriangleMesh& mesh, std::span<const Vec3>
 
   Head head;
   head.surface = digest_of_surface(mesh, reference);
-  head.contents = digest_of(writer.bytes());
+  head.contents = digest_of_words(writer.bytes(), head.surface);
   Writer whole;
   whole.put(head);
   whole.put(std::span<const std::byte>(writer.bytes()));
@@ -181,22 +179,21 @@ RestoredCut restored_cut(const TriangleMesh& mesh, std::span<const Vec3> referen
                          std::span<const std::byte> bytes) {
   Reader reader(bytes);
   const Head head = reader.take<Head>();
-  if (head.magic != kMagic) refuse("is no saved preparation");
-  if (head.version != kVersion) refuse("was made by another version of the program");
-  if (head.contents != digest_of(bytes.subspan(sizeof head))) refuse("is damaged");
-  if (head.surface != digest_of_surface(mesh, reference)) refuse("was made for another surface");
-  RestoredCut restored;
-  restored.covers = reader.take<std::uint64_t>();
-  if (restored.covers < 1 || restored.covers > kCovers) refuse("has a wrong number of covers");
-  Covers& covers = restored.cut.covers;
-  for (Cover& cover : covers) cover = take_cover(reader, mesh);
-  if (std::ranges::find(covers[0].cluster_of, kNone) != covers[0].cluster_of.end())
-    refuse("has a triangle without a cluster");
-  const PatchList patches = take_patches(reader, mesh, covers);
-  if (!reader.at_end()) refuse("goes on behind its end");
-  restored.cut.tree = make_tree(mesh, reference, patches, covers[0].cluster_of);
-  for (std::size_t c = 0; c < kCovers; ++c) enter_cover(mesh, covers[c], c, restored.cut.tree);
-  return restored;
+  if (head.magic != kMagic) refuse_preparation("is no saved preparation");
+  if (head.version != kVersion) refuse_preparation("was made by another version of the program");
+  if (head.contents != digest_of_words(bytes.subspan(sizeof head), head.surface))
+    refuse_preparation("is damaged");
+  EarlierCut earlier = take_cut(reader);
+  CarriedCut carried{{}, 0};
+  if (head.surface != digest_of_surface(mesh, reference))
+    carried = carried_over(mesh, reference, earlier);
+  else if (earlier.digests.size() == mesh.triangle_count())
+    carried.decided = std::move(earlier.decided);
+  else
+    refuse_preparation("has another number of triangles than its mesh");
+  check(mesh, carried.decided);
+  const std::size_t covers = carried.decided.covers_used;
+  return {finished(mesh, reference, std::move(carried.decided)), covers, carried.new_triangles};
 }
 
 }  // namespace cscd::fast

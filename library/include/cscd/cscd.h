@@ -93,7 +93,9 @@ class CSCD_EXPORT SelfCollision {
     Exclusions exclude;
     std::vector<Obstacle> obstacles;
     // What preparation() of another object with the same faces and reference positions returned. Preparing
-    // then takes a fraction of the time. Empty: prepare from nothing.
+    // then takes a fraction of the time. The surface may have been cut, remeshed or refined in places since:
+    // faces are known again by the reference positions of their corners, however they are numbered, and what
+    // is new is prepared anew. Empty: prepare from nothing.
     std::vector<std::byte> preparation;
   };
 
@@ -180,9 +182,9 @@ class CSCD_EXPORT SelfCollision {
   Candidates candidates(const Positions& start, const Positions& end, double radius);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
-  // damaged, of another version of the library or of another mesh raise std::invalid_argument there, and no
-  // others change an answer, so they may come from anywhere. Clusters that have followed the surface are
-  // returned as they are now.
+  // damaged, of another version of the library, or of a mesh that had less than half of the faces, raise
+  // std::invalid_argument there, and no others change an answer, so they may come from anywhere. Clusters
+  // that have followed the surface are returned as they are now.
   std::vector<std::byte> preparation() const;
 
   std::size_t vertex_count() const;  // of the mesh, without obstacles
