@@ -129,16 +129,43 @@ class Trusting : public Silent<Reports::nothing_from_a_start_that_crosses> {
  private:
   EmbeddingTest start_test_;
 };
+Prepared make_trusting(const cscd::Setup& setup) {
+  return {std::make_unique<Trusting>(setup), {}};
+}
 
 // Mutations: every known start is taken for embedded; none is.
 TEST(KnownStarts, AreNotTakenForEmbeddedWhereSomethingCrosses) {
   Trusting::told = 0;
-  const auto make = [](const cscd::Setup& setup) { return Prepared{std::make_unique<Trusting>(setup), {}}; };
-  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make},
+  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make_trusting},
                       elementary_test_named("exact"));
-  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make},
+  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make_trusting},
                       elementary_test_named("exact"), true);
   EXPECT_GT(Trusting::told, 10);
+}
+
+// Mutations: it is told after a step with contacts too; never again after one.
+TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
+  // The second ball flies through the first, and on.
+  const test::Shape balls =
+      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
+  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
+  for (const double x : {0.0, -0.1, -6.0, -6.1, -6.2, -6.3}) {
+    std::vector<Vec3> frame = balls.positions;
+    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
+    clip->append({frame, {}});
+  }
+  Input input{"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+  const Strategy strategy{"trusting", "", Guarantee::complete, {}, make_trusting};
+  Answerer answerer(input, strategy, elementary_test_named("exact"), {});
+  std::vector<bool> told;
+  for (std::size_t i = 0; i < 5; ++i) {
+    Trusting::told = 0;
+    const IntervalAnswer answer = answerer.answer(i);
+    EXPECT_TRUE(answer.starts_embedded) << i;
+    EXPECT_EQ(answer.found.contacts.empty(), i != 1) << i;
+    told.push_back(Trusting::told > 0);
+  }
+  EXPECT_EQ(told, (std::vector<bool>{true, true, false, true, true}));
 }
 
 }  // namespace

@@ -152,15 +152,18 @@ void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, St
   const Rig::Interval* const used = setup_.rig != nullptr ? bones : nullptr;
   out.strategy = row.strategy;
   if (start_known_) {
+    // Two looks find all contacts of a step from an embedded start, the second one only where something
+    // touches. After a step in which something did, that is likely again, and one look for all is quicker.
     const bool embedded = !options_.ignore_starts && poses_.crossings().total == 0 && can_follow();
-    out.report = embedded ? row.detector->detect_from_embedded(motion, used, out.found)
-                          : row.detector->detect(motion, used, out.found);
+    out.report = embedded && !touched_last_ ? row.detector->detect_from_embedded(motion, used, out.found)
+                                            : row.detector->detect(motion, used, out.found);
   } else {
     out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
     poses_.know(motion.start(), seen_);
     start_known_ = true;
     out.embedding_ms += out.report.start_ms;
   }
+  touched_last_ = !out.found.contacts.empty();
   if (!options_.ignore_starts) {
     if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
     say_start(out);

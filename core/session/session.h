@@ -113,6 +113,7 @@ class Session {
   Crossings rest_;
   RestCrossings left_out_;
   bool moved_on_ = false;          // poses_ holds the end of the step that is being answered
+  bool touched_last_ = false;      // something did in the step before
   bool start_known_ = false;       // what crosses at the start of the step that is being answered is known
   std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
   std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
