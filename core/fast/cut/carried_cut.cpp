@@ -64,7 +64,7 @@ std::vector<std::uint64_t> digests_of(const TriangleMesh& mesh, std::span<const 
   digests.reserve(mesh.triangle_count());
   for (const Triangle& corners : mesh.triangles()) {
     std::array<std::uint64_t, 3> of{vertex[+corners[0]], vertex[+corners[1]], vertex[+corners[2]]};
-    std::ranges::rotate(of, std::ranges::min_element(of));
+    std::rotate(of.begin(), std::ranges::min_element(of), of.end());
     digests.push_back(digest_of_words(std::as_bytes(std::span(of))));
   }
   return digests;

@@ -59,7 +59,7 @@ TEST(CarriedCut, KnowsTheSurfaceAgainHoweverItIsNumbered) {
   for (std::size_t v = 0; v < vertex.size(); ++v) shuffled.positions[vertex[v]] = kept.shape.positions[v];
   for (Triangle& c : shuffled.triangles) {
     for (VertexId& v : c) v = VertexId{static_cast<std::int32_t>(vertex[+v])};
-    std::ranges::rotate(c, c.begin() + random() % 3);
+    std::rotate(c.begin(), c.begin() + random() % 3, c.end());
   }
   std::ranges::shuffle(shuffled.triangles, random);
   const RestoredCut now = taken_over(shuffled, kept.bytes());
