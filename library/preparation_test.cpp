@@ -31,15 +31,14 @@ TEST(SelfCollision, AnswersTheSameFromASavedPreparation) {
   }
 }
 
-// Faces are divided, and all of them numbered anew. Mutations: a patch that has lost a face is taken over;
-// clusters are not divided where the mesh is.
+// The mesh that was prepared lacked a tenth of the faces, had the others in another order, and its last vertex
+// elsewhere. Mutation: what is taken over is cut again, too.
 TEST(SelfCollision, AnswersRightFromThePreparationOfAMeshThatHasChangedSince) {
   std::size_t taken_over = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Step step(seed);
     std::mt19937_64 random(seed);
-    // Less of the mesh than there is: it has lost some faces to a hole, and got its last vertex moved.
     FaceRows earlier(step.faces.rows() - step.faces.rows() / 10, 3);
     std::vector<Eigen::Index> order(static_cast<std::size_t>(step.faces.rows()));
     std::iota(order.begin(), order.end(), Eigen::Index{0});

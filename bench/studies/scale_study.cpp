@@ -41,8 +41,8 @@ struct Entrant {
   // By step: one interval's counters a place, and [repetition][interval] of every stage.
   std::vector<CountColumns> counts;
   std::vector<TimeColumns> ms, once;  // repeated; while it was verified
-  // One digest an interval, empty where the strategy did not answer the interval.
-  std::vector<std::string> digests;
+  // By interval: what the strategy promises of its contacts, empty where it did not answer.
+  std::vector<std::string> promised;
 };
 
 Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet& found) {
@@ -82,9 +82,10 @@ class Measurement {
       c.counts.resize(subject.steps.size());
       c.ms.resize(subject.steps.size());
       c.once.resize(subject.steps.size());
-      c.digests.resize(interval_count());
+      c.promised.resize(interval_count());
     }
     verified_.resize(subject.steps.size());
+    embedded_.resize(interval_count());
   }
 
   // Every strategy answers every interval, the reference where it takes part.
@@ -98,6 +99,7 @@ class Measurement {
       const auto [start, fresh] =
           embedded.try_emplace({subject_.steps[step_of(i)].scene, start_of(i)}, false);
       if (fresh) start->second = embedding.embedded(interval.motion.start());
+      embedded_[i] = start->second;
       verified.embedded += start->second;
 
       const bool judged = reference_answers(i);
@@ -136,13 +138,13 @@ class Measurement {
         const scenes::ClipInterval interval = input().clip->load(i);
         std::vector<Entrant*> order;
         for (Entrant& c : entrants_)
-          if (is_timed(c) && !c.digests[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
+          if (is_timed(c) && !c.promised[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
         shuffle(order, random);
         for (Entrant* c : order) {
           stream_positions(interval.motion);
           const Report report = answer(*c, interval, found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
-          if (digest(found) != c->digests[i]) {
+          if (promised(*c, i, found) != c->promised[i]) {
             verified_[step_of(i)].failures.push_back(label(*c, i) + "other contacts when timed");
             break;
           }
@@ -223,10 +225,18 @@ class Measurement {
     return made;
   }
 
+  // What a strategy promises of these contacts. What else it reports may depend on the intervals that it has
+  // answered before, where its covers follow the surface.
+  std::string promised(const Entrant& c, std::size_t interval, const ContactSet& sorted) const {
+    const Guarantee guarantee = c.row.strategy->guarantee;
+    if (needs_embedded_start(guarantee) && !embedded_[interval]) return "nothing";
+    return guarantee == Guarantee::first_contact ? first_time(sorted).dump() : digest(sorted);
+  }
+
   void keep(Entrant& c, std::size_t interval, const Report& report, const ContactSet& sorted) {
     append_counts(report, sorted, c.counts[step_of(interval)]);
     append_times(report.ms, c.once[step_of(interval)], 0);
-    c.digests[interval] = digest(sorted);
+    c.promised[interval] = promised(c, interval, sorted);
   }
 
   ordered_json preparation_json(const Entrant& c) const {
@@ -314,6 +324,7 @@ class Measurement {
   std::vector<Entrant> entrants_;
   ordered_json left_out_ = ordered_json::array();  // rows that the surface does not allow, and why
   std::vector<Verified> verified_;                 // by step
+  std::vector<bool> embedded_;                     // by interval: whether its start is
 };
 
 }  // namespace
