@@ -178,9 +178,11 @@ def draw_contacts(record, folder, most):
     for i, name in enumerate(names):
         found = [(x - 0.4 + (i + 0.5) * wide, ratio) for x, scene in enumerate(scenes)
                  if (ratio := record.contacts.get((scene, name, "median_interval")))]
-        colour = line_style(name)["color"]
-        axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=name, color=colour,
-                 **({"alpha": 0.55, "hatch": "////", "edgecolor": "white"} if name.endswith(" --first") else {}))
+        look = line_style(name)
+        # A family has one colour. What its dash tells apart in curves, dots do in bars.
+        filling = {"alpha": 0.55, "hatch": "////", "edgecolor": "white"} if name.endswith(" --first") else \
+            {"hatch": "..", "edgecolor": "white"} if look["ls"] != "-" else {}
+        axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=name, color=look["color"], **filling)
         for x, r in found:
             if "low" in r:
                 axes.plot([x] * 2, [r["low"], r["high"]], color="#666666", lw=1)
