@@ -65,18 +65,23 @@ constexpr ElementaryTest kUndecided{"undecided",
                                     one_by_one<says_undecided<MovingVertexFace>>,
                                     one_by_one<says_undecided<MovingEdgeEdge>>};
 
-// Two balls, one of which flies into the other, rests there, and comes out again. Asks for all intervals in
-// order, and then for intervals here and there.
-void expect_starts_right(const Strategy& strategy, const ElementaryTest& elementary, bool unproven = false) {
+// Two balls, of which the second one is shifted along x by so much, a frame each.
+Input two_balls(std::initializer_list<double> shifts) {
   const test::Shape balls =
       test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
   auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
-  for (const double x : {0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1}) {
+  for (const double x : shifts) {
     std::vector<Vec3> frame = balls.positions;
     for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
     clip->append({frame, {}});
   }
-  Input input{"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+  return {"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+}
+
+// One ball flies into the other, rests there, and comes out again. Asks for all intervals in order, and then
+// for intervals here and there.
+void expect_starts_right(const Strategy& strategy, const ElementaryTest& elementary, bool unproven = false) {
+  Input input = two_balls({0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1});
   Answerer answerer(input, strategy, elementary, {.unproven = unproven, .keep_rest_crossings = true});
   EmbeddingTest from_nothing(input.mesh, input.reference);
   for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 0, 3, 1, 6, 2, 5, 4, 0}) {
@@ -146,15 +151,7 @@ TEST(KnownStarts, AreNotTakenForEmbeddedWhereSomethingCrosses) {
 // Mutations: it is told after a step with contacts too; never again after one.
 TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
   // The second ball flies through the first, and on.
-  const test::Shape balls =
-      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
-  for (const double x : {0.0, -0.1, -6.0, -6.1, -6.2, -6.3}) {
-    std::vector<Vec3> frame = balls.positions;
-    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
-    clip->append({frame, {}});
-  }
-  Input input{"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+  Input input = two_balls({0.0, -0.1, -6.0, -6.1, -6.2, -6.3});
   const Strategy strategy{"trusting", "", Guarantee::complete, {}, make_trusting};
   Answerer answerer(input, strategy, elementary_test_named("exact"), {});
   std::vector<bool> told;

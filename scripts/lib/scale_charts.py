@@ -180,8 +180,11 @@ def draw_contacts(record, folder, most):
                  if (ratio := record.contacts.get((scene, name, "median_interval")))]
         look = line_style(name)
         # A family has one colour. What its dash tells apart in curves, dots do in bars.
-        filling = {"alpha": 0.55, "hatch": "////", "edgecolor": "white"} if name.endswith(" --first") else \
-            {"hatch": "..", "edgecolor": "white"} if look["ls"] != "-" else {}
+        filling = {}
+        if name.endswith(" --first"):
+            filling = {"alpha": 0.55, "hatch": "////", "edgecolor": "white"}
+        elif look["ls"] != "-":
+            filling = {"hatch": "..", "edgecolor": "white"}
         axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=name, color=look["color"], **filling)
         for x, r in found:
             if "low" in r:

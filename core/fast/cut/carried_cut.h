@@ -9,8 +9,8 @@
 
 namespace cscd::fast {
 
-// What tells the triangles of a surface from one another when it is met again: a digest of the places of the
-// three corners in the reference pose, whichever corner comes first; [triangles].
+// Returns a digest of each triangle, by which the triangle is known again on another surface: a digest of the
+// places of its three corners in the reference pose, whichever corner comes first; [triangles].
 std::vector<std::uint64_t> triangle_digests(const TriangleMesh& mesh, std::span<const Vec3> reference);
 
 // A surface that was cut, as far as a changed surface asks about it. Triangles and vertices in `decided` are
