@@ -15,8 +15,8 @@ inline std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t b
   return before;
 }
 
-// The same over words of eight bytes, of which the last one is filled up with zeros. It takes an eighth of
-// the time, and is another number.
+// A hash of the same kind that takes eight bytes in each step instead of one, the last ones filled up with
+// zeros. It is another number than digest_of() returns, and is not written into records.
 inline std::uint64_t digest_of_words(std::span<const std::byte> bytes,
                                      std::uint64_t before = kDigestOfNothing) {
   for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), sizeof before))) {

@@ -11,6 +11,7 @@
 #include "core/fast/cut/observer.h"
 #include "core/fast/cut/patch_cutter.h"
 #include "core/fast/cut/surface_clusters.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd::fast {
 namespace {
@@ -18,11 +19,7 @@ namespace {
 // A cluster gets another observer once one in so many of its triangles is new.
 constexpr std::size_t kNewShare = 8;
 
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-// Finds triangles and vertices by their digests. One table without lists takes a third of the time of a map.
+// Finds triangles and vertices by their digests: one table, because a map would allocate each of its entries.
 class ByDigest {
  public:
   explicit ByDigest(std::span<const std::uint64_t> digests) : slots_(std::bit_ceil(2 * digests.size() + 1)) {
@@ -79,26 +76,20 @@ std::vector<std::int32_t> origins(std::span<const std::uint64_t> before, std::sp
   return origin;
 }
 
-template <class Take>
-void for_each_beside(const TriangleMesh& mesh, std::size_t triangle, const Take& take) {
-  for (const VertexId v : mesh.corners(TriangleId{static_cast<std::int32_t>(triangle)}))
-    for (const TriangleId other : mesh.triangles_at(v)) take(+other);
-}
-
 // Lets a new triangle take the clusters of the nearest one that has stayed. kNone is left where a whole
 // component is new.
 std::vector<std::int32_t> nearest_origins(const TriangleMesh& mesh, std::vector<std::int32_t> like) {
-  std::vector<std::size_t> queue;
+  std::vector<TriangleId> queue;
   for (std::size_t t = 0; t < like.size(); ++t)
     if (like[t] == kNone)
-      for_each_beside(mesh, t, [&](std::size_t other) {
-        if (like[other] != kNone) queue.push_back(other);
+      for_each_neighbour(mesh, TriangleId{static_cast<std::int32_t>(t)}, [&](TriangleId other) {
+        if (like[+other] != kNone) queue.push_back(other);
       });
   for (std::size_t next = 0; next < queue.size(); ++next) {
-    const std::size_t t = queue[next];
-    for_each_beside(mesh, t, [&](std::size_t other) {
-      if (like[other] != kNone) return;
-      like[other] = like[t];
+    const TriangleId t = queue[next];
+    for_each_neighbour(mesh, t, [&](TriangleId other) {
+      if (like[+other] != kNone) return;
+      like[+other] = like[+t];
       queue.push_back(other);
     });
   }

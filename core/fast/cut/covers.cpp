@@ -5,6 +5,7 @@
 
 #include "core/fast/cut/observer.h"
 #include "core/fast/cut/seams.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd::fast {
 namespace {
@@ -38,13 +39,6 @@ Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
 namespace {
 
 // ---- Clusters
-
-template <class Take>
-void for_each_neighbour(const TriangleMesh& mesh, TriangleId triangle, const Take& take) {
-  for (const VertexId v : mesh.corners(triangle))
-    for (const TriangleId other : mesh.triangles_at(v))
-      if (other != triangle) take(other);
-}
 
 // The distance of each triangle from the nearest seed in rings of triangles, and which seed that is; kNone
 // where no seed is reached.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +12,11 @@
 namespace cscd::fast {
 
 inline constexpr std::int32_t kNone = -1;
+// Clusters, patches and triangles that may be missing have numbers with a sign; this is where one that is
+// there stands in a list.
+inline std::size_t index(std::int32_t number) {
+  return static_cast<std::size_t>(number);
+}
 
 // A cover divides triangles of the surface into disjoint clusters and gives every cluster one observer. A
 // cover may leave triangles out. No cluster spans two connected components of the mesh (rule component,

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/fast/cut/covers.h"
+
 // Patches grow one beside the other. What is left over between them is joined. Then small patches are emptied
 // into the patches beside them.
 namespace cscd::fast {
@@ -13,10 +15,6 @@ namespace {
 constexpr std::size_t kMostSeeking =
     300;  // so many triangles are asked to move for one; asking more finds little
 constexpr std::size_t kMostBeside = 8;  // so many patches are asked for room
-
-std::size_t index(std::int32_t patch) {
-  return static_cast<std::size_t>(patch);
-}
 
 }  // namespace
 

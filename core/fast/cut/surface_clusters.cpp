@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/cut/covers.h"
 #include "core/fast/cut/seams.h"
 
 namespace cscd::fast {
@@ -145,8 +146,6 @@ class Pieces {
   }
 
  private:
-  static std::size_t index(std::int32_t piece) { return static_cast<std::size_t>(piece); }
-
   std::vector<Triangles> members() const {
     std::vector<Triangles> members(index(*std::max_element(piece_.begin(), piece_.end())) + 1);
     for (const TriangleId t : all_) members[index(piece_[+t])].push_back(t);
