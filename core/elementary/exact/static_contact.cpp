@@ -125,6 +125,10 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 
 }  // namespace
 
+int certain_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  return certain_orientation(a, b, c, p);
+}
+
 bool vertex_touches_triangle(const Vec3& vertex, const Vec3& a, const Vec3& b, const Vec3& c) {
   if (boxes_apart(std::array<const Vec3*, 1>{&vertex}, Corners{&a, &b, &c})) return false;
   if (certain_orientation(a, b, c, vertex) != 0) return false;

@@ -8,6 +8,9 @@ namespace cscd {
 // filter with a forward error bound answers most calls, and exact arithmetic answers the rest
 // (static_contact.cpp). All features may be degenerate.
 
+// The side of the plane a, b, c on which p lies, +1 or -1, if the filter is certain of it, else 0.
+int certain_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
+
 // True if the vertex lies on the triangle, its edges and corners included.
 bool vertex_touches_triangle(const Vec3& vertex, const Vec3& a, const Vec3& b, const Vec3& c);
 

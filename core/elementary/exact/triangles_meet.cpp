@@ -20,6 +20,22 @@ struct Frame {
     return segments_touch(x[+e[0]], x[+e[1]], x[+f[0]], x[+f[1]]);
   }
 
+  // Whether all vertices of `to` that `from` does not have certainly lie on one side of the plane of `from`.
+  // Then `to` reaches that plane in the vertex or edge that both share alone, and the two meet nowhere else.
+  // Most neighbours are as good as flat towards each other, but hardly any pair is exactly so, and this
+  // settles nine pairs in ten for the price of one or two determinants.
+  bool beside(TriangleId from, TriangleId to) const {
+    const Triangle& plane = mesh.corners(from);
+    int side = 0;
+    for (const VertexId vertex : mesh.corners(to)) {
+      if (contains(plane, vertex)) continue;
+      const int here = certain_side(x[+plane[0]], x[+plane[1]], x[+plane[2]], x[+vertex]);
+      if (here == 0 || here == -side) return false;
+      side = here;
+    }
+    return side != 0;
+  }
+
   // Returns whether a feature of the first triangle meets the second triangle outside the vertices
   // and edges that both share. An edge without a vertex of the second triangle is tested as a
   // whole, which covers its two ends.
@@ -47,6 +63,7 @@ struct Frame {
 
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b) {
   const Frame frame{mesh, positions};
+  if (frame.beside(a, b) || frame.beside(b, a)) return false;
   return frame.reaches(a, b) || frame.reaches(b, a);
 }
 
