@@ -33,7 +33,8 @@ const Strategy kComplete{.name = "drvbc_fast_complete",
                          .guarantee = Guarantee::complete,
                          .needs = {},
                          .make = make_complete,
-                         .sees_start = true};
+                         .sees_start = true,
+                         .looks_by_signs = true};
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -241,12 +242,13 @@ class SelfCollision::Engine {
     return wanted.emplace("reference positions", setup(first, exclusions), strategy, kComplete, reference_,
                           options);
   }
-  // Signs need a start in which nothing at all crosses. A caller who answers for the starts may let excluded
-  // pairs cross, so then only a complete strategy is right.
+  // A complete strategy sees for itself how a step starts, and looks by signs alone from starts in which
+  // nothing crosses. Where the caller answers for the starts, nobody says so to it. The strategy that
+  // promises the first contact always looks by signs, which needs a start in which nothing at all crosses,
+  // and a caller with exclusions may let excluded pairs cross.
   Session& plain(Question& question) {
-    const bool by_signs =
-        question.first && mesh_.closed_and_oriented() && (exclusions_.empty() || options_.check_start);
-    return made(question.plain, question.first, by_signs ? kFirst : kComplete, nullptr);
+    const bool for_granted = !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty();
+    return made(question.plain, question.first, question.first && for_granted ? kFirst : kComplete, nullptr);
   }
 
   void step_itself(Question& question, const Motion& motion) {

@@ -40,6 +40,10 @@ constexpr Strategy seeing_start(Strategy row) {
   row.sees_start = true;
   return row;
 }
+constexpr Strategy by_signs(Strategy row) {
+  row.looks_by_signs = true;
+  return row;
+}
 constexpr Strategy following(Strategy row) {
   row.follows = true;
   return row;
@@ -82,13 +86,13 @@ constexpr std::array kStrategies = {
               kBones, [](const Setup& setup) { return make_drvbc(setup); }}),
     following({"drvbc_fast", "radial view based culling with overlapping covers", Guarantee::first_contact,
              kClosedMesh, [](const Setup& setup) { return make_drvbc_fast(setup); }}),
-    following(seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
+    following(by_signs(seeing_start(with_role({"drvbc_fast_complete", "drvbc_fast with a contour test of capped clusters",
                             Guarantee::complete, kAnySurface,
                             [](const Setup& setup) {
                               return make_drvbc_fast(setup,
                                                      {.name = "drvbc_fast_complete", .complete = true});
                             }},
-                           Role::stand_in))),
+                           Role::stand_in)))),
     following({"drvbc_fast_all", "drvbc_fast_complete from starts that are known to be embedded",
                Guarantee::all_from_embedded, kClosedMesh,
                [](const Setup& setup) {
@@ -177,7 +181,7 @@ constexpr std::array kStrategies = {
                return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers", .follows = false});
              },
              kAblation},
-    seeing_start({"drvbc_fast_fixed_covers_complete",
+    by_signs(seeing_start({"drvbc_fast_fixed_covers_complete",
                   "drvbc_fast_complete with covers that stay as preparation cut them", Guarantee::complete,
                   kAnySurface,
                   [](const Setup& setup) {
@@ -185,7 +189,7 @@ constexpr std::array kStrategies = {
                                                    .follows = false,
                                                    .complete = true});
                   },
-                  kAblation}),
+                  kAblation})),
     following({"drvbc_fast_bones", "drvbc_fast, all covers of bones without a trial", Guarantee::first_contact,
              kClosedMesh,
              [](const Setup& setup) {

@@ -30,6 +30,9 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
       stand_in_strategy_(stand_in),
       options_(options),
       poses_({setup.mesh, setup.reference}, kMostCrossings) {
+  const Stopwatch preparing;
+  main_ = make(strategy);
+  preparation_ms_ = preparing.milliseconds();
   const Stopwatch searching;
   if (!options.ignore_starts) find_crossings(rest, nullptr);
   rest_ = poses_.crossings();
@@ -41,10 +44,8 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
           " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
           "--keep-rest-crossings");
     left_out_ = RestCrossings(setup.mesh, rest_);
+    if (options.first && !left_out_.empty()) main_ = make(strategy);  // to be asked for all contacts instead
   }
-  const Stopwatch preparing;
-  main_ = make(strategy);
-  preparation_ms_ = preparing.milliseconds();
 }
 
 Session::Row Session::make(const Strategy& strategy) const {
@@ -70,8 +71,10 @@ bool Session::finds_all(const Row& row) const {
 // row finds it with its answer.
 Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones) {
   start_known_ = options_.ignore_starts || moved_on_ || poses_.knows(motion.start());
-  if (options_.ignore_starts || (!start_known_ && main_.strategy->sees_start)) return main_;
-  if (!start_known_ && !follow_to(motion.start(), bones)) {
+  if (options_.ignore_starts) return main_;
+  const bool sees_start = main_.strategy->sees_start;
+  if (!start_known_ && !((!sees_start || signs_pay()) && follow_to(motion.start(), bones))) {
+    if (sees_start) return main_;
     if (needs_start() && stand_in_pays()) return stand_in();
     find_crossings(motion.start(), bones);
   }
@@ -84,16 +87,21 @@ Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones)
 // as its preparation. So a clip whose starts are nearly all known from the steps before them is spared the
 // preparation, and no clip takes much more than twice the time that the better choice would take. Searches
 // are counted and not timed, so that the same questions get the same answers from the same row.
+bool Session::signs_pay() const {
+  return main_.strategy->looks_by_signs && setup_.mesh.closed_and_oriented();
+}
+
 bool Session::stand_in_pays() const {
   return stand_in_strategy_.sees_start && (stand_in_ || searches_ >= kPlainSearches);
 }
 
 void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones) {
-  if (main_.detector && stand_in_pays()) {
+  if (main_.strategy->sees_start || stand_in_pays()) {
+    Row& row = main_.strategy->sees_start ? main_ : stand_in();
     std::optional<Rig::Interval> rest;
     if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
-    stand_in().detector->detect_and_see_start(Motion(pose, pose), rest ? &*rest : nullptr, touched_,
-                                              poses_.most(), seen_);
+    row.detector->detect_and_see_start(Motion(pose, pose), rest ? &*rest : nullptr, touched_, poses_.most(),
+                                       seen_);
     poses_.know(pose, seen_);
   } else {
     poses_.find(pose);
@@ -154,9 +162,11 @@ void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, St
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
     // touches. After a step in which something did, that is likely again, and one look for all is quicker.
+    // For the first contact alone there is one look in either case.
     const bool embedded = !options_.ignore_starts && poses_.crossings().total == 0 && can_follow();
-    out.report = embedded && !touched_last_ ? row.detector->detect_from_embedded(motion, used, out.found)
-                                            : row.detector->detect(motion, used, out.found);
+    out.report = embedded && (!touched_last_ || first_only())
+                     ? row.detector->detect_from_embedded(motion, used, out.found)
+                     : row.detector->detect(motion, used, out.found);
   } else {
     out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
     poses_.know(motion.start(), seen_);

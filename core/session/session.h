@@ -93,6 +93,9 @@ class Session {
   void move_on(const Motion& motion);
   Row& row_for(const Motion& motion, const Rig::Interval* bones);
   bool stand_in_pays() const;
+  // Whether a way from an embedded pose and a step from its end take less time than the main row takes to
+  // see the start.
+  bool signs_pay() const;
   // Finds from nothing which triangles cross in a pose. `bones` holds the skeleton in it, at its start.
   void find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones);
   bool follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
