@@ -48,8 +48,9 @@ std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, bool by_si
 }
 
 Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
-  auto culler =
-      std::make_unique<FastCuller>(setup, cut_surface(setup.mesh, setup.reference, cluster_of), options);
+  const Team team(setup.threads);
+  auto culler = std::make_unique<FastCuller>(
+      setup, cut_surface(setup.mesh, setup.reference, cluster_of, kLeastCell, team), options);
   return {std::move(cluster_of), std::move(culler)};
 }
 

@@ -225,7 +225,7 @@ PatchList carry_patches(const TriangleMesh& mesh, std::span<const Vec3> referenc
       left[{like[t] == kNone ? kNone : cell_of[index(like[t])], clusters_of(t)}].push_back(
           TriangleId{static_cast<std::int32_t>(t)});
   const std::vector<Vec3> centroid = centroids(mesh, reference);
-  PatchCutter cutter(mesh, centroid, kLanes16);
+  PatchCutter cutter(mesh, centroid);
   for (const auto& [alike, triangles] : left)
     for (std::vector<TriangleId>& patch : cutter.cut(triangles)) {
       patches.triangles.push_back(std::move(patch));

@@ -24,15 +24,17 @@ std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
 }  // namespace
 
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                 std::vector<std::int32_t> cluster_of) {
+                 std::vector<std::int32_t> cluster_of, const Team& team) {
   Cover cover{std::move(cluster_of), {}};
   std::vector<std::vector<TriangleId>> members(renumbered(cover.cluster_of));
   for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
     if (cover.cluster_of[t] != kNone)
       members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
           TriangleId{static_cast<std::int32_t>(t)});
-  for (const std::vector<TriangleId>& triangles : members)
-    cover.observers.push_back(observer_of(mesh, reference, triangles));
+  cover.observers.resize(members.size());
+  team.each(members.size(), [&](std::size_t c, std::size_t) {
+    cover.observers[c] = observer_of(mesh, reference, members[c]);
+  });
   return cover;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/team.h"
 #include "core/fast/cut/following_point.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -35,7 +36,7 @@ using Covers = std::array<Cover, kCovers>;
 // without a cluster. Numbers the clusters from 0 in the order of their first triangles. Places the observer
 // of each cluster where it sees as much of the cluster as possible from behind in the reference pose.
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                 std::vector<std::int32_t> cluster_of);
+                 std::vector<std::int32_t> cluster_of, const Team& team = Team());
 
 // Merges each cluster that is too thin for its middle to lie well inside it with the neighbour along the
 // longest seam, the thinnest cluster first. Only clusters with at most two neighbours are merged, because a

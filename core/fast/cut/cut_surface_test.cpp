@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "core/fast/cut/saved_cut.h"
 #include "core/fast/cut/test_body.h"
 
 namespace cscd::fast {
@@ -63,6 +64,18 @@ TEST(Covers, ObserversStayWithinReachOfTheirVertices) {
   float sum = 0;
   for (const float weight : cover.observers[0].weights()) sum += std::abs(weight);
   EXPECT_LE(sum, 1.001F * FollowingPoint::kMostWeight);
+}
+
+// Cells and observers are shared out. Mutation: a patch cutter that two threads use at a time.
+TEST(CutSurface, IsTheSameOnAnyNumberOfThreads) {
+  const test::Body body(0.01, 0);
+  const auto cut = [&](int threads) {
+    return saved_cut(body.mesh, body.shape.positions,
+                     cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle, 8, Team(threads)),
+                     kCovers);
+  };
+  const std::vector<std::byte> alone = cut(1);
+  for (const int threads : {2, 5}) EXPECT_EQ(cut(threads), alone);
 }
 
 TEST(Covers, ObserversSeeAllOfATubeFromInside) {

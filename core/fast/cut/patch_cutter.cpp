@@ -1,6 +1,7 @@
 #include "core/fast/cut/patch_cutter.h"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -18,10 +19,9 @@ constexpr std::size_t kMostBeside = 8;  // so many patches are asked for room
 
 }  // namespace
 
-PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid, std::size_t most)
+PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid)
     : mesh_(mesh),
       centroid_(centroid),
-      most_(most),
       free_(mesh.triangle_count(), false),
       free_at_(mesh.edge_count(), 0),
       is_beside_(mesh.triangle_count(), false),
@@ -29,7 +29,7 @@ PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroi
       taken_(mesh.vertex_count(), false),
       patch_of_(mesh.triangle_count(), -1),
       seeks_(mesh.triangle_count(), false),
-      uses_(mesh.vertex_count(), 0) {}
+      place_(mesh.vertex_count(), kNoPlace) {}
 
 PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
   Patches patches = pieces(cell);
@@ -113,13 +113,13 @@ std::vector<TriangleId> PatchCutter::grow(TriangleId seed) {
   touched_.clear();
   vertices_.clear();
   take(seed);
-  while (patch.size() < most_) {
+  while (patch.size() < kMost) {
     const Vec3 middle = sum / static_cast<double>(patch.size());
     TriangleId best{-1};
     std::pair<int, double> least{3, 0};  // every triangle needs fewer new vertices
     for (const TriangleId t : touched_) {
       const int needed = 3 - corners_taken_[+t];
-      if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > most_)
+      if (needed > least.first || !free_[+t] || static_cast<std::size_t>(needed) + vertices_.size() > kMost)
         continue;
       const std::pair cost{needed, (centroid_[+t] - middle).squaredNorm()};
       if (cost < least) {
@@ -153,11 +153,11 @@ void PatchCutter::join(Patches& patches) {
     beside_.erase(std::unique(beside_.begin(), beside_.end()), beside_.end());
     for (const std::int32_t p : beside_) {
       const std::size_t j = index(p);
-      if (patches[i].size() + patches[j].size() > most_) continue;
+      if (patches[i].size() + patches[j].size() > kMost) continue;
       const std::vector<VertexId>& other = vertices[j];
       std::vector<VertexId> both;
       std::set_union(own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(both));
-      if (both.size() > most_) continue;
+      if (both.size() > kMost) continue;
       enter(j, patches[i]);
       patches[j].insert(patches[j].end(), patches[i].begin(), patches[i].end());
       patches[i].clear();
@@ -183,8 +183,9 @@ void PatchCutter::leave(Patches& patches) {
 // Moves the triangles of small patches, the smallest first, into patches beside them, as long as they find
 // room.
 void PatchCutter::empty_small(Patches& patches) {
+  members_.assign(patches.size(), {});
   for (std::size_t p = 0; p < patches.size(); ++p) enter(p, patches[p]);
-  for (std::size_t size = 1; size < most_; ++size)
+  for (std::size_t size = 1; size < kMost; ++size)
     for (const std::vector<TriangleId>& patch : patches) {
       if (patch.size() != size) continue;
       const std::vector<TriangleId> triangles = patch;
@@ -207,7 +208,7 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
     find_patches_beside(seeking_[at].triangle);
     for (const std::int32_t p : beside_) {
       if (is_left(p, at)) continue;
-      if (find_room(seeking_[at].triangle, patches[index(p)])) {
+      if (find_room(seeking_[at].triangle, index(p), patches[index(p)])) {
         move_all(at, p, patches);
         found = true;
         break;
@@ -234,27 +235,54 @@ void PatchCutter::find_patches_beside(TriangleId triangle) {
 
 // Returns whether a triangle has room in a patch. If not, finds the triangles of the patch that would give it
 // room by leaving.
-bool PatchCutter::find_room(TriangleId triangle, std::span<const TriangleId> patch) {
-  std::size_t vertices = 0;
-  const auto use = [&](TriangleId t) {
-    for (const VertexId v : mesh_.corners(t)) vertices += uses_[+v]++ == 0;
-  };
-  const auto forget = [&](TriangleId t) {
-    for (const VertexId v : mesh_.corners(t)) uses_[+v] = 0;
-  };
-  const auto only_its_own = [&](TriangleId t) {
-    const Triangle& c = mesh_.corners(t);
-    return std::size_t{uses_[+c[0]] == 1} + std::size_t{uses_[+c[1]] == 1} + std::size_t{uses_[+c[2]] == 1};
-  };
-  use(triangle);
-  std::ranges::for_each(patch, use);
-  const bool is_free = patch.size() < most_ && vertices <= most_;
+bool PatchCutter::find_room(TriangleId triangle, std::size_t p, std::span<const TriangleId> patch) {
+  if (!members_[p].known) members_[p] = members_of(patch);
+  const Members& members = members_[p];
+  std::size_t vertices = members.vertices;
+  unsigned needed = 0;  // of the patch's vertices
+  for (const VertexId v : mesh_.corners(triangle)) {
+    const unsigned place = place_of(members, v);
+    vertices += place == 0;
+    needed |= place;
+  }
+  const bool is_free = patch.size() < kMost && vertices <= kMost;
   in_place_of_.clear();
-  for (const TriangleId t : patch)
-    if (!is_free && vertices - only_its_own(t) <= most_) in_place_of_.push_back(t);
-  forget(triangle);
-  std::ranges::for_each(patch, forget);
+  for (std::size_t i = 0; i < patch.size() && !is_free; ++i) {
+    const auto left_over = static_cast<std::size_t>(std::popcount(members.only_its_own[i] & ~needed));
+    if (vertices - left_over <= kMost) in_place_of_.push_back(patch[i]);
+  }
   return is_free;
+}
+
+// The bit of a vertex that the patch has, or 0.
+unsigned PatchCutter::place_of(const Members& members, VertexId vertex) {
+  unsigned bit = 0;
+  for (std::size_t i = 0; i < kLanes16; ++i) bit |= unsigned{members.vertex[i] == vertex} << i;
+  return bit;
+}
+
+PatchCutter::Members PatchCutter::members_of(std::span<const TriangleId> patch) {
+  Members members;
+  members.known = true;
+  members.vertex.fill(VertexId{-1});
+  std::array<Mask16, kMost> corners{};
+  unsigned once = 0, again = 0;
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    for (const VertexId v : mesh_.corners(patch[i])) {
+      std::uint8_t& place = place_[+v];
+      if (place == kNoPlace) {
+        place = static_cast<std::uint8_t>(members.vertices);
+        members.vertex[members.vertices++] = v;
+      }
+      const unsigned bit = 1U << place;
+      again |= once & bit;
+      once |= bit;
+      corners[i] |= static_cast<Mask16>(bit);
+    }
+  for (std::size_t i = 0; i < patch.size(); ++i)
+    members.only_its_own[i] = static_cast<Mask16>(corners[i] & ~again);
+  for (std::size_t i = 0; i < members.vertices; ++i) place_[+members.vertex[i]] = kNoPlace;
+  return members;
 }
 
 // Whether a triangle of the patch is among those that move if this one does.
@@ -272,6 +300,7 @@ void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
   while (true) {
     const auto [triangle, for_whom] = seeking_[at];
     const std::int32_t from = std::exchange(patch_of_[+triangle], to);
+    members_[index(from)].known = members_[index(to)].known = false;
     std::erase(patches[index(from)], triangle);
     patches[index(to)].push_back(triangle);
     if (at == 0) return;

@@ -1,26 +1,38 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/geometry/lanes16.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd::fast {
 
-// Cuts sets of triangles into few patches, each of at most `most` triangles with at most as many vertices.
+// Cuts sets of triangles into few patches, each of at most sixteen triangles with at most as many vertices.
 // Few patches are the aim, because every patch costs the same, however full.
 class PatchCutter {
  public:
   using Patches = std::vector<std::vector<TriangleId>>;
 
   // `centroid` is [triangles]. The mesh and the centroids must outlive the cutter.
-  PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid, std::size_t most);
+  PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid);
 
   // Returns the patches of one cell (patches.h). Every triangle of the cell is in exactly one of them.
   Patches cut(std::span<const TriangleId> cell);
 
  private:
+  static constexpr std::size_t kMost = kLanes16;  // triangles, and vertices
+
+  // What is asked of a patch again and again while triangles look for room in it.
+  struct Members {
+    bool known = false;  // since the patch last changed
+    std::size_t vertices = 0;
+    std::array<VertexId, kMost> vertex{};
+    std::array<Mask16, kMost> only_its_own{};  // of each triangle, the vertices that no other triangle has
+  };
+
   std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const;
   void set_free(TriangleId triangle, bool free);
   int free_beside(TriangleId triangle) const;  // how many free neighbours a free triangle has
@@ -32,13 +44,14 @@ class PatchCutter {
   void empty_small(Patches& patches);
   bool move(TriangleId triangle, Patches& patches);
   void find_patches_beside(TriangleId triangle);
-  bool find_room(TriangleId triangle, std::span<const TriangleId> patch);
+  bool find_room(TriangleId triangle, std::size_t p, std::span<const TriangleId> patch);
+  static unsigned place_of(const Members& members, VertexId vertex);
+  Members members_of(std::span<const TriangleId> patch);
   bool is_left(std::int32_t patch, std::size_t at) const;
   void move_all(std::size_t at, std::int32_t to, Patches& patches);
 
   const TriangleMesh& mesh_;
   std::span<const Vec3> centroid_;
-  std::size_t most_;
   std::vector<bool> free_;             // [triangles]: whether it is in no patch yet
   std::vector<std::int32_t> free_at_;  // [edges]: how many free triangles have it
   std::vector<bool> is_beside_;        // [triangles]: whether it is free and beside some patch
@@ -55,10 +68,12 @@ class PatchCutter {
     std::size_t for_whom;  // index in `seeking_` of the triangle that gets its room; 0 for the first, which
                            // wants none
   };
-  std::vector<std::int32_t> patch_of_;   // [triangles]: its patch, or -1
-  std::vector<Seeking> seeking_;         // triangles that look for room one after the other
-  std::vector<bool> seeks_;              // [triangles]: whether it is in `seeking_`
-  std::vector<std::uint8_t> uses_;       // [vertices]: by how many triangles of one patch it is used
+  std::vector<std::int32_t> patch_of_;  // [triangles]: its patch, or -1
+  std::vector<Seeking> seeking_;        // triangles that look for room one after the other
+  std::vector<bool> seeks_;             // [triangles]: whether it is in `seeking_`
+  std::vector<Members> members_;        // [patches]
+  static constexpr std::uint8_t kNoPlace = 0xff;
+  std::vector<std::uint8_t> place_;  // [vertices]: its place among a patch's members; kNoPlace at other times
   std::vector<std::int32_t> beside_;     // what find_patches_beside() found
   std::vector<TriangleId> in_place_of_;  // what find_room() found
 };

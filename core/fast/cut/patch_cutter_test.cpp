@@ -27,7 +27,7 @@ struct Surface {
     return all;
   }
   PatchCutter::Patches cut(std::span<const TriangleId> cell) const {
-    return PatchCutter(mesh, centroid, 16).cut(cell);
+    return PatchCutter(mesh, centroid).cut(cell);
   }
 };
 

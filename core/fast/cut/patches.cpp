@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "core/fast/cut/patch_cutter.h"
 
@@ -192,18 +193,21 @@ std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> refe
 }
 
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                           const CuttingClusters& clusters, std::size_t least_cell) {
+                           const CuttingClusters& clusters, std::size_t least_cell, const Team& team) {
   const std::vector<Vec3> centroid = centroids(mesh, reference);
-  PatchCutter cutter(mesh, centroid, kLanes16);
+  const std::vector<std::vector<TriangleId>> cells = cells_of(mesh, clusters, least_cell);
+  std::vector<std::optional<PatchCutter>> cutters(team.threads());
+  std::vector<PatchCutter::Patches> cut(cells.size());
+  team.each(cells.size(), [&](std::size_t cell, std::size_t thread) {
+    if (!cutters[thread]) cutters[thread].emplace(mesh, centroid);
+    cut[cell] = cutters[thread]->cut(cells[cell]);
+  });
   PatchList patches;
-  std::int32_t number = 0;
-  for (const std::vector<TriangleId>& cell : cells_of(mesh, clusters, least_cell)) {
-    for (std::vector<TriangleId>& patch : cutter.cut(cell)) {
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+    for (std::vector<TriangleId>& patch : cut[cell]) {
       patches.triangles.push_back(std::move(patch));
-      patches.cell.push_back(number);
+      patches.cell.push_back(static_cast<std::int32_t>(cell));
     }
-    ++number;
-  }
   return patches;
 }
 

@@ -159,7 +159,8 @@ struct PatchList {
 // sets of a first cluster form one cell together. So no patch crosses a seam of the first clusters, and a
 // patch crosses a seam of the second clusters only where that seam would make too small a cell.
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                           const CuttingClusters& clusters, std::size_t least_cell);
+                           const CuttingClusters& clusters, std::size_t least_cell,
+                           const Team& team = Team());
 
 // Returns the middle of each triangle, [triangles].
 std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> reference);

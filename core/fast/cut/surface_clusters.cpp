@@ -129,25 +129,29 @@ class Pieces {
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
     if (seam.empty()) return;
     flood(all_, seam, false);
-    std::map<std::int32_t, double> deepest;
+    std::vector<double> deepest(pieces());
     for (std::size_t t = 0; t < piece_.size(); ++t)
-      deepest[piece_[t]] = std::max(deepest[piece_[t]], path_[t]);
+      deepest[index(piece_[t])] = std::max(deepest[index(piece_[t])], path_[t]);
     std::copy_if(all_.begin(), all_.end(), std::back_inserter(middle),
-                 [&](TriangleId t) { return path_[+t] >= deepest[piece_[+t]] / 2; });
+                 [&](TriangleId t) { return path_[+t] >= deepest[index(piece_[+t])] / 2; });
     flood(all_, middle, true);
   }
 
   std::vector<std::int32_t> numbered() const {
-    std::map<std::int32_t, std::int32_t> number;
-    std::vector<std::int32_t> out;
-    for (const std::int32_t p : piece_)
-      out.push_back(number.try_emplace(p, static_cast<std::int32_t>(number.size())).first->second);
+    std::vector<std::int32_t> number(pieces(), kNone), out;
+    std::int32_t count = 0;
+    for (const std::int32_t p : piece_) {
+      if (number[index(p)] == kNone) number[index(p)] = count++;
+      out.push_back(number[index(p)]);
+    }
     return out;
   }
 
  private:
+  // One more than the largest number of a piece.
+  std::size_t pieces() const { return index(*std::ranges::max_element(piece_)) + 1; }
   std::vector<Triangles> members() const {
-    std::vector<Triangles> members(index(*std::max_element(piece_.begin(), piece_.end())) + 1);
+    std::vector<Triangles> members(pieces());
     for (const TriangleId t : all_) members[index(piece_[+t])].push_back(t);
     return members;
   }
