@@ -82,15 +82,15 @@ Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones)
   return needs_start() && poses_.crossings().total > 0 ? stand_in() : main_;
 }
 
+bool Session::signs_pay() const {
+  return main_.strategy->looks_by_signs && setup_.mesh.closed_and_oriented();
+}
+
 // A complete row that sees starts answers from a start that is not known in less time than it takes to search
 // that start apart. It is prepared for that after so many plain searches that they have taken about as long
 // as its preparation. So a clip whose starts are nearly all known from the steps before them is spared the
 // preparation, and no clip takes much more than twice the time that the better choice would take. Searches
 // are counted and not timed, so that the same questions get the same answers from the same row.
-bool Session::signs_pay() const {
-  return main_.strategy->looks_by_signs && setup_.mesh.closed_and_oriented();
-}
-
 bool Session::stand_in_pays() const {
   return stand_in_strategy_.sees_start && (stand_in_ || searches_ >= kPlainSearches);
 }

@@ -1,0 +1,81 @@
+"""Programs of commits: what scripts that compare commits build and run."""
+import fcntl
+import os
+import pathlib
+import shutil
+import subprocess
+
+from layouts import link_layout
+from records import refuse
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+CACHE = ROOT / ".cache" / "commits"
+# Valgrind knows no AVX-512, and counters are the same with AVX2 and FMA (bench/METHODOLOGY.md).
+COUNTED_FLAGS = "-march=x86-64-v3"
+
+
+def git(*words, **variables):
+    done = subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, env={**os.environ, **variables})
+    if done.returncode:
+        refuse(f"git {' '.join(words)}: {done.stderr.strip().splitlines()[-1] if done.stderr else 'failed'}")
+    return done.stdout.strip()
+
+
+def commit_named(name):
+    """The hash of a commit, or of the working tree's tracked files where none is named."""
+    if name is None:
+        # With the dates of HEAD the same changes give the same commit, so that an interrupted call finds its measurements.
+        date = git("show", "-s", "--format=%cI", "HEAD")
+        return git("stash", "create", GIT_AUTHOR_DATE=date, GIT_COMMITTER_DATE=date) or git("rev-parse", "HEAD")
+    return git("rev-parse", "--verify", f"{name}^{{commit}}")
+
+
+class Build:
+    """The programs of a commit, one a layout, and its scenes. All commits are built in one worktree, one after the other, so
+    that a commit beside another takes as long as what differs."""
+
+    def __init__(self, commit, lane, seeds):
+        self.commit = commit
+        self.folder = CACHE / f"{commit[:10]}-{lane}"
+        self.tree = CACHE / "tree"
+        self.build = self.tree / ("build-counters" if lane == "counters" else "build-release")
+        missing = [seed for seed in seeds if not self.program(seed).exists()]
+        if missing:
+            print(f"building {commit[:10]}", flush=True)
+            self.compile("-DCSCD_NATIVE=OFF -DCMAKE_CXX_FLAGS=" + COUNTED_FLAGS if lane == "counters" else "-DCSCD_NATIVE=ON")
+            for seed in missing:
+                self.program(seed).parent.mkdir(parents=True, exist_ok=True)
+                linked = self.build / "cscd" if seed == 0 else link_layout(self.build, seed)
+                shutil.copy2(linked, self.program(seed))
+            shutil.copytree(self.tree / "scenes", self.folder / "scenes", dirs_exist_ok=True,
+                            ignore=lambda folder, names: [n for n in names if not n.endswith(".json")])
+
+    def compile(self, flags):
+        git("worktree", "prune")
+        if not self.tree.exists():
+            git("worktree", "add", "--detach", str(self.tree), self.commit)
+        git("-C", str(self.tree), "checkout", "--quiet", "--detach", "--force", self.commit)
+        log = CACHE / f"{self.commit[:10]}.log"
+        configure = f"cmake -S {self.tree} -B {self.build} -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF {flags}"
+        script = f"{{ [ -e {self.build}/build.ninja ] || {configure}; }} >{log} 2>&1 && ninja -C {self.build} cscd >>{log} 2>&1"
+        if subprocess.run(["bash", "-c", script]).returncode:
+            refuse(f"{self.commit[:10]}: does not build; see {log}")
+
+    def program(self, seed):
+        """The program in the layout of that seed; 0 is the order of the build."""
+        return self.folder / f"layout-{seed}" / "cscd"
+
+    def run(self, words, before=()):
+        environment = {**os.environ, "CSCD_CACHE": str(ROOT / ".cache"), "CSCD_SCENES": str(self.folder / "scenes")}
+        return subprocess.run([*before, *map(str, words)], env=environment, capture_output=True, text=True)
+
+
+def held_lock():
+    """Keeps others that build commits out of this checkout for as long as the caller keeps what is returned."""
+    CACHE.mkdir(parents=True, exist_ok=True)
+    lock = open(CACHE / "lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        refuse("another script builds commits in this checkout; wait for it, or clone the repository once more")
+    return lock
