@@ -105,7 +105,6 @@ TEST(KnownStarts, NeedAnElementaryTestOfTheCallers) {
 
 TEST(KnownStarts, NeedAnElementaryTestWhoseApartIsAProof) {
   expect_starts_right(complete_reference(), kBlind);
-  expect_starts_right(strategy_named("drvbc_fast"), kBlind);
 }
 
 TEST(KnownStarts, NeedAnEmbeddedStartWhereTheFirstContactIsPromised) {
@@ -163,6 +162,59 @@ TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
     told.push_back(Trusting::told > 0);
   }
   EXPECT_EQ(told, (std::vector<bool>{true, true, false, true, true}));
+}
+
+// Counts how often it is asked to see a start.
+class Looking : public Detector {
+ public:
+  explicit Looking(const Setup& setup) : detector_(complete_reference().make(setup).detector) {}
+  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+    return detector_->detect(motion, bones, out);
+  }
+  Report detect_and_see_start(const Motion& motion, const Rig::Interval* bones, ContactSet& out,
+                              std::size_t most, Crossings& start) override {
+    ++asked;
+    return detector_->detect_and_see_start(motion, bones, out, most, start);
+  }
+  static inline int asked = 0;
+
+ private:
+  std::unique_ptr<Detector> detector_;
+};
+Prepared make_looking(const cscd::Setup& setup) {
+  return {std::make_unique<Looking>(setup), {}};
+}
+
+// The row itself finds what crosses at rest. A start that is not known is followed to if the row looks by
+// signs, and seen if not. Mutations: rows that look by signs see, others follow; the pose at rest is searched
+// apart.
+TEST(KnownStarts, AreFollowedToWhereSignsPay) {
+  for (const bool by_signs : {false, true}) {
+    Input input = two_balls({0.0, -0.5, -0.2, -0.6, 0.3, -1.2, -2.2});
+    const Strategy strategy{.name = "looking",
+                            .source = "",
+                            .guarantee = Guarantee::complete,
+                            .needs = {},
+                            .make = make_looking,
+                            .sees_start = true,
+                            .looks_by_signs = by_signs};
+    Looking::asked = 0;
+    Answerer answerer(input, strategy, elementary_test_named("exact"), {});
+    EXPECT_EQ(Looking::asked, 1);
+    EmbeddingTest from_nothing(input.mesh, input.reference);
+    for (const std::size_t i : {0, 2, 4, 1, 5, 3})
+      EXPECT_EQ(answerer.answer(i).start.pairs,
+                from_nothing.find_all(input.clip->load(i).motion.start(), kAll).pairs)
+          << i;
+    EXPECT_EQ(Looking::asked, by_signs ? 1 : 6);
+  }
+}
+
+TEST(KnownStarts, AreRightOfTheEngine) {
+  for (const std::string_view name : {"drvbc_fast", "drvbc_fast_all", "drvbc_fast_complete"}) {
+    expect_starts_right(strategy_named(name), elementary_test_named("exact"));
+    expect_starts_right(strategy_named(name), kBlind);
+  }
 }
 
 }  // namespace
