@@ -179,7 +179,8 @@ TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
     EXPECT_EQ(subject.at("study"), "size");
     EXPECT_EQ(subject.at("bones"), 100);
     for (const auto& strategy : subject.at("strategies"))
-      EXPECT_EQ(strategy.at("threads"), strategy.at("name") == "drvbc_fast" ? 2 : 1);
+      EXPECT_EQ(strategy.at("threads"),
+                strategy.at("name").get<std::string>().starts_with("drvbc_fast") ? 2 : 1);
     const auto& step = subject.at("steps").at(0);
     EXPECT_EQ(step.at("verified").at("by_reference"), 2);
     for (const auto& row : step.at("strategies")) EXPECT_GT(row.at("ms").at("total"), 0);
