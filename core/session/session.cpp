@@ -30,22 +30,26 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
       stand_in_strategy_(stand_in),
       options_(options),
       poses_({setup.mesh, setup.reference}, kMostCrossings) {
+  if (!strategy.sees_start) find_rest_crossings(name, rest);
   const Stopwatch preparing;
   main_ = make(strategy);
   preparation_ms_ = preparing.milliseconds();
+  if (!strategy.sees_start) return;
+  find_rest_crossings(name, rest);
+  if (options.first && !left_out_.empty()) main_ = make(strategy);  // to be asked for all contacts instead
+}
+
+void Session::find_rest_crossings(const std::string& name, std::span<const Vec3> rest) {
   const Stopwatch searching;
-  if (!options.ignore_starts) find_crossings(rest, nullptr);
+  if (!options_.ignore_starts) find_crossings(rest, nullptr);
   rest_ = poses_.crossings();
   rest_ms_ = searching.milliseconds();
-  if (!options.keep_rest_crossings) {
-    if (rest_.total > kMostLeftOut)
-      throw InputError(
-          name + ": " + std::to_string(rest_.total) +
-          " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
-          "--keep-rest-crossings");
-    left_out_ = RestCrossings(setup.mesh, rest_);
-    if (options.first && !left_out_.empty()) main_ = make(strategy);  // to be asked for all contacts instead
-  }
+  if (options_.keep_rest_crossings) return;
+  if (rest_.total > kMostLeftOut)
+    throw InputError(name + ": " + std::to_string(rest_.total) +
+                     " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
+                     "--keep-rest-crossings");
+  left_out_ = RestCrossings(setup_.mesh, rest_);
 }
 
 Session::Row Session::make(const Strategy& strategy) const {
@@ -96,8 +100,9 @@ bool Session::stand_in_pays() const {
 }
 
 void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones) {
-  if (main_.strategy->sees_start || stand_in_pays()) {
-    Row& row = main_.strategy->sees_start ? main_ : stand_in();
+  const bool by_main = main_.detector && main_.strategy->sees_start;
+  if (by_main || stand_in_pays()) {
+    Row& row = by_main ? main_ : stand_in();
     std::optional<Rig::Interval> rest;
     if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
     row.detector->detect_and_see_start(Motion(pose, pose), rest ? &*rest : nullptr, touched_, poses_.most(),

@@ -79,6 +79,8 @@ class Session {
     std::size_t new_triangles = 0;
   };
   Row make(const Strategy& strategy) const;
+  // Finds what crosses at rest, and what that explains. A main row that sees starts has to be made before.
+  void find_rest_crossings(const std::string& name, std::span<const Vec3> rest);
   Row& stand_in();
   // Whether only the contacts of the earliest time are asked of strategies.
   bool first_only() const { return options_.first && left_out_.empty(); }

@@ -33,13 +33,17 @@ class ExactTester : public TrianglePairSink {
 }  // namespace
 
 EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference)
-    : EmbeddingTest(mesh, std::make_unique<PlainCuller<Kdop16>>(mesh, reference)) {}
+    : mesh_(&mesh), reference_(reference.begin(), reference.end()) {}
 
 EmbeddingTest::EmbeddingTest(const TriangleMesh& mesh, std::unique_ptr<Culler> culler)
     : mesh_(&mesh), culler_(std::move(culler)) {}
 
 void EmbeddingTest::search(std::span<const Vec3> positions,
                            const std::function<bool(const CrossingPair&)>& found) {
+  if (!culler_) {
+    culler_ = std::make_unique<PlainCuller<Kdop16>>(*mesh_, reference_);
+    reference_ = {};
+  }
   const Motion at_rest(positions, positions);
   ExactTester tester(*mesh_, positions, found);
   culler_->refit(at_rest);

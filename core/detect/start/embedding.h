@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/detect/culler.h"
 #include "core/detect/start/crossings.h"
@@ -19,8 +20,8 @@ namespace cscd {
 // that it passes on is tested exactly.
 class EmbeddingTest {
  public:
-  // Culls by one hierarchy of bounds, built from the positions `reference` ([vertices]); any pose will do.
-  // `mesh` must outlive the object.
+  // Culls by one hierarchy of bounds, built by the first search from the positions `reference` ([vertices]);
+  // any pose will do. `mesh` must outlive the object.
   EmbeddingTest(const TriangleMesh& mesh, std::span<const Vec3> reference);
   // Culls by `culler`, which must be made for this mesh. It may drop a pair of triangles only by a proof that
   // the two *meet* nowhere but in what they share. A proof that no feature pair of theirs touches is not
@@ -45,6 +46,7 @@ class EmbeddingTest {
 
   const TriangleMesh* mesh_;
   std::unique_ptr<Culler> culler_;
+  std::vector<Vec3> reference_;  // until there is a culler
   std::uint64_t pairs_tested_ = 0;
 };
 
