@@ -242,10 +242,10 @@ class SelfCollision::Engine {
     return wanted.emplace("reference positions", setup(first, exclusions), strategy, kComplete, reference_,
                           options);
   }
-  // A complete strategy sees for itself how a step starts, and looks by signs alone from starts in which
-  // nothing crosses. Where the caller answers for the starts, nobody says so to it. The strategy that
-  // promises the first contact always looks by signs, which needs a start in which nothing at all crosses,
-  // and a caller with exclusions may let excluded pairs cross.
+  // The session of a complete strategy finds out how a step starts, and tells the strategy where nothing
+  // crosses, which makes that step quick. With check_start off, a session finds out and tells nothing. Then
+  // the strategy that promises the first contact is right, because it takes every start for free of crossings
+  // as the caller does. With exclusions, though, a caller may let excluded pairs cross.
   Session& plain(Question& question) {
     const bool for_granted = !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty();
     return made(question.plain, question.first, question.first && for_granted ? kFirst : kComplete, nullptr);

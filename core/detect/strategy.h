@@ -114,8 +114,8 @@ struct Strategy {
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
   // edge can pierce a face.
   bool sees_start = false;
-  // Whether its detectors of closed meshes take less than half the time where the start is known to be
-  // embedded (Detector::detect_from_embedded).
+  // Whether its detectors, told that a start of a closed mesh is embedded, drop pairs by the orientation of
+  // triangles alone (Detector::detect_from_embedded), which takes less than half the time.
   bool looks_by_signs = false;
   // Whether the strategy can be made in the pipeline `published`: the paper's method and those that the paper
   // compares it with.

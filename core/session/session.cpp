@@ -77,7 +77,8 @@ Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones)
   start_known_ = options_.ignore_starts || moved_on_ || poses_.knows(motion.start());
   if (options_.ignore_starts) return main_;
   const bool sees_start = main_.strategy->sees_start;
-  if (!start_known_ && !((!sees_start || signs_pay()) && follow_to(motion.start(), bones))) {
+  const bool worth_following = !sees_start || signs_pay();
+  if (!start_known_ && !(worth_following && follow_to(motion.start(), bones))) {
     if (sees_start) return main_;
     if (needs_start() && stand_in_pays()) return stand_in();
     find_crossings(motion.start(), bones);

@@ -22,8 +22,8 @@ struct Frame {
 
   // Whether all vertices of `to` that `from` does not have certainly lie on one side of the plane of `from`.
   // Then `to` reaches that plane in the vertex or edge that both share alone, and the two meet nowhere else.
-  // Most neighbours are as good as flat towards each other, but hardly any pair is exactly so, and this
-  // settles nine pairs in ten for the price of one or two determinants.
+  // Neighbours are often nearly in one plane, and hardly ever exactly. So this settles most pairs, for the
+  // price of one or two determinants.
   bool beside(TriangleId from, TriangleId to) const {
     const Triangle& plane = mesh.corners(from);
     int side = 0;

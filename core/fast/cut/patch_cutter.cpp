@@ -235,9 +235,9 @@ void PatchCutter::find_patches_beside(TriangleId triangle) {
 
 // Returns whether a triangle has room in a patch. If not, finds the triangles of the patch that would give it
 // room by leaving.
-bool PatchCutter::find_room(TriangleId triangle, std::size_t p, std::span<const TriangleId> patch) {
-  if (!members_[p].known) members_[p] = members_of(patch);
-  const Members& members = members_[p];
+bool PatchCutter::find_room(TriangleId triangle, std::size_t number, std::span<const TriangleId> patch) {
+  Members& members = members_[number];
+  if (!members.known) members = members_of(patch);
   std::size_t vertices = members.vertices;
   unsigned needed = 0;  // of the patch's vertices
   for (const VertexId v : mesh_.corners(triangle)) {
@@ -257,7 +257,7 @@ bool PatchCutter::find_room(TriangleId triangle, std::size_t p, std::span<const 
 // The bit of a vertex that the patch has, or 0.
 unsigned PatchCutter::place_of(const Members& members, VertexId vertex) {
   unsigned bit = 0;
-  for (std::size_t i = 0; i < kLanes16; ++i) bit |= unsigned{members.vertex[i] == vertex} << i;
+  for (std::size_t i = 0; i < kMost; ++i) bit |= unsigned{members.vertex[i] == vertex} << i;
   return bit;
 }
 

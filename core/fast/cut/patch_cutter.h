@@ -44,7 +44,7 @@ class PatchCutter {
   void empty_small(Patches& patches);
   bool move(TriangleId triangle, Patches& patches);
   void find_patches_beside(TriangleId triangle);
-  bool find_room(TriangleId triangle, std::size_t p, std::span<const TriangleId> patch);
+  bool find_room(TriangleId triangle, std::size_t number, std::span<const TriangleId> patch);
   static unsigned place_of(const Members& members, VertexId vertex);
   Members members_of(std::span<const TriangleId> patch);
   bool is_left(std::int32_t patch, std::size_t at) const;
