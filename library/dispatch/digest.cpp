@@ -1,10 +1,10 @@
 // Prints a digest of the answers to random steps, bit by bit, and the user time that they took:
-// scripts/check-isas compares instruction sets by it.
+// scripts/check-isas compares instruction sets by it, and scripts/check-threads numbers of threads.
 //
-//   digest SOUPS STEPS
+//   digest SOUPS STEPS [THREADS]
 //
 // SOUPS is the number of small random surfaces that take one step each. STEPS is the number of steps in which
-// a closed tube of 12,800 triangles bends.
+// a closed tube of 12,800 triangles bends. THREADS answer together; without it, one.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -57,7 +57,7 @@ struct Digest {
   }
 };
 
-void ask_soups(int count, Digest& sum) {
+void ask_soups(int count, const SelfCollision::Options& options, Digest& sum) {
   std::mt19937_64 draw(1);
   std::uniform_real_distribution<double> place(-1, 1);
   for (int i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ void ask_soups(int count, Digest& sum) {
       start.data()[k] = place(draw);
       end.data()[k] = start.data()[k] + 0.1 * place(draw);
     }
-    SelfCollision body(faces, start);
+    SelfCollision body(faces, start, options);
     sum.ask(body, start, end);
   }
 }
@@ -100,7 +100,7 @@ Positions ring(int around, int along, double phase) {
   return out;
 }
 
-void ask_ring(int steps, Digest& sum) {
+void ask_ring(int steps, const SelfCollision::Options& options, Digest& sum) {
   constexpr int kAround = 32, kAlong = 200;
   Faces faces(2 * kAround * kAlong, 3);
   for (int i = 0; i < kAlong; ++i)
@@ -110,7 +110,7 @@ void ask_ring(int steps, Digest& sum) {
       faces.row(2 * a) << a, c, b;
       faces.row(2 * a + 1) << b, c, d;
     }
-  SelfCollision body(faces, ring(kAround, kAlong, 0));
+  SelfCollision body(faces, ring(kAround, kAlong, 0), options);
   for (int i = 0; i < steps; ++i)
     sum.ask(body, ring(kAround, kAlong, double(i) / steps), ring(kAround, kAlong, double(i + 1) / steps));
 }
@@ -124,11 +124,13 @@ double user_ms() {
 }  // namespace
 
 int main(int count, char** words) try {
+  SelfCollision::Options options;
+  if (count > 3) options.threads = std::atoi(words[3]);
   Digest sum;
   ask_what_is_wrong(sum);
-  ask_soups(count > 1 ? std::atoi(words[1]) : 100, sum);
+  ask_soups(count > 1 ? std::atoi(words[1]) : 100, options, sum);
   const double soups = user_ms();
-  ask_ring(count > 2 ? std::atoi(words[2]) : 10, sum);
+  ask_ring(count > 2 ? std::atoi(words[2]) : 10, options, sum);
   std::printf("%016llx, %zu contacts\n", static_cast<unsigned long long>(sum.hash), sum.contacts);
   const std::string_view set = cscd::instruction_set();
   std::fprintf(stderr, "%.*s: %.0f ms and %.0f ms\n", int(set.size()), set.data(), soups, user_ms() - soups);

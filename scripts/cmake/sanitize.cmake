@@ -1,5 +1,6 @@
-# cmake -C scripts/cmake/sanitize.cmake: AddressSanitizer and UndefinedBehaviorSanitizer, any finding is fatal.
+# cmake -C scripts/cmake/sanitize.cmake: AddressSanitizer, UndefinedBehaviorSanitizer and the assertions of libstdc++, any
+# finding is fatal.
 set(CMAKE_BUILD_TYPE Debug CACHE STRING "")
-set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer" CACHE STRING "")
+set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer" CACHE STRING "")
 set(CMAKE_EXE_LINKER_FLAGS_DEBUG "-fsanitize=address,undefined" CACHE STRING "")
 set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON CACHE BOOL "")  # every file includes what it uses
