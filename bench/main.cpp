@@ -26,12 +26,12 @@ int complain(const std::string& text) {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "cscd: continuous self-collision detection of animated closed triangle meshes.\n\n"
+      "cscd: continuous self-collision detection of animated triangle meshes.\n\n"
       "  cscd list                            what there is\n"
       "  cscd query rope                      where and when does it touch itself?\n"
       "  cscd view rope                       a page that shows it\n"
       "  cscd run --scene rope --json r.json  verify, then time, every strategy\n"
-      "  cscd tables r.json --out tables      the paper's tables, published beside measured\n"
+      "  cscd tables r.json --out .           the paper's tables, published beside measured\n"
       "  cscd compare before after            faster or slower, truer or less true?\n"
       "  cscd help query                      what a command does and takes\n\n"
       "Exit status: 0 done; 1 a verification failed, or compare found something worse; 2 bad usage or bad "

@@ -53,7 +53,8 @@ void add_threads_option(CLI::App& command, int& threads) {
   command
       .add_option("--threads", threads,
                   "threads that answer an interval together, where the strategy can share its work\n"
-                  "(drvbc_fast); the others run on one. Answers are the same on any number")
+                  "(drvbc_fast, drvbc_fast_all, drvbc_fast_complete); the others run on one. Answers are\n"
+                  "the same on any number")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
 }

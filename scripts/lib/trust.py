@@ -25,6 +25,13 @@ from records import read_json, refuse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "results" / "trust"
+# What the page adds to every record of a kind.
+NOTES = {
+    "mutants": "Survivors that a record lists without a reason are asked again, after tests were written: see *Mutants that were asked "
+               "again*. Those that have got a reason since stand in `core/mutants.json`, and are not asked.",
+    "hostile": "Models are read by a process of its own. Where that process crashes or meets a limit, the program refuses the file in "
+               "one line; such a copy is counted as a lost importer, and is no failure.",
+}
 WITHOUT = "**no reason given**"
 
 
@@ -81,7 +88,7 @@ def cell(text):
 
 
 def section(record):
-    lines = [f"## {record['title']}", "", record["says"], "",
+    lines = [f"## {record['title']}", "", " ".join([record["says"], *([NOTES[record["kind"]]] if record["kind"] in NOTES else [])]), "",
              f"`{record['command']}`, {record['date']}, commit `{record['commit'][:10]}`"
              + (" with changes" if record["commit"].endswith("changes") else "") + ".", ""]
     lines += table(["figure", ""], [[name, str(value)] for name, value in record["figures"]])

@@ -27,13 +27,13 @@
 //   - is_free() is true only if nothing touches and nothing crosses at the start;
 //   - first_contact() gives contacts of the earliest time, at least one, and that time is right to 2^-50;
 //   - all_contacts() gives all contacts;
-//   - largest_step() never reaches the first contact;
+//   - up to largest_step() nothing touches, unless something touches or crosses at the start already;
 //   - candidates() holds every pair of features that comes within the radius.
 // Nothing is sampled, and no tolerance decides. The proofs are in core/soundness.md of the project.
 //
-// What it costs: preparing a mesh takes as long as some hundreds to two thousand steps without contacts. A
-// step takes longer the more of the surface is in contact. The README of the project shows times from
-// records.
+// What it costs: preparing a character takes as long as some hundreds to some thousands of steps without
+// contacts, preparing cloth as long as some tens. A step takes longer the more of the surface is in contact.
+// The README of the project shows times from records.
 namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
@@ -171,8 +171,8 @@ class CSCD_EXPORT SelfCollision {
   }
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
-  // Returns a time t in [0, 1] such that nothing touches in [0, t]: 1 for a free step, otherwise `safety`,
-  // in (0, 1], times the earliest time, rounded down; 0 if something crosses or touches at the start.
+  // Returns 1 for a free step, otherwise `safety`, in (0, 1], times the earliest time, rounded down; 0 if
+  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t].
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`
