@@ -110,7 +110,9 @@ void ask_ring(int steps, const SelfCollision::Options& options, Digest& sum) {
       faces.row(2 * a) << a, c, b;
       faces.row(2 * a + 1) << b, c, d;
     }
-  SelfCollision body(faces, ring(kAround, kAlong, 0), options);
+  SelfCollision::Options prepared = options;
+  prepared.preparation = SelfCollision(faces, ring(kAround, kAlong, 0), options).preparation();
+  SelfCollision body(faces, ring(kAround, kAlong, 0), prepared);
   for (int i = 0; i < steps; ++i)
     sum.ask(body, ring(kAround, kAlong, double(i) / steps), ring(kAround, kAlong, double(i + 1) / steps));
 }

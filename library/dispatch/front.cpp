@@ -93,6 +93,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
   return engine_->call(&Copy::candidates, start, end, radius);
 }
 
+std::vector<std::byte> SelfCollision::preparation() const {
+  return engine_->call(&Copy::preparation);
+}
+
 std::size_t SelfCollision::vertex_count() const {
   return engine_->call(&Copy::vertex_count);
 }
