@@ -214,6 +214,8 @@ PatchList carry_patches(const TriangleMesh& mesh, std::span<const Vec3> referenc
     if (patch.size() != triangles_before[p].size()) continue;
     if (!std::ranges::all_of(patch, [&](TriangleId t) { return clusters_of(+t) == clusters_of(+patch[0]); }))
       continue;
+    // Where the surface was cut open between two triangles of a patch, they no longer share vertices.
+    if (vertices_of(mesh, patch).size() > kLanes16) continue;
     for (const TriangleId t : patch) taken[+t] = true;
     patches.triangles.push_back(std::move(patch));
     patches.cell.push_back(cells_before[p]);

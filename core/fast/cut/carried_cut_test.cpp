@@ -153,6 +153,27 @@ TEST(CarriedCut, DividesAClusterThatIsCutInTwo) {
   EXPECT_GT(cluster_count(now.cut), cluster_count(before));
 }
 
+// The surface stays in one piece, but triangles of one patch no longer share vertices. Mutation: such a patch
+// is taken over, and the preparation is then refused for want of room in it.
+TEST(CarriedCut, CutsPatchesAnewThatASlitRunsThrough) {
+  constexpr int kCells = 20, kRow = 9, kAcross = kCells + 1;
+  test::Shape shape = test::sheet(kCells);
+  const TriangleMesh whole = shape.mesh();
+  const std::vector<std::byte> bytes =
+      saved_cut(whole, shape.positions,
+                cut_surface(whole, shape.positions, std::vector<std::int32_t>(whole.triangle_count(), 0)), 2);
+  const auto copies = static_cast<int>(shape.positions.size());
+  const auto row_of = [&](VertexId v) { return static_cast<int>(v) / kAcross; };
+  for (int j = 0; j < kCells / 2; ++j) shape.positions.push_back(shape.positions[kRow * kAcross + j]);
+  for (Triangle& c : shape.triangles)
+    if (std::ranges::any_of(c, [&](VertexId v) { return row_of(v) == kRow + 1; }))
+      for (VertexId& v : c)
+        if (const int j = static_cast<int>(v) % kAcross; row_of(v) == kRow && j < kCells / 2)
+          v = VertexId{copies + j};
+  ASSERT_EQ(shape.mesh().component_count(), 1);
+  EXPECT_EQ(taken_over(shape, bytes).new_triangles, 0u) << "no triangle has moved";
+}
+
 // Mutation: a new component is one cluster, or none.
 TEST(CarriedCut, CutsANewComponentIntoClusters) {
   const Kept kept;

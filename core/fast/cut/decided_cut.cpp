@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/fast/cut/patch_cutter.h"
 
 namespace cscd::fast {
 namespace {
@@ -28,22 +29,17 @@ void check_cover(const TriangleMesh& mesh, const Cover& cover) {
 void check_patches(const TriangleMesh& mesh, const DecidedCut& decided) {
   std::vector<bool> met(mesh.triangle_count(), false);
   std::size_t triangles = 0;
-  std::vector<VertexId> vertices;
   for (const std::vector<TriangleId>& patch : decided.patches.triangles) {
-    vertices.clear();
     for (const TriangleId t : patch) {
       if (static_cast<std::int32_t>(t) < 0 || +t >= met.size() || met[+t])
         refuse_preparation("has a triangle in two patches");
       met[+t] = true;
       ++triangles;
-      vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
       for (const Cover& cover : decided.covers)
         if (cover.cluster_of[+t] != cover.cluster_of[+patch.front()])
           refuse_preparation("has a patch in two clusters");
     }
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (vertices.size() > kLanes16) refuse_preparation("has a patch of too many vertices");
+    if (vertices_of(mesh, patch).size() > kLanes16) refuse_preparation("has a patch of too many vertices");
   }
   if (triangles != met.size()) refuse_preparation("has a triangle in no patch");
 }

@@ -19,6 +19,15 @@ constexpr std::size_t kMostBeside = 8;  // so many patches are asked for room
 
 }  // namespace
 
+std::vector<VertexId> vertices_of(const TriangleMesh& mesh, std::span<const TriangleId> triangles) {
+  std::vector<VertexId> vertices;
+  for (const TriangleId t : triangles)
+    vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
 PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroid)
     : mesh_(mesh),
       centroid_(centroid),
@@ -36,15 +45,6 @@ PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
   join(patches);
   empty_small(patches);
   return patches;
-}
-
-std::vector<VertexId> PatchCutter::vertices_of(std::span<const TriangleId> patch) const {
-  std::vector<VertexId> vertices;
-  for (const TriangleId t : patch)
-    vertices.insert(vertices.end(), mesh_.corners(t).begin(), mesh_.corners(t).end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
 }
 
 void PatchCutter::set_free(TriangleId triangle, bool free) {
@@ -141,7 +141,7 @@ void PatchCutter::join(Patches& patches) {
   std::stable_sort(patches.begin(), patches.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
   std::vector<std::vector<VertexId>> vertices;
-  for (const auto& patch : patches) vertices.push_back(vertices_of(patch));
+  for (const auto& patch : patches) vertices.push_back(vertices_of(mesh_, patch));
   for (std::size_t i = 0; i < patches.size(); ++i) enter(i, patches[i]);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const std::vector<VertexId>& own = vertices[i];

@@ -10,6 +10,9 @@
 
 namespace cscd::fast {
 
+// Returns the vertices of some triangles, each once.
+std::vector<VertexId> vertices_of(const TriangleMesh& mesh, std::span<const TriangleId> triangles);
+
 // Cuts sets of triangles into few patches, each of at most sixteen triangles with at most as many vertices.
 // Few patches are the aim, because every patch costs the same, however full.
 class PatchCutter {
@@ -33,7 +36,6 @@ class PatchCutter {
     std::array<Mask16, kMost> only_its_own{};  // of each triangle, the vertices that no other triangle has
   };
 
-  std::vector<VertexId> vertices_of(std::span<const TriangleId> patch) const;
   void set_free(TriangleId triangle, bool free);
   int free_beside(TriangleId triangle) const;  // how many free neighbours a free triangle has
   Patches pieces(std::span<const TriangleId> cell);
