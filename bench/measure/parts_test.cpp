@@ -147,5 +147,26 @@ TEST(Parts, KeepAContactThatRoundingHides) {
   }
 }
 
+// A ball turns farther and farther away from the origin, and positions between the ends are known less and
+// less. Both ends are given, so the step can be answered as a whole. Mutation: parts are looked at all the
+// same; all pairs of triangles are then tested.
+TEST(Parts, AreGivenUpWhereRoundingHidesTheSurface) {
+  const test::Shape ball = test::icosphere(3);
+  const TriangleMesh mesh = ball.mesh();
+  for (const double far : {0.0, 1e9, 1e11, 1e12, 2e12, 5e12, 2e13}) {
+    std::vector<Vec3> start = ball.positions, end = start;
+    for (Vec3& p : end) p = Eigen::AngleAxisd(2.5 * p.z(), Vec3::UnitZ()) * p;
+    for (const auto positions : {&start, &end})
+      for (Vec3& p : *positions) p.x() += far;
+    for (const std::uint32_t long_descent : {kAlways, kNever}) {
+      ContactSet found;
+      const Report report = make_drvbc_fast({mesh, start, nullptr, elementary_test_named("exact")},
+                                            {.long_descent = long_descent, .complete = true})
+                                .detector->detect(Motion(start, end), nullptr, found);
+      EXPECT_LT(report.cull.pctp, mesh.triangle_count() * 30) << far << ", " << long_descent;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cscd::bench

@@ -9,7 +9,6 @@ namespace {
 constexpr std::size_t kRange = 32;     // the number of patches that is worth another thread
 constexpr std::size_t kAhead = 2;      // positions are fetched so many patches before the look
 constexpr std::size_t kSampled = 256;  // about so many patches are asked how far they move
-constexpr float kFar = 1;              // widths of a patch
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
@@ -83,13 +82,19 @@ std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
 
 // Passes on the pairs of the interval that has been looked at, and returns the number of overlap tests.
 std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
-  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known() && moves_far())
-    return cull_parts(sink);
+  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known()) {
+    const Moved moved = move_apart();
+    // A position in between, start + t (end - start), rounds three times. Far from the origin it may be off
+    // by so much that the grid's steps are wider than patches, and then nothing is proven apart.
+    off_ = 0x1p-50 * positions_.largest_in_scene();
+    const bool can_tell = Grid(positions_.error_beside(off_)).steps() * moved.width >= 1;
+    if (moved.far() && can_tell) return cull_parts(sink);
+  }
   return *(tests_ = descent_.run(bounds_, grid_, sink));
 }
 
-// Whether places of the surface move apart by more than the width of a patch, on the average.
-bool FastCuller::moves_far() const {
+// How far places of the surface move apart, on the average.
+FastCuller::Moved FastCuller::move_apart() const {
   const auto at = [&](std::int32_t vertex, std::size_t end) {
     const float* const p = &positions_.records()[static_cast<std::size_t>(vertex)].at[4 * end];
     return Eigen::Vector3f(p[0], p[1], p[2]);
@@ -108,16 +113,16 @@ bool FastCuller::moves_far() const {
     way += (moved(p) - mean).norm();
     width += (at(vertex.back(), 0) - at(vertex.front(), 0)).norm();
   }
-  return way > kFar * width;
+  return {way / samples, width / samples};
 }
 
 // The parts pass on a pair of triangles again and again, so pairs are collected first.
 std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
-  // A position in between, start + t (end - start), rounds three times.
-  off_ = 0x1p-50 * positions_.largest_in_scene();
   found_.pairs.clear();
+  parts_fail_ = false;
   std::uint64_t tests = cull_part({0, kFinest});
-  if (found_.pairs.size() > kMostCollected) {
+  if (parts_fail_) {
+    off_ = 0;  // both ends of the interval are given
     begin({0, kFinest});
     found_.pairs.clear();
     return tests + *(tests_ = descent_.run(bounds_, grid_, sink));
@@ -135,20 +140,24 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
 // Collects the pairs of a part that has been looked at, and returns the number of overlap tests. A part in
 // which the surface moves far is halved if its descent and its pairs cost too much.
 std::uint64_t FastCuller::cull_part(const Part& part) {
-  if (found_.pairs.size() > kMostCollected) return 0;
-  const bool can_split = part.last - part.first > 1 && moves_far();
+  if (parts_fail_) return 0;
+  const bool can_split = part.last - part.first > 1 && move_apart().far();
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
   found_.restart();
   tests_ = descent_.run(bounds_, grid_, found_, most);
   found_.flush();
-  if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) return *tests_;
+  if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) {
+    parts_fail_ = found_.pairs.size() > kMostCollected;
+    return *tests_;
+  }
   found_.pairs.resize(before);
   std::uint64_t tests = std::min(*tests_, most);  // how many more were made depends on the number of threads
   tests_.reset();
   const unsigned middle = (part.first + part.last) / 2;
   for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
     begin(half);
+    parts_fail_ |= !positions_.known();  // every pair of triangles would be collected
     tests += cull_part(half);
   }
   return tests;

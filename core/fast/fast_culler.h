@@ -79,7 +79,11 @@ class FastCuller : public Culler {
     }
   };
 
-  bool moves_far() const;
+  struct Moved {
+    float way, width;  // how far places of the surface move apart, and how wide patches are, in local units
+    bool far() const { return way > width; }
+  };
+  Moved move_apart() const;
   std::uint64_t descend(TrianglePairSink& sink);
   std::uint64_t cull_parts(TrianglePairSink& sink);
   std::uint64_t cull_part(const Part& part);
@@ -107,7 +111,8 @@ class FastCuller : public Culler {
   std::optional<Motion> motion_;
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
-  double off_ = 0;  // by how much positions in between are off
+  double off_ = 0;           // by how much positions in between are off
+  bool parts_fail_ = false;  // whether the interval has to be looked at as a whole
   Found found_;
 };
 

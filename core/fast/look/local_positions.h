@@ -35,6 +35,8 @@ class LocalPositions {
   double largest_in_scene() const;
   // A bound on the error of every coordinate, in local units.
   float error() const { return error_; }
+  // The same, if the positions of a part of the motion are off by `off`, in units of the scene, on top.
+  float error_beside(double off) const { return error_ + 1.0001F * static_cast<float>(off * scale_); }
   // False where the motion leaves the range in which errors are known. Nothing may be concluded from the
   // positions then.
   bool known() const { return known_; }
