@@ -1,10 +1,14 @@
+#include <cmath>
 #include <gtest/gtest.h>
+#include <new>
+#include <random>
 #include <vector>
 
 #include "core/base/test_allocations.h"
 #include "core/mesh/test_shapes.h"
 
 #include "cscd/cscd.h"
+#include "library/test_steps.h"
 
 namespace cscd {
 namespace {
@@ -51,6 +55,37 @@ TEST(SelfCollision, AllocatesNothingInAFreeStepAfterAFreeStep) {
   const std::size_t before = g_allocations;
   body.all_contacts(poses[0], poses[5], answer);
   EXPECT_GT(g_allocations - before, 0u) << "allocations are counted";
+}
+
+// Memory may run out in the middle of a step; the next ones are answered right. Mutations: clusters whose
+// cutting was broken off stay as they are; edges that were counted on the way stay counted.
+TEST(SelfCollision, AnswersRightAfterAllocationsThatFailed) {
+  std::size_t failed = 0;
+  for (std::uint64_t seed = 1; seed <= test::intervals(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const test::Step step(seed);
+    std::mt19937_64 random(seed);
+    SelfCollision body(step.faces, step.start);
+    SelfCollision::Answer answer;
+    for (int i = 0; i < 40; ++i) {
+      // A share of the way, and back, so that clusters follow the surface.
+      const double share = std::uniform_real_distribution(-2.0, 2.0)(random);
+      const test::Rows elsewhere = step.start + share * (step.end - step.start);
+      g_failing = g_allocations + std::uint64_t(std::exp(std::uniform_real_distribution(0.0, 7.0)(random)));
+      try {
+        body.all_contacts(i % 2 == 0 ? elsewhere : step.start, i % 2 == 0 ? step.end : elsewhere, answer);
+      } catch (const std::bad_alloc&) {
+        ++failed;
+      }
+      g_failing = 0;
+    }
+    test::expect_right(step, body, Exclusions());
+    SelfCollision::Options options;
+    options.preparation = body.preparation();
+    EXPECT_NO_THROW(SelfCollision(step.faces, step.start, options));
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(failed, 5 * test::intervals());
 }
 
 }  // namespace

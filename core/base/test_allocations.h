@@ -1,7 +1,7 @@
 #pragma once
 
-// For tests only: counts every allocation of the test program. It replaces operator new, so one file of a
-// program includes it.
+// For tests only: counts every allocation of the test program, and lets one fail. It replaces operator new,
+// so one file of a program includes it.
 
 #include <atomic>
 #include <cstdlib>
@@ -10,9 +10,10 @@
 namespace {
 
 std::atomic<std::size_t> g_allocations = 0;
+std::atomic<std::size_t> g_failing = 0;  // the number of the allocation that fails, or 0
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
-  ++g_allocations;
+  if (++g_allocations == g_failing) throw std::bad_alloc();
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
   if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
   throw std::bad_alloc();

@@ -60,8 +60,8 @@ class FeaturePairSet {
     return slots_[i];
   }
   void grow() {
+    std::vector<std::uint64_t> old(2 * slots_.size());  // if it throws, the set is as it was
     --shift_;
-    std::vector<std::uint64_t> old(2 * slots_.size());
     old.swap(slots_);
     for (const std::uint64_t entry : old)
       if (entry >> kKeyBits == epoch_) find(entry) = entry;

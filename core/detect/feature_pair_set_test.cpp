@@ -1,8 +1,11 @@
 #include "core/detect/feature_pair_set.h"
 
 #include <gtest/gtest.h>
+#include <new>
 #include <random>
 #include <set>
+
+#include "core/base/test_allocations.h"
 
 namespace cscd {
 namespace {
@@ -49,6 +52,22 @@ TEST(FeaturePairSet, ForgetsInEveryIntervalWhatItMetInAnyOther) {
     ASSERT_TRUE(set.insert(vf(1, 2))) << interval;
     ASSERT_FALSE(set.insert(vf(1, 2))) << interval;
   }
+}
+
+// Mutation: places are counted for the larger table before there is memory for it.
+TEST(FeaturePairSet, IsAsItWasWhereThereIsNoMemoryToGrow) {
+  FeaturePairSet set;
+  set.start_interval();
+  std::int32_t count = 0;
+  g_failing = g_allocations + 1;
+  EXPECT_THROW(
+      while (count < 100'000) {
+        set.insert(ee(count, count + 1));
+        ++count;
+      },
+      std::bad_alloc);
+  g_failing = 0;
+  for (std::int32_t i = 0; i < 100'000; ++i) ASSERT_EQ(set.insert(ee(i, i + 1)), i >= count) << i;
 }
 
 TEST(FeaturePairSet, GrowsWithoutForgetting) {

@@ -51,6 +51,7 @@ bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
 }
 
 void FastCuller::look_at(const Motion& motion) {
+  if (following_) following_->mend(certificates_);
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   certificates_.keep_all(options_.complete && !by_signs_);
   certificates_.start(positions_, team_);

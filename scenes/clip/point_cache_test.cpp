@@ -16,7 +16,7 @@
 
 // libhdf5 leaks memory of its own on damaged files, so its leaks are ignored. Our code could leak
 // identifiers only, and the tests count these.
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
   return "leak:libhdf5";
 }
 

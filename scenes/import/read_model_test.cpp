@@ -14,7 +14,7 @@
 
 // assimp's parsers leak memory on files that are cut short. This is accepted, because their
 // process ends soon after.
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
   return "leak:libassimp";
 }
 

@@ -82,7 +82,8 @@ FollowingCover::FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> r
 }
 
 void FollowingCover::forget(Certificates& certificates) {
-  if (interval_ == 0) return;
+  if (interval_ == 0 && whole_) return;
+  whole_ = false;
   begun_ = false;
   interval_ = 0;
   next_to_join_ = 0;
@@ -100,6 +101,7 @@ void FollowingCover::forget(Certificates& certificates) {
     std::ranges::sort(triangles_);  // preparation takes them in this order
     certificates.cut(c, builder_, mesh_, triangles_, triangles_, reference_);
   }
+  whole_ = true;
 }
 
 void FollowingCover::follow(std::span<const Vec3> positions, std::uint64_t tests,
@@ -113,8 +115,10 @@ void FollowingCover::follow(std::span<const Vec3> positions, std::uint64_t tests
   count_uncertified(certificates);
   budget_ = std::min(budget_ + static_cast<std::int64_t>(tests) / kShare, kMostSaved);
   if (budget_ <= 0) return;
+  whole_ = false;
   cut_failing();
   join_halves();
+  whole_ = true;
 }
 
 // Counts what is not certified, and collects the clusters that fail, the one with most to win first.

@@ -29,6 +29,12 @@ class FollowingCover {
 
   // Between two intervals: puts everything back to what preparation made.
   void forget(Certificates& certificates);
+  // Before every interval: the same, if an exception has left a change of clusters half done.
+  void mend(Certificates& certificates) {
+    if (!whole_) forget(certificates);
+  }
+  // Whether every cluster is what the cut surface says. If not, mend() has to come first.
+  bool whole() const { return whole_; }
 
   // Between two intervals. `tests` is the number of overlap tests that the last one took, `certificates` are
   // those of the last one, and `positions`, [vertices], is the pose in which the next one starts.
@@ -77,6 +83,7 @@ class FollowingCover {
   std::vector<Cluster> clusters_;  // of the first cover
   std::uint32_t least_halved_;     // the fewest triangles of a cluster that is halved
   bool begun_ = false;             // whether the surface has left the pose it was cut in
+  bool whole_ = true;
   std::uint64_t interval_ = 0;
   std::size_t next_to_join_ = 0;
   std::int64_t budget_;  // in overlap tests; negative for what is owed

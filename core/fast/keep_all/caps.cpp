@@ -179,6 +179,13 @@ Cap cap(const Loop& loop, const Loop& all, std::span<const Vec3> reference, cons
 
 std::vector<Cap> CapBuilder::caps_of(std::span<const TriangleId> triangles, std::span<const Vec3> positions,
                                      const FollowingPoint& observer) {
+  // Whatever is thrown on the way, no edge stays counted.
+  const struct Uncount {
+    CapBuilder& builder;
+    ~Uncount() {
+      for (const EdgeId e : builder.contour_) builder.passed_[+e] = 0;
+    }
+  } uncount{*this};
   Loop all;
   contour_.clear();
   for (const TriangleId t : triangles) {

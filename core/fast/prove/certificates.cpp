@@ -62,8 +62,9 @@ void Certificates::forget() {
 
 void Certificates::resize_first_cover() {
   const std::size_t count = covers_[0].observers.size();
-  counts_.clusters += count - viewpoint_[0].size();
+  const std::size_t before = viewpoint_[0].size();
   viewpoint_[0].resize(count);
+  counts_.clusters += count - before;
   if (!capped_.empty()) capped_[0].resize(count);
 }
 
