@@ -38,7 +38,8 @@ namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
 // std::invalid_argument with one line that says what is wrong, where, and how to mend it; the object is then
-// as it was before.
+// as it was before. Where memory runs out in the middle of a step, std::bad_alloc passes through, and the next
+// steps are answered as by any other object.
 //
 // An object may be used by one thread at a time. Different objects are independent of each other. The
 // constructor copies what it is given; the positions of a step are read during the call alone.
@@ -184,7 +185,8 @@ class CSCD_EXPORT SelfCollision {
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
   // damaged, of another version of the library, or of a mesh that had less than half of the faces, raise
   // std::invalid_argument there, and no others change an answer, so they may come from anywhere. Clusters
-  // that have followed the surface are returned as they are now.
+  // that have followed the surface are returned as they are now. After a step in which memory ran out, and
+  // until the next one, there may be none.
   std::vector<std::byte> preparation() const;
 
   std::size_t vertex_count() const;  // of the mesh, without obstacles
