@@ -40,7 +40,8 @@ class Generated : public testing::Test {
 };
 
 TEST_F(Generated, TheFigureTouchesItselfInOneClipOfTwo) {
-  for (const auto& interval : queried_body(figure, {"--clip", "walk", "--from-bind-pose"})["intervals"]) {
+  const auto walk = queried_body(figure, {"--clip", "walk", "--from-bind-pose"})["intervals"];
+  for (const auto& interval : walk) {
     EXPECT_EQ(interval.at("starts_embedded"), true);
     EXPECT_EQ(interval.at("collides"), false);
     EXPECT_EQ(interval.at("proven"), true);

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "scenes/catalog/scene.h"
@@ -34,8 +37,21 @@ inline bool absent(const std::string& name) {
   return !fs::exists(model(name), error);
 }
 
+// Whether a line says how far a long piece of work is (bench/output/progress.h).
+inline bool is_progress(const std::string& line) {
+  unsigned long done = 0, total = 0;
+  const std::size_t at = line.rfind(": ");
+  return at != std::string::npos && std::sscanf(line.c_str() + at, ": %lu of %lu", &done, &total) == 2;
+}
+
+// Lines of progress, which only a slow machine sees, are left out of the errors.
 inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& limits = {}) {
-  return scenes::run_limited(fs::read_symlink("/proc/self/exe").parent_path() / "cscd", arguments, limits);
+  Outcome outcome =
+      scenes::run_limited(fs::read_symlink("/proc/self/exe").parent_path() / "cscd", arguments, limits);
+  std::istringstream lines(std::exchange(outcome.errors, {}));
+  for (std::string line; std::getline(lines, line);)
+    if (!is_progress(line)) outcome.errors += line + (lines.eof() ? "" : "\n");
+  return outcome;
 }
 
 // A folder that is gone after the test.
