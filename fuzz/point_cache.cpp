@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/triangle_mesh.h"
+#include "scenes/clip/test_hdf5_leaks.h"
 
 #include "fuzz/input_file.h"
 

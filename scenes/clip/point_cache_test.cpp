@@ -13,12 +13,7 @@
 #include "scenes/clip/digest.h"
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/test_clips.h"
-
-// libhdf5 leaks memory of its own on damaged files, so its leaks are ignored. Our code could leak
-// identifiers only, and the tests count these.
-extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
-  return "leak:libhdf5";
-}
+#include "scenes/clip/test_hdf5_leaks.h"
 
 namespace cscd::scenes {
 namespace {
