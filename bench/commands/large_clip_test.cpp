@@ -18,6 +18,9 @@ TEST(LargeClips, AreStreamed) {
   ASSERT_GT(frames * sphere.positions.size() * sizeof(Vec3), 20'000'000'000u);
   Limits limits;
   limits.memory_bytes = std::size_t{1} << 30;
+#ifdef __SANITIZE_ADDRESS__
+  limits.seconds = 600;
+#endif
   for (const char* range : {"0:2", "329998:329999"}) {
     const Outcome outcome =
         cscd({"query", file, "--frames", range, "--json", scratch / "out.json", "--force"}, limits);
