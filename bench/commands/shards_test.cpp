@@ -177,8 +177,8 @@ unshare -m bash -c 'mount -t tmpfs -o size=1m none disk && mount -o remount,ro d
   expect_refused(ran, "Read-only file system");
 }
 
-// Starts a worker and stops one of its cells in the middle, whichever that is. A cell that is ending takes the
-// signal and is not stopped.
+// Starts a worker and stops one of its cells in the middle, whichever that is. A cell that is ending takes
+// the signal and is not stopped.
 constexpr char kStopACell[] = R"sh(worker=$!
 until cell=$(pgrep -n -P $worker) && kill -STOP $cell 2>/dev/null && sleep 0.02 &&
   grep -q '^State:.T' /proc/$cell/status 2>/dev/null; do
