@@ -53,7 +53,7 @@ class FastCuller : public Culler {
   void start_is_embedded(bool known) override { by_signs_ = known && signs_suffice_; }
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
   void forget() override;
-  // Nothing, where an exception has left clusters that no interval has mended since.
+  // Returns nothing after an exception has broken off a change of clusters, until the next interval.
   std::vector<std::byte> saved_preparation() const override {
     if (following_ && !following_->whole()) return {};
     return saved_cut(mesh_, reference_, cut_, covers_used_);

@@ -29,6 +29,8 @@ FOLDER = ROOT / "results" / "trust"
 NOTES = {
     "mutants": "Survivors that a record lists without a reason are asked again, after tests were written: see *Mutants that were asked "
                "again*. Those that have got a reason since stand in `core/mutants.json`, and are not asked.",
+    "sanitizers": "A record that was made with `--from` asks only those tests again that had failed in an older one. The record of the "
+                  "whole suite is in the table above.",
     "hostile": "Models are read by a process of its own. Where that process crashes or meets a limit, the program refuses the file in "
                "one line; such a copy is counted as a lost importer, and is no failure.",
 }

@@ -33,7 +33,7 @@ class FollowingCover {
   void mend(Certificates& certificates) {
     if (!whole_) forget(certificates);
   }
-  // Whether every cluster is what the cut surface says. If not, mend() has to come first.
+  // False once an exception has broken off a change of clusters, until mend() has undone it.
   bool whole() const { return whole_; }
 
   // Between two intervals. `tests` is the number of overlap tests that the last one took, `certificates` are
@@ -83,7 +83,7 @@ class FollowingCover {
   std::vector<Cluster> clusters_;  // of the first cover
   std::uint32_t least_halved_;     // the fewest triangles of a cluster that is halved
   bool begun_ = false;             // whether the surface has left the pose it was cut in
-  bool whole_ = true;
+  bool whole_ = true;              // false while clusters are changed
   std::uint64_t interval_ = 0;
   std::size_t next_to_join_ = 0;
   std::int64_t budget_;  // in overlap tests; negative for what is owed

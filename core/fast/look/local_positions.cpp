@@ -36,7 +36,8 @@ void LocalPositions::update(const Motion& motion, const Team& team, double off) 
   });
   const auto largest = std::bit_cast<float>(*std::max_element(largest_.begin(), largest_.end()));
   known_ = largest <= kLargest && off * scale_ <= 0x1p-10 * largest;
-  error_ = 0x1.00002p-24F * largest + 1e-37F + 1.0001F * static_cast<float>(off * scale_);
+  error_ = 0x1.00002p-24F * largest + 1e-37F;
+  error_ = error_beside(off);
 }
 
 double LocalPositions::largest_in_scene() const {
