@@ -38,8 +38,8 @@ namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
 // std::invalid_argument with one line that says what is wrong, where, and how to mend it; the object is then
-// as it was before. Where memory runs out in the middle of a step, std::bad_alloc passes through, and the next
-// steps are answered as by any other object.
+// as it was before. Where memory runs out in the middle of a step, std::bad_alloc passes through, and the
+// next steps are answered as by any other object.
 //
 // An object may be used by one thread at a time. Different objects are independent of each other. The
 // constructor copies what it is given; the positions of a step are read during the call alone.
