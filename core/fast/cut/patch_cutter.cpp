@@ -184,6 +184,7 @@ void PatchCutter::leave(Patches& patches) {
 // room.
 void PatchCutter::empty_small(Patches& patches) {
   members_.assign(patches.size(), {});
+  full_about_.assign(patches.size(), false);
   for (std::size_t p = 0; p < patches.size(); ++p) enter(p, patches[p]);
   for (std::size_t size = 1; size < kMost; ++size)
     for (const std::vector<TriangleId>& patch : patches) {
@@ -207,7 +208,7 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
   for (std::size_t at = 0; at < std::min(seeking_.size(), kMostSeeking) && !found; ++at) {
     find_patches_beside(seeking_[at].triangle);
     for (const std::int32_t p : beside_) {
-      if (is_left(p, at)) continue;
+      if (full_about_[index(p)] || is_left(p, at)) continue;
       if (find_room(seeking_[at].triangle, index(p), patches[index(p)])) {
         move_all(at, p, patches);
         found = true;
@@ -217,7 +218,10 @@ bool PatchCutter::move(TriangleId triangle, Patches& patches) {
         if (!seeks_[+other]) seek(other, at);
     }
   }
-  for (const Seeking& s : seeking_) seeks_[+s.triangle] = false;
+  for (const Seeking& s : seeking_) {
+    if (!found && s.triangle != triangle) full_about_[index(patch_of_[+s.triangle])] = true;
+    seeks_[+s.triangle] = false;
+  }
   seeking_.clear();
   return found;
 }
@@ -301,6 +305,7 @@ void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
     const auto [triangle, for_whom] = seeking_[at];
     const std::int32_t from = std::exchange(patch_of_[+triangle], to);
     members_[index(from)].known = members_[index(to)].known = false;
+    full_about_[index(from)] = full_about_[index(to)] = false;
     std::erase(patches[index(from)], triangle);
     patches[index(to)].push_back(triangle);
     if (at == 0) return;

@@ -74,6 +74,7 @@ class PatchCutter {
   std::vector<Seeking> seeking_;        // triangles that look for room one after the other
   std::vector<bool> seeks_;             // [triangles]: whether it is in `seeking_`
   std::vector<Members> members_;        // [patches]
+  std::vector<bool> full_about_;        // [patches]: whether a search that came by found no room
   static constexpr std::uint8_t kNoPlace = 0xff;
   std::vector<std::uint8_t> place_;  // [vertices]: its place among a patch's members; kNoPlace at other times
   std::vector<std::int32_t> beside_;     // what find_patches_beside() found
