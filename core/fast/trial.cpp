@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/team.h"
+#include "core/fast/cut/coarse_surface.h"
 #include "core/fast/cut/surface_clusters.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
@@ -26,6 +27,8 @@ class CountingSink : public TrianglePairSink {
 // as much as one patch in an interval, one look, and one observer that is placed.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
 constexpr std::size_t kTrials = 6;
+// On a surface of more triangles, all this is decided on a coarser one.
+constexpr std::size_t kEnough = 16000;
 // The trial poses are not the motion to come, so small differences between candidates say nothing.
 constexpr std::uint64_t kClose = 64;
 
@@ -95,36 +98,43 @@ class Choice {
   std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-}  // namespace
+// Returns the bone of each triangle. On a coarse surface, edges are about as long as a cell of the distance
+// field is wide on the surface that it was made of, and smoothing as often would leave little of thin limbs.
+std::vector<BoneId> bones_of(const Setup& setup, bool is_coarser, StageClock& clock) {
+  const radial::BoneClusterOptions fine, coarse{.coarsening = 2, .smoothing_passes = 1};
+  return radial::bones_of_triangles(setup, is_coarser ? coarse : fine, clock);
+}
 
-Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
+// Decides along which clusters the surface is cut, and from how many covers it is looked at. Where that takes
+// a trial, its winner comes with the culler that was tried.
+struct Decision {
+  Candidate taken;
+  std::size_t covers = kCovers;
+};
+Decision decided(const Setup& setup, const DrvbcFastOptions& options, bool is_coarser, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  if (!setup.preparation.empty()) return restored(setup, options);
+  const auto of_surface = [&] { return surface_clusters(setup.mesh, setup.reference); };
   if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
-    return made(setup, surface_clusters(setup.mesh, setup.reference), options);
-
-  const auto bones = [&] { return radial::bones_of_triangles(setup, {}, clock); };
-  const auto clusters_of = [&](std::span<const BoneId> bone_of) {
+    return {{of_surface(), nullptr}};
+  const auto of_bones = [&](std::span<const BoneId> bone_of) {
     return radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
   };
-  if (options.clusters == Clusters::of_bones) return made(setup, clusters_of(bones()), options);
+  if (options.clusters == Clusters::of_bones)
+    return {{of_bones(bones_of(setup, is_coarser, clock)), nullptr}};
 
-  // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
-  // rows differ in nothing but the idea that is left out.
-  const DrvbcFastOptions whole{
-      .name = options.name, .complete = options.complete, .starts_embedded = options.starts_embedded};
   std::vector<Trial> trials;
-  const auto of_bones = [&] {
-    const std::vector<BoneId> bone_of = bones();
-    trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-    return made(setup, clusters_of(bone_of), whole);
-  };
   // The candidates are prepared side by side. The caller's thread learns of what was thrown.
   std::array<Candidate, 2> candidates;
   std::array<std::exception_ptr, 2> thrown;
   Team(setup.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
     try {
-      candidates[i] = i == 0 ? of_bones() : made(setup, surface_clusters(setup.mesh, setup.reference), whole);
+      if (i == 0) {
+        const std::vector<BoneId> bone_of = bones_of(setup, is_coarser, clock);
+        trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
+        candidates[i] = made(setup, of_bones(bone_of), options);
+      } else {
+        candidates[i] = made(setup, of_surface(), options);
+      }
     } catch (...) {
       thrown[i] = std::current_exception();
     }
@@ -133,9 +143,27 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
     if (exception) std::rethrow_exception(exception);
   Choice choice(trials, options.starts_embedded);
   for (Candidate& candidate : candidates) choice.consider(std::move(candidate));
-  Candidate best = std::move(choice.best());
-  if (options != whole) best = made(setup, std::move(best.cluster_of), options);
-  best.culler->use_covers(std::min(choice.covers(), options.covers));
+  return {std::move(choice.best()), choice.covers()};
+}
+
+}  // namespace
+
+Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
+  if (!setup.preparation.empty()) return restored(setup, options);
+  // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
+  // rows differ in nothing but the idea that is left out.
+  const DrvbcFastOptions whole{.name = options.name,
+                               .clusters = options.clusters,
+                               .complete = options.complete,
+                               .starts_embedded = options.starts_embedded};
+  const CoarseSurface coarse(setup.mesh, setup.reference, kEnough);
+  Setup few{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
+  few.threads = setup.threads;
+  Decision decision = decided(few, whole, coarse.is_coarser(), clock);
+  Candidate best = std::move(decision.taken);
+  if (!best.culler || coarse.is_coarser() || options != whole)
+    best = made(setup, coarse.carried(std::move(best.cluster_of)), options);
+  best.culler->use_covers(std::min(decision.covers, options.covers));
   return best;
 }
 

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "core/fast/cut/observer.h"
+#include "core/fast/cut/rings.h"
 #include "core/fast/cut/seams.h"
-#include "core/mesh/adjacency.h"
 
 namespace cscd::fast {
 namespace {
@@ -13,20 +13,19 @@ namespace {
 constexpr std::int32_t kReach = 6;  // so many rings of triangles about a seam belong to its cluster
 constexpr std::int32_t kThin = 4;   // a cluster without a triangle so many rings from its seams is merged
 
-// Numbers the clusters from 0 in the order of their first triangles, and returns how many there are.
-std::size_t renumbered(std::vector<std::int32_t>& cluster_of) {
+}  // namespace
+
+std::size_t renumber(std::vector<std::int32_t>& cluster_of) {
   std::map<std::int32_t, std::int32_t> number;
   for (std::int32_t& c : cluster_of)
     if (c != kNone) c = number.try_emplace(c, static_cast<std::int32_t>(number.size())).first->second;
   return number.size();
 }
 
-}  // namespace
-
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
                  std::vector<std::int32_t> cluster_of, const Team& team) {
   Cover cover{std::move(cluster_of), {}};
-  std::vector<std::vector<TriangleId>> members(renumbered(cover.cluster_of));
+  std::vector<std::vector<TriangleId>> members(renumber(cover.cluster_of));
   for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
     if (cover.cluster_of[t] != kNone)
       members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
@@ -39,38 +38,6 @@ Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
 }
 
 namespace {
-
-// ---- Clusters
-
-// The distance of each triangle from the nearest seed in rings of triangles, and which seed that is; kNone
-// where no seed is reached.
-struct Rings {
-  std::vector<std::int32_t> seed, distance;
-};
-// Grows rings of triangles from several sets of seeds at once, breadth first. A ring has the triangles that
-// share a vertex with the ring before.
-Rings rings_from(const TriangleMesh& mesh, const std::vector<std::vector<TriangleId>>& seeds) {
-  Rings rings{std::vector<std::int32_t>(mesh.triangle_count(), kNone),
-              std::vector<std::int32_t>(mesh.triangle_count(), kNone)};
-  std::vector<TriangleId> queue;
-  for (std::size_t s = 0; s < seeds.size(); ++s)
-    for (const TriangleId t : seeds[s]) {
-      if (rings.seed[+t] != kNone) continue;
-      rings.seed[+t] = static_cast<std::int32_t>(s);
-      rings.distance[+t] = 0;
-      queue.push_back(t);
-    }
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    const TriangleId t = queue[next];
-    for_each_neighbour(mesh, t, [&](TriangleId other) {
-      if (rings.seed[+other] != kNone) return;
-      rings.seed[+other] = rings.seed[+t];
-      rings.distance[+other] = rings.distance[+t] + 1;
-      queue.push_back(other);
-    });
-  }
-  return rings;
-}
 
 // The triangles on both sides of the seam between each two clusters.
 using Seams = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>>;
@@ -94,7 +61,7 @@ void merge_thin_clusters(const TriangleMesh& mesh, std::vector<std::int32_t>& cl
       all[0].insert(all[0].end(), triangles.begin(), triangles.end());
       ++neighbours[clusters.first], ++neighbours[clusters.second];
     }
-    const Rings rings = rings_from(mesh, all);
+    const Rings rings = rings_from(mesh, all, kThin);
     std::map<std::int32_t, std::int32_t> depth;
     for (std::size_t t = 0; t < cluster_of.size(); ++t)
       if (rings.distance[t] != kNone)
@@ -132,10 +99,7 @@ std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t>
 std::vector<std::int32_t> nearest_seams(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, cluster_of)) seeds.push_back(triangles);
-  Rings rings = rings_from(mesh, seeds);
-  for (std::size_t t = 0; t < rings.seed.size(); ++t)
-    if (rings.distance[t] > kReach) rings.seed[t] = kNone;
-  return std::move(rings.seed);
+  return rings_from(mesh, seeds, kReach).seed;
 }
 
 }  // namespace cscd::fast

@@ -8,16 +8,10 @@
 
 #include "core/base/team.h"
 #include "core/fast/cut/following_point.h"
+#include "core/fast/cut/numbers.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd::fast {
-
-inline constexpr std::int32_t kNone = -1;
-// Clusters, patches and triangles that may be missing have numbers with a sign; this is where one that is
-// there stands in a list.
-inline std::size_t index(std::int32_t number) {
-  return static_cast<std::size_t>(number);
-}
 
 // A cover divides triangles of the surface into disjoint clusters and gives every cluster one observer. A
 // cover may leave triangles out. No cluster spans two connected components of the mesh (rule component,
@@ -32,8 +26,12 @@ struct Cover {
 inline constexpr std::size_t kCovers = 3;
 using Covers = std::array<Cover, kCovers>;
 
+// Numbers the clusters from 0 in the order of their first triangles, and returns how many there are.
+// `cluster_of` is [triangles], with kNone for a triangle without a cluster.
+std::size_t renumber(std::vector<std::int32_t>& cluster_of);
+
 // Makes a cover from the cluster of each triangle, `cluster_of` [triangles], with kNone for a triangle
-// without a cluster. Numbers the clusters from 0 in the order of their first triangles. Places the observer
+// without a cluster, and numbers them anew. Places the observer
 // of each cluster where it sees as much of the cluster as possible from behind in the reference pose.
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
                  std::vector<std::int32_t> cluster_of, const Team& team = Team());

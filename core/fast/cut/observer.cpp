@@ -26,6 +26,8 @@ constexpr double kEnough = 0.5;
 // cones of directions are too blunt to tell patches apart.
 constexpr float kHeights[] = {-0.5F, -1, -2, -4};
 
+// About so many faces, spread over the cluster, say where it is seen from best.
+constexpr std::size_t kManyFaces = 500;
 // The number of times that vertices to follow are drawn.
 constexpr int kDraws = 50;
 // The same for a search in a hurry, its steps towards the best viewpoint, and the number of faces it looks
@@ -160,7 +162,8 @@ void for_each_stand_off(const Looked& all, std::span<const Vec3> positions, cons
 FollowingPoint observer_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            std::span<const TriangleId> triangles) {
   const Looked all = looked_at(mesh, reference, triangles, 1);
-  FollowingPoint best = following(reference, all.vertices, best_viewpoint(all.faces), kDraws);
+  const Looked some = looked_at(mesh, reference, triangles, triangles.size() / kManyFaces + 1);
+  FollowingPoint best = following(reference, all.vertices, best_viewpoint(some.faces), kDraws);
   const View among = view(all.faces, best.at(reference));
   // A cluster of a closed surface bends round its observer nearly always. The few that do not gained nothing
   // on characters in motion.

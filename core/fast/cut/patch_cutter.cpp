@@ -33,7 +33,7 @@ PatchCutter::PatchCutter(const TriangleMesh& mesh, std::span<const Vec3> centroi
       centroid_(centroid),
       free_(mesh.triangle_count(), false),
       free_at_(mesh.edge_count(), 0),
-      is_beside_(mesh.triangle_count(), false),
+      waits_in_(mesh.triangle_count(), kNowhere),
       corners_taken_(mesh.triangle_count(), 0),
       taken_(mesh.vertex_count(), false),
       patch_of_(mesh.triangle_count(), -1),
@@ -49,7 +49,7 @@ PatchCutter::Patches PatchCutter::cut(std::span<const TriangleId> cell) {
 
 void PatchCutter::set_free(TriangleId triangle, bool free) {
   free_[+triangle] = free;
-  is_beside_[+triangle] = false;
+  waits_in_[+triangle] = kNowhere;
   for (const EdgeId e : mesh_.edges_of(triangle)) free_at_[+e] += free ? 1 : -1;
 }
 int PatchCutter::free_beside(TriangleId triangle) const {
@@ -58,25 +58,28 @@ int PatchCutter::free_beside(TriangleId triangle) const {
   return count;
 }
 
-// Each patch begins beside the patches before it, at the triangle with the fewest free neighbours.
+// Each patch begins beside the patches before it, at a triangle with the fewest free neighbours. Triangles
+// beside patches wait in a queue for each number of free neighbours, and in another one as soon as that
+// number falls.
 PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   for (const TriangleId t : cell) set_free(t, true);
   Patches patches;
-  std::vector<TriangleId> beside;
+  struct Queue {
+    std::vector<TriangleId> waiting;
+    std::size_t first = 0;
+  };
+  std::array<Queue, 4> queues;
+  const auto queue_of = [&](TriangleId t) { return static_cast<std::uint8_t>(std::min(free_beside(t), 3)); };
+  const auto next_beside = [&] {
+    for (std::uint8_t q = 0; q < queues.size(); ++q)
+      for (auto& [waiting, first] = queues[q]; first < waiting.size(); ++first)
+        if (const TriangleId t = waiting[first]; free_[+t] && waits_in_[+t] == q) return t;
+    return TriangleId{-1};
+  };
   std::size_t next = 0;
   while (true) {
-    std::erase_if(beside, [&](TriangleId t) { return !free_[+t]; });
-    TriangleId seed{-1};
-    if (!beside.empty()) {
-      int fewest = std::numeric_limits<int>::max();
-      for (const TriangleId t : beside) {
-        const int free = free_beside(t);
-        if (free >= fewest) continue;
-        fewest = free;
-        seed = t;
-        if (free == 0) break;
-      }
-    } else {
+    TriangleId seed = next_beside();
+    if (seed == TriangleId{-1}) {
       while (next < cell.size() && !free_[+cell[next]]) ++next;
       if (next == cell.size()) return patches;
       seed = cell[next];
@@ -84,11 +87,13 @@ PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
     patches.push_back(grow(seed));
     std::sort(vertices_.begin(), vertices_.end());
     for (const VertexId v : vertices_)
-      for (const TriangleId other : mesh_.triangles_at(v))
-        if (free_[+other] && !is_beside_[+other]) {
-          beside.push_back(other);
-          is_beside_[+other] = true;
-        }
+      for (const TriangleId other : mesh_.triangles_at(v)) {
+        if (!free_[+other]) continue;
+        const std::uint8_t queue = queue_of(other);
+        if (waits_in_[+other] == queue) continue;
+        waits_in_[+other] = queue;
+        queues[queue].waiting.push_back(other);
+      }
   }
 }
 

@@ -56,7 +56,8 @@ class PatchCutter {
   std::span<const Vec3> centroid_;
   std::vector<bool> free_;             // [triangles]: whether it is in no patch yet
   std::vector<std::int32_t> free_at_;  // [edges]: how many free triangles have it
-  std::vector<bool> is_beside_;        // [triangles]: whether it is free and beside some patch
+  static constexpr std::uint8_t kNowhere = 0xff;
+  std::vector<std::uint8_t> waits_in_;  // [triangles]: the queue of one that is free and beside some patch
   // State of the patch that is growing; empty at other times.
   std::vector<std::uint8_t> corners_taken_;  // [triangles]: how many of its corners the patch has
   std::vector<bool> taken_;                  // [vertices]: whether the patch has it

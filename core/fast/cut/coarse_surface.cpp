@@ -1,0 +1,140 @@
+#include "core/fast/cut/coarse_surface.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/fast/cut/covers.h"
+#include "core/fast/cut/rings.h"
+#include "core/fast/cut/seams.h"
+
+namespace cscd::fast {
+namespace {
+
+constexpr std::int32_t kBand = 3;  // so many rings of triangles on both sides of a seam are labelled anew
+
+// Returns the vertices that are kept, ascending: no two are neighbours, and every other has one beside it.
+std::vector<VertexId> kept_of(const TriangleMesh& mesh) {
+  std::vector<VertexId> kept;
+  std::vector<bool> beside(mesh.vertex_count());
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    const VertexId v{static_cast<std::int32_t>(i)};
+    if (beside[i] || mesh.triangles_at(v).empty()) continue;
+    kept.push_back(v);
+    for (const TriangleId t : mesh.triangles_at(v))
+      for (const VertexId corner : mesh.corners(t)) beside[+corner] = true;
+  }
+  return kept;
+}
+
+// Returns for each vertex the number of the nearest kept vertex beside it, [vertices].
+std::vector<std::int32_t> nearest_kept(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                       std::span<const VertexId> kept) {
+  std::vector<std::int32_t> nearest(mesh.vertex_count(), kNone);
+  std::vector<double> least(mesh.vertex_count(), std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    for (const TriangleId t : mesh.triangles_at(kept[k]))
+      for (const VertexId v : mesh.corners(t)) {
+        const double way = (positions[+v] - positions[+kept[k]]).squaredNorm();
+        if (nearest[+v] != kNone && !(way < least[+v])) continue;
+        nearest[+v] = static_cast<std::int32_t>(k);
+        least[+v] = way;
+      }
+  return nearest;
+}
+
+// Gives each vertex the label that most of the triangles at it have, [vertices]; kNone for a vertex without
+// triangles.
+std::vector<std::int32_t> labels_of_vertices(const TriangleMesh& mesh,
+                                             std::span<const std::int32_t> label_of) {
+  std::vector<std::int32_t> labels;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    std::int32_t most = kNone;
+    std::ptrdiff_t times = 0;
+    const std::span<const TriangleId> around = mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)});
+    const auto label = [&](TriangleId t) { return label_of[+t]; };
+    for (const TriangleId t : around) {
+      if (label(t) == most) continue;
+      const auto count = std::ranges::count(around, label(t), label);
+      if (count > times) most = label(t), times = count;
+    }
+    labels.push_back(most);
+  }
+  return labels;
+}
+
+// Lets labels grow anew over the triangles about their seams, and over those without a label. Seams that ran
+// along the corners of a coarser level are straight then.
+void straighten(const TriangleMesh& mesh, std::vector<std::int32_t>& label_of) {
+  std::vector<std::vector<TriangleId>> seams(1);
+  for_each_seam_edge(mesh, label_of, [&](TriangleId a, TriangleId b) {
+    seams[0].insert(seams[0].end(), {a, b});
+  });
+  const Rings band = rings_from(mesh, seams, kBand);
+  const auto size = index(*std::ranges::max_element(label_of)) + 1;
+  std::vector<std::int32_t> deepest(size, 0);  // how far from its seams a label begins to grow
+  for (std::size_t t = 0; t < label_of.size(); ++t)
+    if (label_of[t] != kNone) {
+      std::int32_t& depth = deepest[index(label_of[t])];
+      depth = std::max(depth, band.distance[t] == kNone ? kBand : band.distance[t]);
+    }
+  std::vector<std::vector<TriangleId>> grows(size);
+  for (std::size_t t = 0; t < label_of.size(); ++t)
+    if (label_of[t] != kNone &&
+        (band.distance[t] == kNone || band.distance[t] >= deepest[index(label_of[t])]))
+      grows[index(label_of[t])].push_back(TriangleId{static_cast<std::int32_t>(t)});
+  const Rings grown = rings_from(mesh, grows, std::numeric_limits<std::int32_t>::max());
+  for (std::size_t t = 0; t < label_of.size(); ++t)
+    if (label_of[t] == kNone || band.distance[t] != kNone)
+      if (grown.seed[t] != kNone) label_of[t] = grown.seed[t];
+}
+
+}  // namespace
+
+CoarseSurface::CoarseSurface(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t enough)
+    : mesh_(mesh), positions_(positions) {
+  while (this->mesh().triangle_count() > enough) {
+    std::unique_ptr<Level> level = coarser(this->mesh(), this->positions());
+    if (!level) return;
+    levels_.push_back(std::move(level));
+  }
+}
+
+std::unique_ptr<CoarseSurface::Level> CoarseSurface::coarser(const TriangleMesh& mesh,
+                                                             std::span<const Vec3> positions) {
+  const std::vector<VertexId> kept = kept_of(mesh);
+  std::vector<std::int32_t> nearest = nearest_kept(mesh, positions, kept);
+  std::vector<Triangle> triangles;
+  std::vector<bool> stays(index(mesh.component_count()), false);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    Triangle corners = mesh.triangles()[t];
+    for (VertexId& v : corners) v = VertexId{nearest[+v]};
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+    triangles.push_back(corners);
+    stays[index(mesh.component(TriangleId{static_cast<std::int32_t>(t)}))] = true;
+  }
+  if (!std::ranges::all_of(stays, [](bool stay) { return stay; })) return nullptr;
+  auto level =
+      std::make_unique<Level>(Level{std::move(nearest), TriangleMesh(std::move(triangles), kept.size()), {}});
+  if (mesh.closed_and_oriented() && !level->mesh.closed_and_oriented()) return nullptr;
+  for (const VertexId v : kept) level->positions.push_back(positions[+v]);
+  return level;
+}
+
+std::vector<std::int32_t> CoarseSurface::carried(std::vector<std::int32_t> label_of) const {
+  for (std::size_t l = levels_.size(); l-- > 0;) {
+    const Level& level = *levels_[l];
+    const TriangleMesh& finer = l > 0 ? levels_[l - 1]->mesh : mesh_;
+    const std::vector<std::int32_t> labels = labels_of_vertices(level.mesh, label_of);
+    label_of.assign(finer.triangle_count(), kNone);
+    for (std::size_t t = 0; t < label_of.size(); ++t) {
+      std::int32_t of[3];
+      for (std::size_t k = 0; k < 3; ++k) of[k] = labels[index(level.kept[+finer.triangles()[t][k]])];
+      label_of[t] = of[1] == of[2] || of[0] == kNone ? of[1] : of[0];
+    }
+    straighten(finer, label_of);
+  }
+  if (is_coarser()) renumber(label_of);
+  return label_of;
+}
+
+}  // namespace cscd::fast

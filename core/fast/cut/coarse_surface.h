@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd::fast {
+
+// A surface of few triangles that looks like a surface of many, so that clusters are found on it in a
+// fraction of the time. No promise rests on how like it is: clusters may be any.
+//
+// The surface is made coarser level by level. On each level some vertices are *kept*, no two of them
+// neighbours, and every other vertex belongs to the nearest kept vertex beside it. The next level has the
+// triangles whose corners belong to three different kept vertices.
+class CoarseSurface {
+ public:
+  // Stops once a level has no more than `enough` triangles, or where the next one would lose a connected
+  // component. The mesh and its positions must outlive the coarse surface.
+  CoarseSurface(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t enough);
+
+  bool is_coarser() const { return !levels_.empty(); }
+  const TriangleMesh& mesh() const { return levels_.empty() ? mesh_ : levels_.back()->mesh; }
+  std::span<const Vec3> positions() const {
+    return levels_.empty() ? positions_ : std::span<const Vec3>(levels_.back()->positions);
+  }
+
+  // Carries labels of the coarse surface's triangles over to the triangles of the surface that it was made
+  // of, with straight seams. Labels are not negative, and a label never leaves its connected component.
+  std::vector<std::int32_t> carried(std::vector<std::int32_t> label_of) const;
+
+ private:
+  struct Level {
+    std::vector<std::int32_t> kept;  // [vertices of the finer level]: the number here of the vertex it
+                                     // belongs to; kNone for one without triangles
+    TriangleMesh mesh;
+    std::vector<Vec3> positions;
+  };
+  static std::unique_ptr<Level> coarser(const TriangleMesh& mesh, std::span<const Vec3> positions);
+
+  const TriangleMesh& mesh_;
+  std::span<const Vec3> positions_;
+  std::vector<std::unique_ptr<Level>> levels_;
+};
+
+}  // namespace cscd::fast
