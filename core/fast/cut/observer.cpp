@@ -27,7 +27,7 @@ constexpr double kEnough = 0.5;
 constexpr float kHeights[] = {-0.5F, -1, -2, -4};
 
 // About so many faces, spread over the cluster, say where it is seen from best.
-constexpr std::size_t kManyFaces = 500;
+constexpr std::size_t kManyFaces = 512;
 // The number of times that vertices to follow are drawn.
 constexpr int kDraws = 50;
 // The same for a search in a hurry, its steps towards the best viewpoint, and the number of faces it looks
@@ -129,14 +129,16 @@ struct Looked {
 Looked looked_at(const TriangleMesh& mesh, std::span<const Vec3> positions,
                  std::span<const TriangleId> triangles, std::size_t stride) {
   Looked all;
+  std::vector<bool> met(mesh.vertex_count());
   for (std::size_t i = stride / 2; i < triangles.size(); i += stride) {
     const TriangleId t = triangles[i];
     all.faces.push_back(face_of(mesh, positions, t));
     all.normal += all.faces.back().normal;
-    all.vertices.insert(all.vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
+    for (const VertexId v : mesh.corners(t)) {
+      if (!met[+v]) all.vertices.push_back(v);
+      met[+v] = true;
+    }
   }
-  std::sort(all.vertices.begin(), all.vertices.end());
-  all.vertices.erase(std::unique(all.vertices.begin(), all.vertices.end()), all.vertices.end());
   return all;
 }
 
@@ -162,8 +164,10 @@ void for_each_stand_off(const Looked& all, std::span<const Vec3> positions, cons
 FollowingPoint observer_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            std::span<const TriangleId> triangles) {
   const Looked all = looked_at(mesh, reference, triangles, 1);
-  const Looked some = looked_at(mesh, reference, triangles, triangles.size() / kManyFaces + 1);
-  FollowingPoint best = following(reference, all.vertices, best_viewpoint(some.faces), kDraws);
+  std::vector<Face> some;
+  const std::size_t stride = (all.faces.size() + kManyFaces - 1) / kManyFaces;
+  for (std::size_t i = 0; i < all.faces.size(); i += stride) some.push_back(all.faces[i]);
+  FollowingPoint best = following(reference, all.vertices, best_viewpoint(some), kDraws);
   const View among = view(all.faces, best.at(reference));
   // A cluster of a closed surface bends round its observer nearly always. The few that do not gained nothing
   // on characters in motion.
