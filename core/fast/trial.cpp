@@ -26,7 +26,8 @@ class CountingSink : public TrianglePairSink {
 // Work is counted in overlap tests of bounding volumes. These constants say how many overlap tests cost about
 // as much as one patch in an interval, one look, and one observer that is placed.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
-constexpr std::size_t kTrials = 6;
+// So many trial poses; a surface of many triangles shows as much in fewer.
+constexpr std::size_t kTrials = 6, kFewTrials = 2;
 // On a surface of more triangles, all this is decided on a coarser one.
 constexpr std::size_t kEnough = 16000;
 // The trial poses are not the motion to come, so small differences between candidates say nothing.
@@ -98,42 +99,74 @@ class Choice {
   std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-// Returns the bone of each triangle. On a coarse surface, edges are about as long as a cell of the distance
-// field is wide on the surface that it was made of, and smoothing as often would leave little of thin limbs.
-std::vector<BoneId> bones_of(const Setup& setup, bool is_coarser, StageClock& clock) {
-  const radial::BoneClusterOptions fine, coarse{.coarsening = 2, .smoothing_passes = 1};
-  return radial::bones_of_triangles(setup, is_coarser ? coarse : fine, clock);
+// What a decision is about: the surface, the coarse one on which clusters are found, and whether candidates
+// are tried on that, too. What is seen through seams between clusters, and so the choice between candidates
+// that look with caps, depends on how many triangles there are.
+struct Question {
+  const Setup& setup;
+  const CoarseSurface& coarse;
+  bool tried_on_coarse;
+
+  Setup few() const {
+    Setup few{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
+    few.threads = setup.threads;
+    return few;
+  }
+  Setup tried() const { return tried_on_coarse ? few() : setup; }
+  // Takes labels of the coarse surface's triangles over to those of the surface that candidates are tried on.
+  std::vector<std::int32_t> to_tried(std::vector<std::int32_t> label_of) const {
+    return tried_on_coarse ? label_of : coarse.carried(std::move(label_of));
+  }
+};
+
+std::vector<std::int32_t> clusters_of_surface(const Question& question) {
+  return question.to_tried(surface_clusters(question.coarse.mesh(), question.coarse.positions()));
 }
 
-// Decides along which clusters the surface is cut, and from how many covers it is looked at. Where that takes
-// a trial, its winner comes with the culler that was tried.
+// On a coarse surface, edges are twice as long as a cell of the distance field is wide on the surface that it
+// was made of, and smoothing as often would leave little of thin limbs.
+std::vector<BoneId> bones_of_triangles(const Question& question, StageClock& clock) {
+  const radial::BoneClusterOptions fine, coarse{.coarsening = 2, .smoothing_passes = 1};
+  std::vector<std::int32_t> numbers;
+  for (const BoneId bone :
+       radial::bones_of_triangles(question.few(), question.coarse.is_coarser() ? coarse : fine, clock))
+    numbers.push_back(static_cast<std::int32_t>(bone));
+  std::vector<BoneId> bone_of;
+  for (const std::int32_t number : question.to_tried(std::move(numbers))) bone_of.push_back(BoneId{number});
+  return bone_of;
+}
+
+// Along which clusters the tried surface is cut, and from how many covers it is looked at. Where that takes a
+// trial, its winner comes with the culler that was tried.
 struct Decision {
   Candidate taken;
   std::size_t covers = kCovers;
 };
-Decision decided(const Setup& setup, const DrvbcFastOptions& options, bool is_coarser, StageClock& clock) {
+Decision decided(const Question& question, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  const auto of_surface = [&] { return surface_clusters(setup.mesh, setup.reference); };
-  if (!has_bones(setup) || options.clusters == Clusters::of_surface || !setup.mesh.closed_and_oriented())
-    return {{of_surface(), nullptr}};
+  const Setup tried = question.tried();
+  if (!has_bones(tried) || options.clusters == Clusters::of_surface || !tried.mesh.closed_and_oriented())
+    return {{clusters_of_surface(question), nullptr}};
   const auto of_bones = [&](std::span<const BoneId> bone_of) {
-    return radial::make_atomic_clusters(setup.mesh, bone_of).of_triangle;
+    return radial::make_atomic_clusters(tried.mesh, bone_of).of_triangle;
   };
   if (options.clusters == Clusters::of_bones)
-    return {{of_bones(bones_of(setup, is_coarser, clock)), nullptr}};
+    return {{of_bones(bones_of_triangles(question, clock)), nullptr}};
 
   std::vector<Trial> trials;
   // The candidates are prepared side by side. The caller's thread learns of what was thrown.
   std::array<Candidate, 2> candidates;
   std::array<std::exception_ptr, 2> thrown;
-  Team(setup.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
+  Team(tried.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
     try {
       if (i == 0) {
-        const std::vector<BoneId> bone_of = bones_of(setup, is_coarser, clock);
-        trials = trial_poses(setup.mesh, setup.reference, *setup.rig, bone_of, kTrials);
-        candidates[i] = made(setup, of_bones(bone_of), options);
+        const std::vector<BoneId> bone_of = bones_of_triangles(question, clock);
+        trials =
+            trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of,
+                        question.tried_on_coarse || !question.coarse.is_coarser() ? kTrials : kFewTrials);
+        candidates[i] = made(tried, of_bones(bone_of), options);
       } else {
-        candidates[i] = made(setup, of_surface(), options);
+        candidates[i] = made(tried, clusters_of_surface(question), options);
       }
     } catch (...) {
       thrown[i] = std::current_exception();
@@ -157,12 +190,13 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
                                .complete = options.complete,
                                .starts_embedded = options.starts_embedded};
   const CoarseSurface coarse(setup.mesh, setup.reference, kEnough);
-  Setup few{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
-  few.threads = setup.threads;
-  Decision decision = decided(few, whole, coarse.is_coarser(), clock);
+  const bool tried_on_coarse = coarse.is_coarser() && (!options.complete || options.starts_embedded);
+  Decision decision = decided({setup, coarse, tried_on_coarse}, whole, clock);
   Candidate best = std::move(decision.taken);
-  if (!best.culler || coarse.is_coarser() || options != whole)
-    best = made(setup, coarse.carried(std::move(best.cluster_of)), options);
+  if (tried_on_coarse) best.cluster_of = coarse.carried(std::move(best.cluster_of));
+  renumber(best.cluster_of);
+  if (!best.culler || tried_on_coarse || options != whole)
+    best = made(setup, std::move(best.cluster_of), options);
   best.culler->use_covers(std::min(decision.covers, options.covers));
   return best;
 }

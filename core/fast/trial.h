@@ -20,8 +20,8 @@ struct Candidate {
 // (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, and look from one,
 // two or three covers. They are prepared side by side on the threads of the set-up. Without bones, on an open
 // surface, or where the options name the clusters, there is one candidate and no trial. On a surface of many
-// triangles, all this is decided on a coarser one (cut/coarse_surface.h), and only what is returned is cut
-// from the surface itself. With
+// triangles, clusters are found on a coarser one (cut/coarse_surface.h). Where signs suffice, candidates are
+// tried on that too, and only what is returned is cut from the surface itself. With
 // Setup::preparation, nothing is tried or cut, and what that says is taken. Leaves the clock in the stage
 // `decomposition`.
 Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);

@@ -133,7 +133,6 @@ std::vector<std::int32_t> CoarseSurface::carried(std::vector<std::int32_t> label
     }
     straighten(finer, label_of);
   }
-  if (is_coarser()) renumber(label_of);
   return label_of;
 }
 
