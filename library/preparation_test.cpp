@@ -31,8 +31,8 @@ TEST(SelfCollision, AnswersTheSameFromASavedPreparation) {
   }
 }
 
-// The mesh that was prepared lacked a tenth of the faces, had the others in another order, and its last vertex
-// elsewhere. Mutation: what is taken over is cut again, too.
+// The mesh that was prepared lacked a tenth of the faces, had the others in another order, and its last
+// vertex elsewhere. Mutation: what is taken over is cut again, too.
 TEST(SelfCollision, AnswersRightFromThePreparationOfAMeshThatHasChangedSince) {
   std::size_t taken_over = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
