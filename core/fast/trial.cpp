@@ -26,9 +26,9 @@ class CountingSink : public TrianglePairSink {
 // Work is counted in overlap tests of bounding volumes. These constants say how many overlap tests cost about
 // as much as one patch in an interval, one look, and one observer that is placed.
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
-// So many trial poses; a surface of many triangles shows as much in fewer.
+// The number of trial poses, and the number on a surface of many triangles, where each pose costs more.
 constexpr std::size_t kTrials = 6, kFewTrials = 2;
-// On a surface of more triangles, all this is decided on a coarser one.
+// Clusters of a surface of more triangles than this are found on a coarser surface.
 constexpr std::size_t kEnough = 16000;
 // The trial poses are not the motion to come, so small differences between candidates say nothing.
 constexpr std::uint64_t kClose = 64;
@@ -99,59 +99,61 @@ class Choice {
   std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
 };
 
-// What a decision is about: the surface, the coarse one on which clusters are found, and whether candidates
-// are tried on that, too. What is seen through seams between clusters, and so the choice between candidates
-// that look with caps, depends on how many triangles there are.
-struct Question {
+// The surfaces that preparation works on. Clusters are always found on the coarse surface. Candidates are cut
+// and tried either on the coarse surface too, or on the surface itself: candidates that look with caps come
+// out in another order on a fine surface than on a coarse one.
+struct Surfaces {
   const Setup& setup;
   const CoarseSurface& coarse;
   bool tried_on_coarse;
 
-  Setup few() const {
-    Setup few{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
-    few.threads = setup.threads;
-    return few;
+  Setup coarse_setup() const {
+    Setup coarser{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
+    coarser.threads = setup.threads;
+    return coarser;
   }
-  Setup tried() const { return tried_on_coarse ? few() : setup; }
-  // Takes labels of the coarse surface's triangles over to those of the surface that candidates are tried on.
-  std::vector<std::int32_t> to_tried(std::vector<std::int32_t> label_of) const {
+  Setup trial_setup() const { return tried_on_coarse ? coarse_setup() : setup; }
+  std::size_t trials() const { return tried_on_coarse || !coarse.is_coarser() ? kTrials : kFewTrials; }
+  // Takes labels of the coarse surface's triangles to the surface that candidates are tried on.
+  std::vector<std::int32_t> on_trial_surface(std::vector<std::int32_t> label_of) const {
     return tried_on_coarse ? label_of : coarse.carried(std::move(label_of));
   }
 };
 
-std::vector<std::int32_t> clusters_of_surface(const Question& question) {
-  return question.to_tried(surface_clusters(question.coarse.mesh(), question.coarse.positions()));
+std::vector<std::int32_t> clusters_of_surface(const Surfaces& surfaces) {
+  return surfaces.on_trial_surface(surface_clusters(surfaces.coarse.mesh(), surfaces.coarse.positions()));
 }
 
-// On a coarse surface, edges are twice as long as a cell of the distance field is wide on the surface that it
-// was made of, and smoothing as often would leave little of thin limbs.
-std::vector<BoneId> bones_of_triangles(const Question& question, StageClock& clock) {
+// Returns the bone of each triangle of the trial surface. Edges of a coarse surface are long, so a cell of
+// the distance field spans fewer of them, and as many passes of smoothing would leave little of thin limbs.
+std::vector<BoneId> bones_of_triangles(const Surfaces& surfaces, StageClock& clock) {
   const radial::BoneClusterOptions fine, coarse{.coarsening = 2, .smoothing_passes = 1};
   std::vector<std::int32_t> numbers;
-  for (const BoneId bone :
-       radial::bones_of_triangles(question.few(), question.coarse.is_coarser() ? coarse : fine, clock))
+  for (const BoneId bone : radial::bones_of_triangles(surfaces.coarse_setup(),
+                                                      surfaces.coarse.is_coarser() ? coarse : fine, clock))
     numbers.push_back(static_cast<std::int32_t>(bone));
   std::vector<BoneId> bone_of;
-  for (const std::int32_t number : question.to_tried(std::move(numbers))) bone_of.push_back(BoneId{number});
+  for (const std::int32_t number : surfaces.on_trial_surface(std::move(numbers)))
+    bone_of.push_back(BoneId{number});
   return bone_of;
 }
 
-// Along which clusters the tried surface is cut, and from how many covers it is looked at. Where that takes a
-// trial, its winner comes with the culler that was tried.
+// The clusters along which the trial surface is cut, and the number of covers to look from. If there was a
+// trial, the winner comes with the culler that was tried; otherwise there is no culler.
 struct Decision {
   Candidate taken;
   std::size_t covers = kCovers;
 };
-Decision decided(const Question& question, const DrvbcFastOptions& options, StageClock& clock) {
+Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  const Setup tried = question.tried();
+  const Setup tried = surfaces.trial_setup();
   if (!has_bones(tried) || options.clusters == Clusters::of_surface || !tried.mesh.closed_and_oriented())
-    return {{clusters_of_surface(question), nullptr}};
+    return {{clusters_of_surface(surfaces), nullptr}};
   const auto of_bones = [&](std::span<const BoneId> bone_of) {
     return radial::make_atomic_clusters(tried.mesh, bone_of).of_triangle;
   };
   if (options.clusters == Clusters::of_bones)
-    return {{of_bones(bones_of_triangles(question, clock)), nullptr}};
+    return {{of_bones(bones_of_triangles(surfaces, clock)), nullptr}};
 
   std::vector<Trial> trials;
   // The candidates are prepared side by side. The caller's thread learns of what was thrown.
@@ -160,13 +162,11 @@ Decision decided(const Question& question, const DrvbcFastOptions& options, Stag
   Team(tried.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
     try {
       if (i == 0) {
-        const std::vector<BoneId> bone_of = bones_of_triangles(question, clock);
-        trials =
-            trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of,
-                        question.tried_on_coarse || !question.coarse.is_coarser() ? kTrials : kFewTrials);
+        const std::vector<BoneId> bone_of = bones_of_triangles(surfaces, clock);
+        trials = trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of, surfaces.trials());
         candidates[i] = made(tried, of_bones(bone_of), options);
       } else {
-        candidates[i] = made(tried, clusters_of_surface(question), options);
+        candidates[i] = made(tried, clusters_of_surface(surfaces), options);
       }
     } catch (...) {
       thrown[i] = std::current_exception();

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::int32_t kBand = 3;  // so many rings of triangles on both sides of a seam are labelled anew
 
-// Returns the vertices that are kept, ascending: no two are neighbours, and every other has one beside it.
+// Returns the vertices to keep, ascending. No two of them are neighbours, and every other vertex of a
+// triangle has a kept vertex beside it.
 std::vector<VertexId> kept_of(const TriangleMesh& mesh) {
   std::vector<VertexId> kept;
   std::vector<bool> beside(mesh.vertex_count());
@@ -62,8 +63,8 @@ std::vector<std::int32_t> labels_of_vertices(const TriangleMesh& mesh,
   return labels;
 }
 
-// Lets labels grow anew over the triangles about their seams, and over those without a label. Seams that ran
-// along the corners of a coarser level are straight then.
+// Lets labels grow anew over the triangles near seams, and over triangles without a label. Carried seams are
+// as jagged as the triangles of the coarser level, and become straight by this.
 void straighten(const TriangleMesh& mesh, std::vector<std::int32_t>& label_of) {
   std::vector<std::vector<TriangleId>> seams(1);
   for_each_seam_edge(mesh, label_of, [&](TriangleId a, TriangleId b) {
@@ -71,7 +72,7 @@ void straighten(const TriangleMesh& mesh, std::vector<std::int32_t>& label_of) {
   });
   const Rings band = rings_from(mesh, seams, kBand);
   const auto size = index(*std::ranges::max_element(label_of)) + 1;
-  std::vector<std::int32_t> deepest(size, 0);  // how far from its seams a label begins to grow
+  std::vector<std::int32_t> deepest(size, 0);  // [labels]: rings from its seams to where it grows from
   for (std::size_t t = 0; t < label_of.size(); ++t)
     if (label_of[t] != kNone) {
       std::int32_t& depth = deepest[index(label_of[t])];

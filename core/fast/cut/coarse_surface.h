@@ -9,16 +9,17 @@
 
 namespace cscd::fast {
 
-// A surface of few triangles that looks like a surface of many, so that clusters are found on it in a
-// fraction of the time. No promise rests on how like it is: clusters may be any.
+// A surface of few triangles in the shape of a surface of many, on which clusters are found in a fraction of
+// the time. No promise rests on how alike the two are, because the proofs hold for any clusters.
 //
 // The surface is made coarser level by level. On each level some vertices are *kept*, no two of them
 // neighbours, and every other vertex belongs to the nearest kept vertex beside it. The next level has the
 // triangles whose corners belong to three different kept vertices.
 class CoarseSurface {
  public:
-  // Stops once a level has no more than `enough` triangles, or where the next one would lose a connected
-  // component. The mesh and its positions must outlive the coarse surface.
+  // Stops once a level has no more than `enough` triangles. Also stops where the next level would lose a
+  // connected component, or would not be closed although the mesh is. The mesh and its positions must outlive
+  // the coarse surface.
   CoarseSurface(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t enough);
 
   bool is_coarser() const { return !levels_.empty(); }

@@ -26,7 +26,7 @@ constexpr double kEnough = 0.5;
 // cones of directions are too blunt to tell patches apart.
 constexpr float kHeights[] = {-0.5F, -1, -2, -4};
 
-// About so many faces, spread over the cluster, say where it is seen from best.
+// The best viewpoint of a cluster is found from at most this many of its faces, spread evenly.
 constexpr std::size_t kManyFaces = 512;
 // The number of times that vertices to follow are drawn.
 constexpr int kDraws = 50;

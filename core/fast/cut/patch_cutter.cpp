@@ -58,9 +58,9 @@ int PatchCutter::free_beside(TriangleId triangle) const {
   return count;
 }
 
-// Each patch begins beside the patches before it, at a triangle with the fewest free neighbours. Triangles
-// beside patches wait in a queue for each number of free neighbours, and in another one as soon as that
-// number falls.
+// Each patch begins beside the patches before it, at a triangle with the fewest free neighbours. There is one
+// queue for each number of free neighbours, 0 to 3. A triangle is put into the next queue when it loses a
+// neighbour, and its entry in the old queue is passed over.
 PatchCutter::Patches PatchCutter::pieces(std::span<const TriangleId> cell) {
   for (const TriangleId t : cell) set_free(t, true);
   Patches patches;

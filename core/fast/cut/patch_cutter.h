@@ -57,7 +57,7 @@ class PatchCutter {
   std::vector<bool> free_;             // [triangles]: whether it is in no patch yet
   std::vector<std::int32_t> free_at_;  // [edges]: how many free triangles have it
   static constexpr std::uint8_t kNowhere = 0xff;
-  std::vector<std::uint8_t> waits_in_;  // [triangles]: the queue of one that is free and beside some patch
+  std::vector<std::uint8_t> waits_in_;  // [triangles]: the queue that a free triangle beside a patch waits in
   // State of the patch that is growing; empty at other times.
   std::vector<std::uint8_t> corners_taken_;  // [triangles]: how many of its corners the patch has
   std::vector<bool> taken_;                  // [vertices]: whether the patch has it
@@ -75,7 +75,7 @@ class PatchCutter {
   std::vector<Seeking> seeking_;        // triangles that look for room one after the other
   std::vector<bool> seeks_;             // [triangles]: whether it is in `seeking_`
   std::vector<Members> members_;        // [patches]
-  std::vector<bool> full_about_;        // [patches]: whether a search that came by found no room
+  std::vector<bool> full_about_;        // [patches]: whether a search through it found no room
   static constexpr std::uint8_t kNoPlace = 0xff;
   std::vector<std::uint8_t> place_;  // [vertices]: its place among a patch's members; kNoPlace at other times
   std::vector<std::int32_t> beside_;     // what find_patches_beside() found
