@@ -10,16 +10,20 @@
 namespace cscd::fast {
 namespace {
 
+// A level is tried so many times, each time with more vertices that have to stay.
+constexpr int kAttempts = 4;
+// A level that leaves a larger share of the triangles is not worth its work.
+constexpr double kMostLeft = 0.7;
 constexpr std::int32_t kBand = 3;  // so many rings of triangles on both sides of a seam are labelled anew
 
-// Returns the vertices to keep, ascending. No two of them are neighbours, and every other vertex of a
-// triangle has a kept vertex beside it.
-std::vector<VertexId> kept_of(const TriangleMesh& mesh) {
+// Returns the vertices to keep, ascending: those that have to stay, and enough of the others that every
+// vertex of a triangle is kept or has a kept vertex beside it. Of the others no two are neighbours.
+std::vector<VertexId> kept_of(const TriangleMesh& mesh, const std::vector<bool>& has_to_stay) {
   std::vector<VertexId> kept;
   std::vector<bool> beside(mesh.vertex_count());
   for (std::size_t i = 0; i < beside.size(); ++i) {
     const VertexId v{static_cast<std::int32_t>(i)};
-    if (beside[i] || mesh.triangles_at(v).empty()) continue;
+    if ((beside[i] && !has_to_stay[i]) || mesh.triangles_at(v).empty()) continue;
     kept.push_back(v);
     for (const TriangleId t : mesh.triangles_at(v))
       for (const VertexId corner : mesh.corners(t)) beside[+corner] = true;
@@ -27,7 +31,8 @@ std::vector<VertexId> kept_of(const TriangleMesh& mesh) {
   return kept;
 }
 
-// Returns for each vertex the number of the nearest kept vertex beside it, [vertices].
+// Returns for each vertex the number of the nearest kept vertex beside it, [vertices]; for a kept vertex its
+// own.
 std::vector<std::int32_t> nearest_kept(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                        std::span<const VertexId> kept) {
   std::vector<std::int32_t> nearest(mesh.vertex_count(), kNone);
@@ -40,7 +45,39 @@ std::vector<std::int32_t> nearest_kept(const TriangleMesh& mesh, std::span<const
         nearest[+v] = static_cast<std::int32_t>(k);
         least[+v] = way;
       }
+  for (std::size_t k = 0; k < kept.size(); ++k) nearest[+kept[k]] = static_cast<std::int32_t>(k);
   return nearest;
+}
+
+// Returns whether the triangles at the vertex form one fan. Its edges must have two triangles each.
+bool is_one_fan(const TriangleMesh& mesh, VertexId v) {
+  const std::span<const TriangleId> around = mesh.triangles_at(v);
+  const auto at_v = [&](EdgeId e) { return mesh.ends(e)[0] == v || mesh.ends(e)[1] == v; };
+  TriangleId triangle = around.front();
+  EdgeId edge = *std::ranges::find_if(mesh.edges_of(triangle), at_v);
+  std::size_t met = 0;
+  do {
+    const std::span<const TriangleId> both = mesh.triangles_at(edge);
+    triangle = both[both[0] == triangle ? 1 : 0];
+    edge = *std::ranges::find_if(mesh.edges_of(triangle), [&](EdgeId e) { return e != edge && at_v(e); });
+    ++met;
+  } while (triangle != around.front());
+  return met == around.size();
+}
+
+// Returns for each vertex whether the surface is no closed manifold there, [vertices].
+std::vector<bool> faulty_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> faulty(mesh.vertex_count());
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const EdgeId edge{static_cast<std::int32_t>(e)};
+    if (mesh.triangles_at(edge).size() == 2) continue;
+    for (const VertexId v : mesh.ends(edge)) faulty[+v] = true;
+  }
+  for (std::size_t i = 0; i < faulty.size(); ++i) {
+    const VertexId v{static_cast<std::int32_t>(i)};
+    if (!faulty[i] && !mesh.triangles_at(v).empty()) faulty[i] = !is_one_fan(mesh, v);
+  }
+  return faulty;
 }
 
 // Gives each vertex the label that most of the triangles at it have, [vertices]; kNone for a vertex without
@@ -102,23 +139,59 @@ CoarseSurface::CoarseSurface(const TriangleMesh& mesh, std::span<const Vec3> pos
 
 std::unique_ptr<CoarseSurface::Level> CoarseSurface::coarser(const TriangleMesh& mesh,
                                                              std::span<const Vec3> positions) {
-  const std::vector<VertexId> kept = kept_of(mesh);
+  std::vector<bool> has_to_stay(mesh.vertex_count());
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::unique_ptr<Level> level = level_with(mesh, positions, has_to_stay);
+    if (!level || level->mesh.triangle_count() > kMostLeft * static_cast<double>(mesh.triangle_count()))
+      return nullptr;
+    if (!keep_what_fails(mesh, *level, has_to_stay))
+      return mesh.closed_and_oriented() && !level->mesh.closed_and_oriented() ? nullptr : std::move(level);
+  }
+  return nullptr;
+}
+
+std::unique_ptr<CoarseSurface::Level> CoarseSurface::level_with(const TriangleMesh& mesh,
+                                                                std::span<const Vec3> positions,
+                                                                const std::vector<bool>& has_to_stay) {
+  const std::vector<VertexId> kept = kept_of(mesh, has_to_stay);
   std::vector<std::int32_t> nearest = nearest_kept(mesh, positions, kept);
   std::vector<Triangle> triangles;
-  std::vector<bool> stays(index(mesh.component_count()), false);
+  std::vector<std::size_t> left(index(mesh.component_count()), 0);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     Triangle corners = mesh.triangles()[t];
     for (VertexId& v : corners) v = VertexId{nearest[+v]};
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
     triangles.push_back(corners);
-    stays[index(mesh.component(TriangleId{static_cast<std::int32_t>(t)}))] = true;
+    ++left[index(mesh.component(TriangleId{static_cast<std::int32_t>(t)}))];
   }
-  if (!std::ranges::all_of(stays, [](bool stay) { return stay; })) return nullptr;
-  auto level =
-      std::make_unique<Level>(Level{std::move(nearest), TriangleMesh(std::move(triangles), kept.size()), {}});
-  if (mesh.closed_and_oriented() && !level->mesh.closed_and_oriented()) return nullptr;
+  if (triangles.empty()) return nullptr;
+  auto level = std::make_unique<Level>(
+      Level{std::move(nearest), TriangleMesh(std::move(triangles), kept.size()), {}, std::move(left)});
   for (const VertexId v : kept) level->positions.push_back(positions[+v]);
   return level;
+}
+
+bool CoarseSurface::keep_what_fails(const TriangleMesh& mesh, const Level& level,
+                                    std::vector<bool>& has_to_stay) {
+  const bool closed = mesh.closed_and_oriented();
+  const std::size_t least = closed ? 4 : 1;  // a closed component of two triangles has them twice
+  bool any = false;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId triangle{static_cast<std::int32_t>(t)};
+    if (level.left[index(mesh.component(triangle))] >= least) continue;
+    any = true;
+    for (const VertexId v : mesh.corners(triangle)) has_to_stay[+v] = true;
+  }
+  if (!closed || level.mesh.closed_and_oriented()) return any;
+  const std::vector<bool> faulty = faulty_vertices(level.mesh);
+  // The vertices beside faulty ones stay too. Without them the next attempt often fails right beside.
+  std::vector<bool> stays(faulty.size());
+  for (const Triangle& corners : level.mesh.triangles())
+    if (std::ranges::any_of(corners, [&](VertexId v) { return faulty[+v]; }))
+      for (const VertexId v : corners) stays[+v] = true;
+  for (std::size_t v = 0; v < has_to_stay.size(); ++v)
+    if (level.kept[v] != kNone && stays[index(level.kept[v])]) any = has_to_stay[v] = true;
+  return any;
 }
 
 std::vector<std::int32_t> CoarseSurface::carried(std::vector<std::int32_t> label_of) const {

@@ -14,12 +14,13 @@ namespace cscd::fast {
 //
 // The surface is made coarser level by level. On each level some vertices are *kept*, no two of them
 // neighbours, and every other vertex belongs to the nearest kept vertex beside it. The next level has the
-// triangles whose corners belong to three different kept vertices.
+// triangles whose corners belong to three different kept vertices. Where a connected component would be lost
+// by that, or a closed surface would no longer be one, as at a thin limb, all vertices are kept.
 class CoarseSurface {
  public:
-  // Stops once a level has no more than `enough` triangles. Also stops where the next level would lose a
-  // connected component, or would not be closed although the mesh is. The mesh and its positions must outlive
-  // the coarse surface.
+  // Stops once a level has no more than `enough` triangles, or where no level with clearly fewer triangles
+  // has all connected components and is closed if the mesh is. The mesh and its positions must outlive the
+  // coarse surface.
   CoarseSurface(const TriangleMesh& mesh, std::span<const Vec3> positions, std::size_t enough);
 
   bool is_coarser() const { return !levels_.empty(); }
@@ -38,8 +39,15 @@ class CoarseSurface {
                                      // belongs to; kNone for one without triangles
     TriangleMesh mesh;
     std::vector<Vec3> positions;
+    std::vector<std::size_t> left;  // [components of the finer level]: how many triangles each has left
   };
   static std::unique_ptr<Level> coarser(const TriangleMesh& mesh, std::span<const Vec3> positions);
+  // The level on which these vertices are kept. Null if it would have no triangle.
+  static std::unique_ptr<Level> level_with(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                           const std::vector<bool>& has_to_stay);
+  // Adds the vertices of lost components, and those about faults of a level that should be closed. Returns
+  // whether there were any.
+  static bool keep_what_fails(const TriangleMesh& mesh, const Level& level, std::vector<bool>& has_to_stay);
 
   const TriangleMesh& mesh_;
   std::span<const Vec3> positions_;

@@ -14,10 +14,10 @@ namespace cscd::fast {
 namespace {
 
 // The same surface with its vertices numbered at random, as a scan may number them.
-test::Shape shuffled(const test::Shape& shape) {
+test::Shape shuffled(const test::Shape& shape, unsigned seed = 3) {
   std::vector<std::int32_t> number(shape.positions.size());
   std::iota(number.begin(), number.end(), 0);
-  std::shuffle(number.begin(), number.end(), std::mt19937(3));
+  std::shuffle(number.begin(), number.end(), std::mt19937(seed));
   test::Shape out{std::vector<Vec3>(number.size()), shape.triangles};
   for (std::size_t v = 0; v < number.size(); ++v) out.positions[index(number[v])] = shape.positions[v];
   for (Triangle& t : out.triangles)
@@ -114,8 +114,39 @@ TEST(CoarseSurface, LosesNoComponent) {
   EXPECT_FALSE(CoarseSurface(mesh, wheel.positions, 100).is_coarser());
 }
 
-// Limbs of three triangles around close up on a coarser level, and the surface would be closed no more.
-// Mutation: such a level is taken.
+// A button on a character must not keep the whole character fine. Mutations: a level that loses a component
+// is not taken; of coinciding kept vertices one belongs to the other; a component is left with the same
+// triangle twice.
+TEST(CoarseSurface, SmallComponentsStayAsTheyAre) {
+  const test::Shape ball = test::icosphere(4);
+  for (const test::Shape& small : {test::box(), test::octahedron(), test::capped_tube(3, 4, 0.1, 1)})
+    for (const double size : {0.1, 0.0})
+      for (unsigned seed = 0; seed < 10; ++seed) {
+        const test::Shape both = shuffled(test::together(ball, test::moved(small, {2, 0, 0}, size)), seed);
+        const TriangleMesh mesh = both.mesh();
+        const CoarseSurface coarse(mesh, both.positions, 2000);
+        EXPECT_LE(coarse.mesh().triangle_count(), 2000u) << seed;
+        EXPECT_EQ(coarse.mesh().component_count(), 2) << seed;
+        EXPECT_TRUE(coarse.mesh().closed_and_oriented()) << seed;
+      }
+}
+
+// Nor must a thin limb. Mutations: nothing stays about edges of four triangles, or about vertices where two
+// fans meet.
+TEST(CoarseSurface, ThinLimbsStayAsTheyAre) {
+  for (int sides = 3; sides < 9; ++sides)
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      const test::Shape limb = test::capped_tube(sides, 60, 0.05, 2);
+      const test::Shape both =
+          shuffled(test::together(test::icosphere(4), test::moved(limb, {3, 0, 0}, 1)), seed);
+      const TriangleMesh mesh = both.mesh();
+      const CoarseSurface coarse(mesh, both.positions, 4000);
+      EXPECT_LE(coarse.mesh().triangle_count(), 4000u) << sides << " " << seed;
+      EXPECT_TRUE(coarse.mesh().closed_and_oriented()) << sides << " " << seed;
+    }
+}
+
+// Mutation: a level that is closed no more is taken.
 TEST(CoarseSurface, AClosedSurfaceStaysClosed) {
   for (const int sides : {3, 4, 5, 8}) {
     const test::Shape wire = shuffled(test::capped_tube(sides, 2000, 0.1, 400));
