@@ -6,6 +6,7 @@
 #include "core/fast/cut/observer.h"
 #include "core/fast/cut/rings.h"
 #include "core/fast/cut/seams.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd::fast {
 namespace {
@@ -50,35 +51,90 @@ Seams seams_of(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_o
   return seams;
 }
 
+// Measures how many rings of triangles from its seams a cluster's innermost triangle is, counted from 1, and
+// kThin + 1 at most.
+class DepthMeter {
+ public:
+  DepthMeter(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluster_of)
+      : mesh_(mesh), cluster_of_(cluster_of), distance_(cluster_of.size(), kNone) {}
+
+  std::int32_t depth(std::int32_t cluster, const Seams& seams) {
+    reached_.clear();
+    for (const auto& [clusters, triangles] : seams)
+      if (clusters.first == cluster || clusters.second == cluster)
+        for (const TriangleId t : triangles) reach(t, cluster, 0);
+    for (std::size_t next = 0; next < reached_.size(); ++next) {
+      const std::int32_t distance = distance_[+reached_[next]] + 1;
+      if (distance > kThin) break;
+      for_each_neighbour(mesh_, reached_[next], [&](TriangleId t) { reach(t, cluster, distance); });
+    }
+    const std::int32_t deepest = reached_.empty() ? 0 : distance_[+reached_.back()] + 1;
+    for (const TriangleId t : reached_) distance_[+t] = kNone;
+    return deepest;
+  }
+
+ private:
+  void reach(TriangleId t, std::int32_t cluster, std::int32_t distance) {
+    if (cluster_of_[+t] != cluster || distance_[+t] != kNone) return;
+    distance_[+t] = distance;
+    reached_.push_back(t);
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<std::int32_t>& cluster_of_;
+  std::vector<std::int32_t> distance_;  // [triangles]: from the cluster's seams; kNone between two calls
+  std::vector<TriangleId> reached_;
+};
+
+// The thinnest cluster whose seam with a neighbour can go, and of the thinnest the one with the longest seam.
+struct Merge {
+  std::int32_t depth = kThin;
+  std::size_t length = 0;
+  std::int32_t from = kNone, into = kNone;
+};
+Merge best_merge(const Seams& seams, const std::map<std::int32_t, std::int32_t>& depth) {
+  std::map<std::int32_t, int> neighbours;
+  for (const auto& [clusters, triangles] : seams) ++neighbours[clusters.first], ++neighbours[clusters.second];
+  Merge best;
+  for (const auto& [clusters, triangles] : seams) {
+    if (neighbours[clusters.first] > 2 || neighbours[clusters.second] > 2) continue;
+    const std::int32_t thinner = std::min(depth.at(clusters.first), depth.at(clusters.second));
+    if (std::pair(thinner, best.length) < std::pair(best.depth, triangles.size()))
+      best = {thinner, triangles.size(), clusters.second, clusters.first};
+  }
+  return best;
+}
+
+// Takes the seam between the two out, and the other seams of `from` over to `into`.
+void merge(Seams& seams, std::int32_t from, std::int32_t into) {
+  seams.erase({into, from});
+  Seams merged;
+  for (auto& [clusters, triangles] : seams) {
+    const auto renamed = [&](std::int32_t c) { return c == from ? into : c; };
+    std::vector<TriangleId>& all = merged[std::minmax(renamed(clusters.first), renamed(clusters.second))];
+    if (all.empty())
+      all = std::move(triangles);
+    else
+      all.insert(all.end(), triangles.begin(), triangles.end());
+  }
+  seams = std::move(merged);
+}
+
 }  // namespace
 
 void merge_thin_clusters(const TriangleMesh& mesh, std::vector<std::int32_t>& cluster_of) {
+  Seams seams = seams_of(mesh, cluster_of);
+  DepthMeter meter(mesh, cluster_of);
+  std::map<std::int32_t, std::int32_t> depth;
+  for (const auto& [clusters, triangles] : seams)
+    for (const std::int32_t c : {clusters.first, clusters.second})
+      if (!depth.contains(c)) depth[c] = meter.depth(c, seams);
   while (true) {
-    const Seams seams = seams_of(mesh, cluster_of);
-    std::vector<std::vector<TriangleId>> all(1);
-    std::map<std::int32_t, int> neighbours;
-    for (const auto& [clusters, triangles] : seams) {
-      all[0].insert(all[0].end(), triangles.begin(), triangles.end());
-      ++neighbours[clusters.first], ++neighbours[clusters.second];
-    }
-    const Rings rings = rings_from(mesh, all, kThin);
-    std::map<std::int32_t, std::int32_t> depth;
-    for (std::size_t t = 0; t < cluster_of.size(); ++t)
-      if (rings.distance[t] != kNone)
-        depth[cluster_of[t]] = std::max(depth[cluster_of[t]], rings.distance[t] + 1);
-    struct Merge {
-      std::int32_t depth = kThin;
-      std::size_t length = 0;
-      std::int32_t from = kNone, into = kNone;
-    } best;
-    for (const auto& [clusters, triangles] : seams) {
-      if (neighbours[clusters.first] > 2 || neighbours[clusters.second] > 2) continue;
-      const std::int32_t thinner = std::min(depth[clusters.first], depth[clusters.second]);
-      if (std::pair(thinner, best.length) < std::pair(best.depth, triangles.size()))
-        best = {thinner, triangles.size(), clusters.second, clusters.first};
-    }
+    const Merge best = best_merge(seams, depth);
     if (best.from == kNone) return;
     std::replace(cluster_of.begin(), cluster_of.end(), best.from, best.into);
+    merge(seams, best.from, best.into);
+    depth[best.into] = meter.depth(best.into, seams);
   }
 }
 
