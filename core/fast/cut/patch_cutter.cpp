@@ -310,7 +310,6 @@ void PatchCutter::move_all(std::size_t at, std::int32_t to, Patches& patches) {
     const auto [triangle, for_whom] = seeking_[at];
     const std::int32_t from = std::exchange(patch_of_[+triangle], to);
     members_[index(from)].known = members_[index(to)].known = false;
-    full_about_[index(from)] = full_about_[index(to)] = false;
     std::erase(patches[index(from)], triangle);
     patches[index(to)].push_back(triangle);
     if (at == 0) return;
