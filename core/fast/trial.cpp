@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <exception>
 #include <limits>
 
@@ -30,7 +31,8 @@ constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 
 constexpr std::size_t kTrials = 6, kFewTrials = 2;
 // Clusters of a surface of more triangles than this are found on a coarser surface.
 constexpr std::size_t kEnough = 16000;
-// The trial poses are not the motion to come, so small differences between candidates say nothing.
+// The trial poses are not the motion to come, so small differences between candidates say nothing: the second
+// one has to be better by more than one in kClose.
 constexpr std::uint64_t kClose = 64;
 
 // Returns the work of all trials, for a complete culler by signs or by caps. Stops early, and returns a sum
@@ -67,37 +69,23 @@ Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
   return candidate;
 }
 
-// Keeps the candidate that makes the least work.
-class Choice {
- public:
-  // `trials` must outlive the choice.
-  Choice(std::span<const Trial> trials, bool by_signs) : trials_(trials), by_signs_(by_signs) {}
-
-  // Tries the candidate with three covers, two and one. It has to be better than those before it by more than
-  // one in kClose.
-  void consider(Candidate candidate) {
-    std::uint64_t least = least_ - (best_.culler ? least_ / kClose : 0);
-    bool better = false;
-    for (std::size_t count = kCovers; count > 0; --count) {
-      candidate.culler->use_covers(count);
-      const std::uint64_t needed = work(*candidate.culler, trials_, by_signs_, least);
-      if (needed >= least) continue;
-      better = true, covers_ = count, least = needed;
-    }
-    if (!better) return;
-    least_ = least;
-    best_ = std::move(candidate);
-  }
-  Candidate& best() { return best_; }
-  std::size_t covers() const { return covers_; }
-
- private:
-  std::span<const Trial> trials_;
-  bool by_signs_;
-  Candidate best_;
-  std::size_t covers_ = 0;
-  std::uint64_t least_ = std::numeric_limits<std::uint64_t>::max();
+// The work of a candidate with the number of covers that makes the least.
+struct Tried {
+  std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
+  std::size_t covers = kCovers;
 };
+
+// Tries a candidate with three covers, two and one. Its work need not be known if it is more than `most()`.
+template <class Most>
+Tried tried_with(FastCuller& culler, std::span<const Trial> trials, bool by_signs, const Most& most) {
+  Tried least;
+  for (std::size_t count = kCovers; count > 0; --count) {
+    culler.use_covers(count);
+    const std::uint64_t needed = work(culler, trials, by_signs, std::min(least.work, most()));
+    if (needed < least.work) least = {needed, count};
+  }
+  return least;
+}
 
 // The surfaces that preparation works on. Clusters are always found on the coarse surface. Candidates are cut
 // and tried either on the coarse surface too, or on the surface itself: candidates that look with caps come
@@ -138,6 +126,21 @@ std::vector<BoneId> bones_of_triangles(const Surfaces& surfaces, StageClock& clo
   return bone_of;
 }
 
+// Calls work(0) and work(1), side by side on two threads or more. The caller learns of what they throw.
+template <class Work>
+void for_both(int threads, const Work& work) {
+  std::array<std::exception_ptr, 2> thrown;
+  Team(threads).each(thrown.size(), [&](std::size_t i, std::size_t) {
+    try {
+      work(i);
+    } catch (...) {
+      thrown[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& exception : thrown)
+    if (exception) std::rethrow_exception(exception);
+}
+
 // The clusters along which the trial surface is cut, and the number of covers to look from. If there was a
 // trial, the winner comes with the culler that was tried; otherwise there is no culler.
 struct Decision {
@@ -156,27 +159,26 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
     return {{of_bones(bones_of_triangles(surfaces, clock)), nullptr}};
 
   std::vector<Trial> trials;
-  // The candidates are prepared side by side. The caller's thread learns of what was thrown.
   std::array<Candidate, 2> candidates;
-  std::array<std::exception_ptr, 2> thrown;
-  Team(tried.threads).each(candidates.size(), [&](std::size_t i, std::size_t) {
-    try {
-      if (i == 0) {
-        const std::vector<BoneId> bone_of = bones_of_triangles(surfaces, clock);
-        trials = trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of, surfaces.trials());
-        candidates[i] = made(tried, of_bones(bone_of), options);
-      } else {
-        candidates[i] = made(tried, clusters_of_surface(surfaces), options);
-      }
-    } catch (...) {
-      thrown[i] = std::current_exception();
+  for_both(tried.threads, [&](std::size_t i) {
+    if (i == 0) {
+      const std::vector<BoneId> bone_of = bones_of_triangles(surfaces, clock);
+      trials = trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of, surfaces.trials());
+      candidates[i] = made(tried, of_bones(bone_of), options);
+    } else {
+      candidates[i] = made(tried, clusters_of_surface(surfaces), options);
     }
   });
-  for (const std::exception_ptr& exception : thrown)
-    if (exception) std::rethrow_exception(exception);
-  Choice choice(trials, options.starts_embedded);
-  for (Candidate& candidate : candidates) choice.consider(std::move(candidate));
-  return {std::move(choice.best()), choice.covers()};
+  // What the second candidate takes need not be known if it is more than what the first one takes.
+  std::array<Tried, 2> results;
+  std::atomic<std::uint64_t> of_first = results[0].work;
+  for_both(tried.threads, [&](std::size_t i) {
+    const auto most = [&] { return i == 0 ? std::numeric_limits<std::uint64_t>::max() : of_first.load(); };
+    results[i] = tried_with(*candidates[i].culler, trials, options.starts_embedded, most);
+    if (i == 0) of_first = results[0].work;
+  });
+  const bool second = results[1].work < results[0].work - results[0].work / kClose;
+  return {std::move(candidates[second]), results[second].covers};
 }
 
 }  // namespace
