@@ -29,8 +29,17 @@ class CountingSink : public TrianglePairSink {
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
 // The number of trial poses, and the number on a surface of many triangles, where each pose costs more.
 constexpr std::size_t kTrials = 6, kFewTrials = 2;
-// Clusters of a surface of more triangles than this are found on a coarser surface.
+// Clusters of a surface of more triangles than this are found on a coarser surface, of at most as many.
 constexpr std::size_t kEnough = 16000;
+// Candidates that look with caps gain from clusters that are found on a surface of up to this many. Their
+// preparation works on the surface itself too, so that this adds little to it.
+constexpr std::size_t kEnoughForCaps = 64000;
+// The most triangles of the surface on which clusters are found.
+std::size_t enough(std::size_t triangles, bool with_caps) {
+  if (!with_caps || triangles <= kEnough) return kEnough;
+  return std::min(kEnoughForCaps, triangles - 1);  // at least a level coarser
+}
+
 // The trial poses are not the motion to come, so small differences between candidates say nothing: the second
 // one has to be better by more than one in kClose.
 constexpr std::uint64_t kClose = 64;
@@ -177,8 +186,8 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
     results[i] = tried_with(*candidates[i].culler, trials, options.starts_embedded, most);
     if (i == 0) of_first = results[0].work;
   });
-  const bool second = results[1].work < results[0].work - results[0].work / kClose;
-  return {std::move(candidates[second]), results[second].covers};
+  const std::size_t taken = results[1].work < results[0].work - results[0].work / kClose ? 1 : 0;
+  return {std::move(candidates[taken]), results[taken].covers};
 }
 
 }  // namespace
@@ -191,8 +200,9 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
                                .clusters = options.clusters,
                                .complete = options.complete,
                                .starts_embedded = options.starts_embedded};
-  const CoarseSurface coarse(setup.mesh, setup.reference, kEnough);
-  const bool tried_on_coarse = coarse.is_coarser() && (!options.complete || options.starts_embedded);
+  const bool with_caps = options.complete && !options.starts_embedded;
+  const CoarseSurface coarse(setup.mesh, setup.reference, enough(setup.mesh.triangle_count(), with_caps));
+  const bool tried_on_coarse = coarse.is_coarser() && !with_caps;
   Decision decision = decided({setup, coarse, tried_on_coarse}, whole, clock);
   Candidate best = std::move(decision.taken);
   if (tried_on_coarse) best.cluster_of = coarse.carried(std::move(best.cluster_of));
