@@ -4,15 +4,14 @@
 #include "bench/testing/rule_case.h"
 #include "core/detect/verify.h"
 #include "core/fast/cut/coarse_surface.h"
+#include "core/fast/trial.h"
 
-// Surfaces of so many triangles that preparation decides on a coarser surface (core/fast/trial.cpp). Random
-// intervals and most tests are of far fewer.
+// Whole strategies on surfaces of so many triangles that preparation decides on a coarser surface
+// (core/fast/trial.h). Random intervals, and most other tests, have far fewer triangles.
 namespace cscd::bench {
 namespace {
 
 using rules::Case;
-
-constexpr std::size_t kEnough = 16000;
 
 // Asks with a test that is always right and filters first. Surfaces of this size have too many feature pairs
 // for the plain one.
@@ -22,7 +21,7 @@ ContactSet answer_of(const Strategy& strategy, const Case& given) {
 }
 
 void expect_promises_kept(const Case& given, const std::vector<const Strategy*>& strategies) {
-  ASSERT_TRUE(fast::CoarseSurface(given.mesh, given.start, kEnough).is_coarser());
+  ASSERT_TRUE(fast::CoarseSurface(given.mesh, given.start, fast::kManyTriangles).is_coarser());
   const ContactSet reference = answer_of(complete_reference(), given);
   ASSERT_GT(reference.contacts.size(), 0u);
   const bool embedded = given.embedded();
@@ -33,8 +32,14 @@ void expect_promises_kept(const Case& given, const std::vector<const Strategy*>&
   }
 }
 
-// A ball with a button and a limb of `sides` triangles around beside it. All three bulge and bend, the button
-// is pressed into the ball, and the limb is swung into it.
+std::vector<const Strategy*> for_closed_surfaces() {
+  return {&strategy_named("drvbc_fast"), &strategy_named("drvbc_fast_all"),
+          &strategy_named("drvbc_fast_complete")};
+}
+
+// A ball with a button and a limb beside it; the limb has `sides` sides. The ball bulges, the button is
+// pressed towards the ball by the length `pressed`, and the limb bends and moves towards the ball by as much
+// or more.
 Case dressed_ball(int sides, double pressed) {
   const test::Shape ball = test::icosphere(5), button = test::moved(test::box(), {1.1, 0, 0}, 0.2),
                     limb = test::moved(test::capped_tube(sides, 40, 0.05, 3), {-1, 1.2, 0}, 1);
@@ -55,23 +60,19 @@ Case dressed_ball(int sides, double pressed) {
 }
 
 TEST(ManyTriangles, KeepPromisesOnClosedSurfaces) {
-  const std::vector<const Strategy*> strategies = {&strategy_named("drvbc_fast"),
-                                                   &strategy_named("drvbc_fast_all"),
-                                                   &strategy_named("drvbc_fast_complete")};
   for (const int sides : {3, 6})
-    for (const double pressed : {0.15, 0.3}) expect_promises_kept(dressed_ball(sides, pressed), strategies);
+    for (const double pressed : {0.15, 0.3})
+      expect_promises_kept(dressed_ball(sides, pressed), for_closed_surfaces());
 }
 
-// From the middle of a ball all of it is seen well, and all of a ball around it. Mutation: what is carried
-// over from the coarser surface is one cluster, whatever the components.
+// From their common middle, both balls are seen well. Mutation: all triangles of the surface become one
+// cluster, although clusters must not reach over components.
 TEST(ManyTriangles, KeepPromisesOnABallInABall) {
   const test::Shape inner = test::icosphere(4, 0.8), both = test::together(inner, test::icosphere(5));
   std::vector<Vec3> end = both.positions;
   for (std::size_t v = 0; v < inner.positions.size(); ++v)
     if (end[v].x() > 0.7) end[v] *= 1.4;
-  expect_promises_kept(Case(both, std::move(end), {{-0.5, 0, 0}, {0.5, 0, 0}}),
-                       {&strategy_named("drvbc_fast"), &strategy_named("drvbc_fast_all"),
-                        &strategy_named("drvbc_fast_complete")});
+  expect_promises_kept(Case(both, std::move(end), {{-0.5, 0, 0}, {0.5, 0, 0}}), for_closed_surfaces());
 }
 
 // A folded sheet that meets itself along one side, with a fin along another, where edges have three

@@ -29,20 +29,21 @@ class CountingSink : public TrianglePairSink {
 constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
 // The number of trial poses, and the number on a surface of many triangles, where each pose costs more.
 constexpr std::size_t kTrials = 6, kFewTrials = 2;
-// Clusters of a surface of more triangles than this are found on a coarser surface, of at most as many.
-constexpr std::size_t kEnough = 16000;
-// Candidates that look with caps gain from clusters that are found on a surface of up to this many. Their
-// preparation works on the surface itself too, so that this adds little to it.
-constexpr std::size_t kEnoughForCaps = 64000;
-// The most triangles of the surface on which clusters are found.
-std::size_t enough(std::size_t triangles, bool with_caps) {
-  if (!with_caps || triangles <= kEnough) return kEnough;
-  return std::min(kEnoughForCaps, triangles - 1);  // at least a level coarser
-}
+// Candidates that look with caps take fewer overlap tests if their clusters are found on a coarser surface of
+// more triangles than kManyTriangles. These candidates are cut from the surface itself, so the finer clusters
+// add little to the time of preparation.
+constexpr std::size_t kManyTrianglesForCaps = 64000;
 
-// The trial poses are not the motion to come, so small differences between candidates say nothing: the second
-// one has to be better by more than one in kClose.
+// The trial poses are not the motion to come, so small differences between candidates say nothing. The second
+// candidate is taken only if it makes less work than the first by more than one part in kClose.
 constexpr std::uint64_t kClose = 64;
+
+// Returns the largest number of triangles that the surface may have on which clusters are found. A surface of
+// more than kManyTriangles triangles is always made coarser by one level at least.
+std::size_t most_triangles_for_clusters(std::size_t triangles, bool with_caps) {
+  if (!with_caps || triangles <= kManyTriangles) return kManyTriangles;
+  return std::min(kManyTrianglesForCaps, triangles - 1);
+}
 
 // Returns the work of all trials, for a complete culler by signs or by caps. Stops early, and returns a sum
 // above `most`, once the work is more than `most`.
@@ -78,16 +79,17 @@ Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
   return candidate;
 }
 
-// The work of a candidate with the number of covers that makes the least.
-struct Tried {
+// The least work that a candidate makes, and the number of covers with which it makes it.
+struct TrialResult {
   std::uint64_t work = std::numeric_limits<std::uint64_t>::max();
   std::size_t covers = kCovers;
 };
 
-// Tries a candidate with three covers, two and one. Its work need not be known if it is more than `most()`.
+// Tries a candidate with three covers, two and one. A trial stops early once it has made more work than
+// `most()`, so a result above most() may be less than the candidate's work.
 template <class Most>
-Tried tried_with(FastCuller& culler, std::span<const Trial> trials, bool by_signs, const Most& most) {
-  Tried least;
+TrialResult tried_with(FastCuller& culler, std::span<const Trial> trials, bool by_signs, const Most& most) {
+  TrialResult least;
   for (std::size_t count = kCovers; count > 0; --count) {
     culler.use_covers(count);
     const std::uint64_t needed = work(culler, trials, by_signs, std::min(least.work, most()));
@@ -135,7 +137,8 @@ std::vector<BoneId> bones_of_triangles(const Surfaces& surfaces, StageClock& clo
   return bone_of;
 }
 
-// Calls work(0) and work(1), side by side on two threads or more. The caller learns of what they throw.
+// Calls work(0) and work(1), side by side if there are two threads or more. Throws what one of the two calls
+// has thrown.
 template <class Work>
 void for_both(int threads, const Work& work) {
   std::array<std::exception_ptr, 2> thrown;
@@ -178,8 +181,9 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
       candidates[i] = made(tried, clusters_of_surface(surfaces), options);
     }
   });
-  // What the second candidate takes need not be known if it is more than what the first one takes.
-  std::array<Tried, 2> results;
+  // The trial of the second candidate may stop once the second makes more work than the first, because the
+  // second is then not taken.
+  std::array<TrialResult, 2> results;
   std::atomic<std::uint64_t> of_first = results[0].work;
   for_both(tried.threads, [&](std::size_t i) {
     const auto most = [&] { return i == 0 ? std::numeric_limits<std::uint64_t>::max() : of_first.load(); };
@@ -201,7 +205,8 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
                                .complete = options.complete,
                                .starts_embedded = options.starts_embedded};
   const bool with_caps = options.complete && !options.starts_embedded;
-  const CoarseSurface coarse(setup.mesh, setup.reference, enough(setup.mesh.triangle_count(), with_caps));
+  const CoarseSurface coarse(setup.mesh, setup.reference,
+                             most_triangles_for_clusters(setup.mesh.triangle_count(), with_caps));
   const bool tried_on_coarse = coarse.is_coarser() && !with_caps;
   Decision decision = decided({setup, coarse, tried_on_coarse}, whole, clock);
   Candidate best = std::move(decision.taken);

@@ -10,9 +10,9 @@
 namespace cscd::fast {
 namespace {
 
-// A level is tried so many times, each time with more vertices that have to stay.
+// The next level is made at most this many times. Each attempt keeps more vertices than the one before.
 constexpr int kAttempts = 4;
-// A level that leaves a larger share of the triangles is not worth its work.
+// A level that has more than this share of the finer level's triangles is not worth its work.
 constexpr double kMostLeft = 0.7;
 constexpr std::int32_t kBand = 3;  // so many rings of triangles on both sides of a seam are labelled anew
 
@@ -49,7 +49,8 @@ std::vector<std::int32_t> nearest_kept(const TriangleMesh& mesh, std::span<const
   return nearest;
 }
 
-// Returns whether the triangles at the vertex form one fan. Its edges must have two triangles each.
+// Returns whether the triangles at the vertex form one fan. Every edge at the vertex must have two triangles,
+// or the walk round the vertex may never end.
 bool is_one_fan(const TriangleMesh& mesh, VertexId v) {
   const std::span<const TriangleId> around = mesh.triangles_at(v);
   const auto at_v = [&](EdgeId e) { return mesh.ends(e)[0] == v || mesh.ends(e)[1] == v; };
@@ -65,7 +66,7 @@ bool is_one_fan(const TriangleMesh& mesh, VertexId v) {
   return met == around.size();
 }
 
-// Returns for each vertex whether the surface is no closed manifold there, [vertices].
+// Returns for each vertex whether the surface fails to be a closed manifold at the vertex, [vertices].
 std::vector<bool> faulty_vertices(const TriangleMesh& mesh) {
   std::vector<bool> faulty(mesh.vertex_count());
   for (std::size_t e = 0; e < mesh.edge_count(); ++e) {

@@ -14,8 +14,8 @@ namespace cscd::fast {
 //
 // The surface is made coarser level by level. On each level some vertices are *kept*, no two of them
 // neighbours, and every other vertex belongs to the nearest kept vertex beside it. The next level has the
-// triangles whose corners belong to three different kept vertices. Where a connected component would be lost
-// by that, or a closed surface would no longer be one, as at a thin limb, all vertices are kept.
+// triangles whose corners belong to three different kept vertices. All vertices are kept where a level
+// would otherwise lose a connected component, or would no longer be closed, as at a thin limb.
 class CoarseSurface {
  public:
   // Stops once a level has no more than `enough` triangles, or where no level with clearly fewer triangles
@@ -45,8 +45,8 @@ class CoarseSurface {
   // The level on which these vertices are kept. Null if it would have no triangle.
   static std::unique_ptr<Level> level_with(const TriangleMesh& mesh, std::span<const Vec3> positions,
                                            const std::vector<bool>& has_to_stay);
-  // Adds the vertices of lost components, and those about faults of a level that should be closed. Returns
-  // whether there were any.
+  // Marks vertices that have to stay: the vertices of a component that the level has lost, and the vertices
+  // about a place where the level is not closed although the mesh is. Returns whether there were any.
   static bool keep_what_fails(const TriangleMesh& mesh, const Level& level, std::vector<bool>& has_to_stay);
 
   const TriangleMesh& mesh_;

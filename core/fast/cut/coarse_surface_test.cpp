@@ -99,7 +99,7 @@ TEST(CoarseSurface, LabelsStayInTheirComponents) {
     EXPECT_EQ(found[t], mesh.component(TriangleId{static_cast<std::int32_t>(t)}));
 }
 
-// All vertices of a wheel lie beside its hub, so that a coarser level would have no triangle.
+// All vertices of a wheel lie beside its hub, so a coarser level that keeps the hub alone has no triangle.
 TEST(CoarseSurface, LosesNoComponent) {
   constexpr int kSpokes = 3000;
   test::Shape wheel{{{0, 0, 1}, {0, 0, -1}}, {}};
@@ -115,8 +115,8 @@ TEST(CoarseSurface, LosesNoComponent) {
 }
 
 // A button on a character must not keep the whole character fine. Mutations: a level that loses a component
-// is not taken; of coinciding kept vertices one belongs to the other; a component is left with the same
-// triangle twice.
+// is not taken; of two kept vertices in one place, one belongs to the other; a component is left with the
+// same triangle twice; vertices where two fans meet are not faulty.
 TEST(CoarseSurface, SmallComponentsStayAsTheyAre) {
   const test::Shape ball = test::icosphere(4);
   for (const test::Shape& small : {test::box(), test::octahedron(), test::capped_tube(3, 4, 0.1, 1)})
@@ -131,8 +131,9 @@ TEST(CoarseSurface, SmallComponentsStayAsTheyAre) {
       }
 }
 
-// Nor must a thin limb. Mutations: nothing stays about edges of four triangles, or about vertices where two
-// fans meet.
+// A thin limb on a character must not keep the whole character fine either. Mutations: only components stay,
+// and nothing about faults of a level; only the faulty vertices themselves stay, without the vertices beside
+// them.
 TEST(CoarseSurface, ThinLimbsStayAsTheyAre) {
   for (int sides = 3; sides < 9; ++sides)
     for (unsigned seed = 0; seed < 10; ++seed) {
@@ -146,7 +147,8 @@ TEST(CoarseSurface, ThinLimbsStayAsTheyAre) {
     }
 }
 
-// Mutation: a level that is closed no more is taken.
+// Two guards keep a closed surface closed: vertices about faults stay, and a level that is still not closed
+// is not taken. Mutation: both guards are left out.
 TEST(CoarseSurface, AClosedSurfaceStaysClosed) {
   for (const int sides : {3, 4, 5, 8}) {
     const test::Shape wire = shuffled(test::capped_tube(sides, 2000, 0.1, 400));

@@ -51,8 +51,9 @@ Seams seams_of(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_o
   return seams;
 }
 
-// Measures how many rings of triangles from its seams a cluster's innermost triangle is, counted from 1, and
-// kThin + 1 at most.
+// Measures the depth of clusters: the number of rings of triangles between a cluster's seams and its
+// innermost triangle. The triangles at the seams are ring 1. A depth of more than kThin is
+// given as kThin + 1.
 class DepthMeter {
  public:
   DepthMeter(const TriangleMesh& mesh, const std::vector<std::int32_t>& cluster_of)
@@ -86,7 +87,8 @@ class DepthMeter {
   std::vector<TriangleId> reached_;
 };
 
-// The thinnest cluster whose seam with a neighbour can go, and of the thinnest the one with the longest seam.
+// Two clusters to merge. The thinner the one, the better the merge; of equally thin clusters, the pair with
+// the longer seam is merged first.
 struct Merge {
   std::int32_t depth = kThin;
   std::size_t length = 0;
@@ -105,7 +107,8 @@ Merge best_merge(const Seams& seams, const std::map<std::int32_t, std::int32_t>&
   return best;
 }
 
-// Takes the seam between the two out, and the other seams of `from` over to `into`.
+// Removes the seam between the two clusters, and gives the other seams of `from` to `into`. The number of
+// `into` must be the smaller one.
 void merge(Seams& seams, std::int32_t from, std::int32_t into) {
   seams.erase({into, from});
   Seams merged;
