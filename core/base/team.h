@@ -35,7 +35,8 @@ class Team {
   }
 
   // Divides [0, count) into ranges_of(count, least) ranges and calls work(first, last, part) once for each.
-  // Every range has at least `least` members, unless there is only one range.
+  // Every range has at least `least` members, unless there is only one range. Choose `least` so that it is
+  // some microseconds of work.
   template <class Work>
   void ranges(std::size_t count, std::size_t least, const Work& work) const {
     const std::size_t parts = ranges_of(count, least);
@@ -47,11 +48,17 @@ class Team {
   static std::size_t range_begin(std::size_t count, std::size_t parts, std::size_t part) {
     return count * part / parts;
   }
-  // Returns the number of ranges that ranges() makes: one for a team of one thread, else up to four a thread.
+  // Returns the number of ranges that ranges() makes: one for a team of one thread, or where there is so
+  // little work that it would be done before another thread has woken up, else up to four a thread.
   std::size_t ranges_of(std::size_t count, std::size_t least) const {
-    const std::size_t most = threads_ == 1 ? 1 : 4 * threads_;  // ranges may take unequally long
-    return std::clamp<std::size_t>(count / least, 1, most);
+    if (threads_ == 1 || count < kWorthWaking * least) return 1;
+    return std::min(count / least, 4 * threads_);  // ranges may take unequally long
   }
+#ifdef __SANITIZE_THREAD__
+  static constexpr std::size_t kWorthWaking = 2;  // ThreadSanitizer is to see small meshes shared out too
+#else
+  static constexpr std::size_t kWorthWaking = 8;  // ranges
+#endif
 
  private:
   void share_out(std::size_t parts, const void* context,

@@ -25,7 +25,7 @@ TEST(Team, DoesEveryPartOnce) {
 
 TEST(Team, RangesMakeUpTheWhole) {
   for (const int threads : {1, 2, 7})
-    for (const std::size_t count : {0U, 1U, 511U, 512U, 1000U, 100'003U}) {
+    for (const std::size_t count : {0U, 1U, 2047U, 2048U, 5000U, 100'003U}) {
       const Team team(threads);
       std::vector<std::atomic<int>> seen(count);
       std::vector<std::atomic<int>> parts(team.ranges_of(count, 256));
@@ -36,7 +36,7 @@ TEST(Team, RangesMakeUpTheWhole) {
       });
       for (const std::atomic<int>& times : seen) ASSERT_EQ(times, 1);
       for (const std::atomic<int>& times : parts) EXPECT_EQ(times, 1);
-      EXPECT_EQ(parts.size() == 1, threads == 1 || count < 512);
+      EXPECT_EQ(parts.size() == 1, threads == 1 || count < Team::kWorthWaking * 256);
     }
 }
 

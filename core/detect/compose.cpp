@@ -20,8 +20,8 @@ namespace {
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
-// So many triangle pairs to filter, and feature pairs to test, are worth another thread.
-constexpr std::size_t kFilteredTogether = 256, kAskedTogether = 64;
+// So many triangle pairs are filtered, and feature pairs tested, together: some microseconds of work.
+constexpr std::size_t kFilteredTogether = 64, kAskedTogether = 16;
 
 // Feature pairs of one kind, and their queries, that are tested together.
 template <class Query>

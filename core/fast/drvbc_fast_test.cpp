@@ -12,11 +12,12 @@ namespace {
 
 // A long tube, and the same tube bent, with so much noise that neighbours may run into each other.
 struct Scene {
-  test::Shape shape = test::uneven_tube(12, 400, 90, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); });
+  test::Shape shape;
   TriangleMesh mesh = shape.mesh();
   std::vector<Vec3> end;
 
-  explicit Scene(double noise) {
+  explicit Scene(double noise, int around = 12, int along = 400)
+      : shape(test::uneven_tube(around, along, 90, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); })) {
     std::mt19937 random(1);
     const auto dice = [&] { return noise * (static_cast<double>(random() >> 8) * 0x1p-23 - 1); };
     for (const Vec3& p : shape.positions)
@@ -32,8 +33,18 @@ struct Scene {
 // of nodes that can be opened is passed on twice; the last range of nodes is left out; the largest coordinate
 // is that of one range alone.
 TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
-  for (const auto& [noise, complete] : {std::pair(0.0, false), {0.1, false}, {0.3, false}, {0.1, true}}) {
-    const Scene scene(noise);
+  struct Case {
+    double noise;
+    bool complete, large;
+  };
+  // Pairs of the small surface are shared out; the large one is also looked at by several threads.
+  for (const auto& [noise, complete, large] : std::initializer_list<Case>{{0.0, false, false},
+                                                                          {0.1, false, false},
+                                                                          {0.3, false, false},
+                                                                          {0.1, true, false},
+                                                                          {0.04, false, true},
+                                                                          {0.04, true, true}}) {
+    const Scene scene = large ? Scene(noise, 32, 2100) : Scene(noise);
     ContactSet alone[2], found;
     Report reports[2];  // asked for the first time, and again, when clusters have been cut anew
     for (const int threads : {1, 2, 3, 7}) {
@@ -58,8 +69,8 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
         }
       }
     }
-    EXPECT_GT(reports[0].cull.bvot, 500u);
-    EXPECT_EQ(alone[0].contacts.size() > 1000, noise > 0.2);
+    EXPECT_GT(reports[0].cull.bvot, large ? 20'000u : 500u);
+    EXPECT_EQ(alone[0].contacts.size() > 1000, noise > 0.2 || large);
     EXPECT_EQ(alone[0].contacts.empty(), noise == 0);
   }
 }

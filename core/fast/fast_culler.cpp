@@ -6,9 +6,10 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kRange = 32;     // the number of patches that is worth another thread
-constexpr std::size_t kAhead = 2;      // positions are fetched so many patches before the look
-constexpr std::size_t kSampled = 256;  // about so many patches are asked how far they move
+constexpr std::size_t kRange = 512;        // patches that are looked at together, 20 microseconds of work
+constexpr std::size_t kCappedRange = 128;  // the same where caps are looked at too
+constexpr std::size_t kAhead = 2;          // positions are fetched so many patches before the look
+constexpr std::size_t kSampled = 256;      // about so many patches are asked how far they move
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
@@ -53,11 +54,13 @@ bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
 void FastCuller::look_at(const Motion& motion) {
   if (following_) following_->mend(certificates_);
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
-  certificates_.keep_all(options_.complete && !by_signs_);
+  const bool by_caps = options_.complete && !by_signs_;
+  certificates_.keep_all(by_caps);
   certificates_.start(positions_, team_);
-  team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
-    for (std::size_t p = first; p < last; ++p) look(p);
-  });
+  team_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
+               [&](std::size_t first, std::size_t last, std::size_t) {
+                 for (std::size_t p = first; p < last; ++p) look(p);
+               });
   cut_.tree.for_each_inner_upwards(team_, [&](std::size_t n, const PatchTree::Node& node) {
     bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
   });

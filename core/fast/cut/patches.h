@@ -114,7 +114,7 @@ struct PatchTree {
         if (static_cast<std::size_t>(inner_end[i]) > last) visit(i);
     }
   }
-  static constexpr std::size_t kInnerTogether = 256;  // so many inner nodes are worth another thread
+  static constexpr std::size_t kInnerTogether = 512;  // inner nodes, some microseconds of work
 
   // [patches][covers]: the triangles that lie inside the patch's cluster, so that all triangles round their
   // corners belong to it.

@@ -139,11 +139,11 @@ TEST(Patches, TheTreeHoldsThePatchesInOrder) {
 
 // Mutations: a range does not wait for the nodes of later ones; a node that waits is never visited.
 TEST(Patches, InnerNodesAreVisitedAfterTheirChildrenOnAnyNumberOfThreads) {
-  const test::Shape tube = test::uneven_tube(24, 600, 15, [](double) { return 0.8; });
+  const test::Shape tube = test::uneven_tube(48, 1200, 15, [](double) { return 0.8; });
   const TriangleMesh mesh = tube.mesh();
   const CutSurface cut =
       cut_surface(mesh, tube.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
-  ASSERT_GT(cut.tree.inner.size(), 4 * PatchTree::kInnerTogether);
+  ASSERT_GT(cut.tree.inner.size(), Team::kWorthWaking * PatchTree::kInnerTogether);
   for (const int threads : {1, 2, 3, 8}) {
     const Team team(threads);
     std::vector<std::size_t> below(cut.tree.nodes.size(), 0);  // patches

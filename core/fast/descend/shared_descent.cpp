@@ -14,6 +14,9 @@ constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
 // A descent that made so many tests for each patch has met nearly all patches, and the next descent will too.
 constexpr std::size_t kTestsWhereAllAreMet = 32;
 
+// So many tests take some hundred microseconds. The next descent will make about as many as the last.
+constexpr std::uint64_t kTestsWorthWaking = 20'000;
+
 }  // namespace
 
 SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
@@ -23,15 +26,17 @@ SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
 
 std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
                                  std::uint64_t most) {
-  team_.each(by_thread_.size(),
-             [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
+  const Team alone;
+  const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
+  team.each(by_thread_.size(),
+            [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
   if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) bring_near();
   subtrees_.assign(1, {0, 0});
   if (kept_.empty()) {
     by_thread_[0].descend(subtrees_[0], sink);
   } else {
     split_into_subtrees();
-    team_.each(kept_.size(), [&](std::size_t range, std::size_t thread) {
+    team.each(kept_.size(), [&](std::size_t range, std::size_t thread) {
       const std::size_t first = subtrees_.size() * range / kept_.size();
       const std::size_t last = subtrees_.size() * (range + 1) / kept_.size();
       for (std::size_t i = first; i < last; ++i) by_thread_[thread].descend(subtrees_[i], kept_[range]);

@@ -9,7 +9,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kRange = 8;      // the number of clusters that is worth another thread
+constexpr std::size_t kRange = 8;      // clusters that are begun together, some microseconds of work
 constexpr int kFewUncertain = 4;       // the largest number of triangles of a patch that get a cone each
 constexpr std::size_t kFewCones = 16;  // up to so many cones, a cone about a whole patch spares no work
 

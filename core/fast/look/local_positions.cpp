@@ -16,7 +16,7 @@ namespace cscd::fast {
 namespace {
 
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
-constexpr std::size_t kRange = 1024;  // the number of vertices that is worth another thread
+constexpr std::size_t kRange = 8192;  // vertices that are converted together, 10 microseconds of work
 
 }  // namespace
 
