@@ -15,7 +15,11 @@ constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
 constexpr std::size_t kTestsWhereAllAreMet = 32;
 
 // So many tests take some hundred microseconds. The next descent will make about as many as the last.
+#ifdef __SANITIZE_THREAD__
+constexpr std::uint64_t kTestsWorthWaking = 0;  // ThreadSanitizer is to see every descent shared out
+#else
 constexpr std::uint64_t kTestsWorthWaking = 20'000;
+#endif
 
 }  // namespace
 
