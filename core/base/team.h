@@ -35,8 +35,8 @@ class Team {
   }
 
   // Divides [0, count) into ranges_of(count, least) ranges and calls work(first, last, part) once for each.
-  // Every range has at least `least` members, unless there is only one range. Choose `least` so that it is
-  // some microseconds of work.
+  // Every range has at least `least` members, unless there is only one range. Choose `least` so that a
+  // range takes some microseconds or more.
   template <class Work>
   void ranges(std::size_t count, std::size_t least, const Work& work) const {
     const std::size_t parts = ranges_of(count, least);
@@ -48,8 +48,9 @@ class Team {
   static std::size_t range_begin(std::size_t count, std::size_t parts, std::size_t part) {
     return count * part / parts;
   }
-  // Returns the number of ranges that ranges() makes: one for a team of one thread, or where there is so
-  // little work that it would be done before another thread has woken up, else up to four a thread.
+  // Returns the number of ranges that ranges() makes. A team of one thread has one range. So has a team that
+  // would be done before another of its threads has woken up, because there are fewer than kWorthWaking times
+  // `least` members. Others have up to four ranges a thread.
   std::size_t ranges_of(std::size_t count, std::size_t least) const {
     if (threads_ == 1 || count < kWorthWaking * least) return 1;
     return std::min(count / least, 4 * threads_);  // ranges may take unequally long

@@ -20,7 +20,8 @@ namespace {
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
-// So many triangle pairs are filtered, and feature pairs tested, together: some microseconds of work.
+// So many triangle pairs are filtered together, and so many feature pairs are tested together. Either takes
+// some microseconds.
 constexpr std::size_t kFilteredTogether = 64, kAskedTogether = 16;
 
 // Feature pairs of one kind, and their queries, that are tested together.

@@ -37,7 +37,8 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
     double noise;
     bool complete, large;
   };
-  // Pairs of the small surface are shared out; the large one is also looked at by several threads.
+  // Every stage of the large surface is shared out. The small surface keeps several threads busy only where
+  // noise makes it touch itself.
   for (const auto& [noise, complete, large] : std::initializer_list<Case>{{0.0, false, false},
                                                                           {0.1, false, false},
                                                                           {0.3, false, false},

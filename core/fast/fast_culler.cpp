@@ -7,7 +7,7 @@ namespace cscd::fast {
 namespace {
 
 constexpr std::size_t kRange = 512;        // patches that are looked at together, 20 microseconds of work
-constexpr std::size_t kCappedRange = 128;  // the same where caps are looked at too
+constexpr std::size_t kCappedRange = 128;  // patches where caps are looked at too
 constexpr std::size_t kAhead = 2;          // positions are fetched so many patches before the look
 constexpr std::size_t kSampled = 256;      // about so many patches are asked how far they move
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up

@@ -14,7 +14,8 @@ constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
 // A descent that made so many tests for each patch has met nearly all patches, and the next descent will too.
 constexpr std::size_t kTestsWhereAllAreMet = 32;
 
-// So many tests take some hundred microseconds. The next descent will make about as many as the last.
+// So many tests take some hundred microseconds, so that waking other threads pays. The next descent makes
+// about as many tests as the last one.
 #ifdef __SANITIZE_THREAD__
 constexpr std::uint64_t kTestsWorthWaking = 0;  // ThreadSanitizer is to see every descent shared out
 #else
