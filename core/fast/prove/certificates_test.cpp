@@ -3,128 +3,15 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "core/fast/cut/cut_surface.h"
-#include "core/fast/cut/test_body.h"
-#include "core/radial/orientation.h"
+#include "core/fast/prove/test_certificates.h"
 
 namespace cscd::fast {
 namespace {
 
 using radial::Orientation;
 
-// One interval of a body, and its certificates computed straight from their definition, in double precision
-// and triangle by triangle. These are the twins of the certificates that Certificates computes from patches.
-struct Scene : test::Body {
-  Covers covers;
-  PatchTree tree;
-  LocalPositions local;
-  Certificates certificates;
-  // [triangles][covers]. `own` is the sign of the triangle towards the observer of its cluster. `all_round`
-  // is the sign that all triangles that share a vertex with it have towards that observer; uncertain if these
-  // do not all belong to one cluster or do not all have one sign.
-  std::vector<std::array<Orientation, kCovers>> own, all_round;
-
-  enum class Bones { chain, sixths };  // sixths: seams of the first two covers meet
-
-  explicit Scene(double noise, double bend, int seed, bool inside_out = false, Bones bones = Bones::chain)
-      : test::Body(noise, bend, {3, -2, 1}, 1, seed),
-        local(start),
-        certificates(prepared(inside_out, bones)) {
-    local.update(motion());
-    certify();
-    find_all_round();
-  }
-  void certify() {
-    certificates.start(local);
-    for (std::size_t p = 0; p < tree.patches.size(); ++p)
-      certificates.look(p, load(local.records(), tree.patches[p].vertex));
-    certificates.finish();
-  }
-  std::int32_t cluster(std::size_t c, std::size_t triangle) const { return covers[c].cluster_of[triangle]; }
-  // Returns the certificate that is expected: in the first cover from the triangle alone, in the others from
-  // all triangles round it.
-  Orientation certain(std::size_t c, TriangleId t) const { return (c == 0 ? own : all_round)[+t][c]; }
-  // Returns whether one cover certifies both triangles with one sign, in one cluster.
-  bool one_field(TriangleId t, TriangleId u) const {
-    for (std::size_t c = 0; c < kCovers; ++c)
-      if (cluster(c, +t) == cluster(c, +u) && certain(c, t) != Orientation::uncertain &&
-          certain(c, t) == certain(c, u))
-        return true;
-    return false;
-  }
-  // Returns whether all these triangles have one sign towards one observer of one cover. The theorem asks
-  // that of the triangles at a feature pair that is dropped.
-  bool one_field(std::span<const TriangleId> at, std::span<const TriangleId> also_at) const {
-    for (std::size_t c = 0; c < kCovers; ++c) {
-      const auto as_first = [&](TriangleId t) {
-        return cluster(c, +t) == cluster(c, +at[0]) && own[+t][c] == own[+at[0]][c];
-      };
-      if (own[+at[0]][c] != Orientation::uncertain && std::all_of(at.begin(), at.end(), as_first) &&
-          std::all_of(also_at.begin(), also_at.end(), as_first))
-        return true;
-    }
-    return false;
-  }
-
- private:
-  Certificates prepared(bool inside_out, Bones bones) {
-    if (bones == Bones::sixths) {
-      std::vector<BoneId> bone_of;
-      for (const Triangle& t : mesh.triangles()) {
-        const Vec3& p = shape.positions[+t[0]];
-        bone_of.push_back(BoneId{2 * (p.x() < 5 ? 0 : p.x() < 10 ? 1 : 2) + (p.y() < 0 ? 0 : 1)});
-      }
-      atomic = radial::make_atomic_clusters(mesh, bone_of);
-    }
-    CutSurface cut = cut_surface(mesh, shape.positions, atomic.of_triangle);
-    covers = std::move(cut.covers);
-    tree = std::move(cut.tree);
-    // A mirrored surface is inside out: what an observer saw from behind, it sees from in front.
-    if (inside_out)
-      for (std::vector<Vec3>* positions : {&start, &end})
-        for (Vec3& p : *positions) p.x() = -p.x();
-    return Certificates(tree, covers);
-  }
-  // Returns a vertex in local coordinates, but in double precision.
-  MovingPoint at(VertexId v) const {
-    const double unit = scale();
-    return {(start[+v] - start[0]) * unit, (end[+v] - start[0]) * unit};
-  }
-  double scale() const {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& p : start) box.extend(p);
-    return std::ldexp(1.0, -std::ilogb(box.sizes().maxCoeff()));
-  }
-  radial::Observer observer(const FollowingPoint& from) const {
-    float sum[8] = {};
-    for (std::size_t i = 0; i < from.vertices().size(); ++i)
-      for (std::size_t k = 0; k < 8; ++k)
-        sum[k] += from.weights()[i] * local.records()[+from.vertices()[i]].at[k];
-    return radial::Observer::point({Vec3(sum[0], sum[1], sum[2]), Vec3(sum[4], sum[5], sum[6])});
-  }
-  void find_all_round() {
-    own.resize(mesh.triangle_count());
-    for (std::size_t t = 0; t < own.size(); ++t)
-      for (std::size_t c = 0; c < kCovers; ++c) {
-        own[t][c] = Orientation::uncertain;
-        if (cluster(c, t) == kNone) continue;
-        const Triangle& corner = mesh.triangles()[t];
-        own[t][c] =
-            radial::orientation({at(corner[0]), at(corner[1]), at(corner[2])},
-                                observer(covers[c].observers[static_cast<std::size_t>(cluster(c, t))]));
-      }
-    all_round = own;
-    for (std::size_t t = 0; t < own.size(); ++t)
-      for (std::size_t c = 0; c < kCovers; ++c)
-        for (const VertexId v : mesh.triangles()[t])
-          for (const TriangleId near : mesh.triangles_at(v))
-            if (own[+near][c] != own[t][c] || cluster(c, +near) != cluster(c, t))
-              all_round[t][c] = Orientation::uncertain;
-  }
-};
-
 template <class Visit>
-void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
+void for_each_pair_of_lanes(const CertifiedBody& scene, const Visit& visit) {
   const std::vector<Patch>& patches = scene.tree.patches;
   for (std::size_t p = 0; p < patches.size(); ++p)
     for (std::size_t q = 0; q < patches.size(); ++q)
@@ -137,12 +24,12 @@ void for_each_pair_of_lanes(const Scene& scene, const Visit& visit) {
 
 struct Case {
   bool inside_out;
-  Scene::Bones bones;
+  CertifiedBody::Bones bones;
 };
-constexpr Case kCases[] = {{false, Scene::Bones::chain},
-                           {true, Scene::Bones::chain},
-                           {false, Scene::Bones::sixths},
-                           {true, Scene::Bones::sixths}};
+constexpr Case kCases[] = {{false, CertifiedBody::Bones::chain},
+                           {true, CertifiedBody::Bones::chain},
+                           {false, CertifiedBody::Bones::sixths},
+                           {true, CertifiedBody::Bones::sixths}};
 
 // Mutations: look_round takes the certificate from the triangle that is not positive instead of from all
 // round it; needed() compares signs of different clusters, or drops pairs whose triangles are certified by
@@ -150,8 +37,8 @@ constexpr Case kCases[] = {{false, Scene::Bones::chain},
 TEST(Certificates, APairIsDroppedOnlyByOneField) {
   for (const auto& [inside_out, bones] : kCases)
     for (int seed = 1; seed <= 2; ++seed) {
-      const Scene scene(0.04 * seed, 3, seed, inside_out, bones);
-      EXPECT_EQ(scene.covers[2].observers.empty(), bones == Scene::Bones::chain);
+      const CertifiedBody scene(0.04 * seed, 3, seed, inside_out, bones);
+      EXPECT_EQ(scene.covers[2].observers.empty(), bones == CertifiedBody::Bones::chain);
       std::size_t dropped = 0, needed_though_each_is_certified = 0, certain = 0;
       for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
         certain += scene.one_field(t, u);
@@ -177,7 +64,7 @@ TEST(Certificates, APairIsDroppedOnlyByOneField) {
 // second cover also certifies triangles by themselves, as positive or as negative.
 TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
   for (const auto& [inside_out, bones] : kCases) {
-    const Scene scene(0.08, 3, 2, inside_out, bones);
+    const CertifiedBody scene(0.08, 3, 2, inside_out, bones);
     const TriangleMesh& mesh = scene.mesh;
     std::vector<std::vector<bool>> needed(mesh.triangle_count(), std::vector<bool>(mesh.triangle_count()));
     for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool is) { needed[+t][+u] = is; });
@@ -211,7 +98,7 @@ TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
 
 // Mutation: label_nodes takes the left child's label.
 TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
-  const Scene scene(0.04, 3, 1);
+  const CertifiedBody scene(0.04, 3, 1);
   std::vector<std::vector<std::size_t>> below(scene.tree.nodes.size());
   for (std::size_t n = below.size(); n-- > 0;) {
     const PatchTree::Node& node = scene.tree.nodes[n];
@@ -238,7 +125,7 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
 
 // Mutations: certificates of covers that are no longer used stay; looks_per_interval counts all covers.
 TEST(Certificates, CoversThatAreNotUsedDropNothing) {
-  Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
+  CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
   const std::size_t looks = scene.certificates.looks_per_interval();
   EXPECT_EQ(
       scene.certificates.counts().clusters,
@@ -256,122 +143,9 @@ TEST(Certificates, CoversThatAreNotUsedDropNothing) {
   EXPECT_GT(dropped, 10'000u);
 }
 
-// Takes intervals one after the other with certificates that have seen all intervals before, and with fresh
-// certificates for each interval. Both must give the same results.
-class FreshBesideUsed {
- public:
-  explicit FreshBesideUsed(Scene& scene) : scene_(scene) {}
-
-  // `mirrored`, [patches], marks patches that are seen from the other side.
-  void take(const Motion& motion, const std::vector<bool>& mirrored, std::size_t covers) {
-    scene_.local.update(motion);
-    look(scene_.certificates, mirrored);
-    Certificates fresh(scene_.tree, scene_.covers);
-    fresh.use_covers(covers);
-    look(fresh, mirrored);
-    for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p)
-      for (std::size_t q = 0; q < scene_.tree.patches.size(); ++q) {
-        const Certificates::Shared found = scene_.certificates.shared(p, q), expected = fresh.shared(p, q);
-        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
-      }
-    for (std::size_t a = 0; a < scene_.tree.nodes.size(); ++a)
-      for (std::size_t b = a; b < scene_.tree.nodes.size(); ++b)
-        ASSERT_EQ(scene_.certificates.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
-    const RadialCounts &found = scene_.certificates.counts(), &expected = fresh.counts();
-    ASSERT_EQ(found.positive, expected.positive);
-    ASSERT_EQ(found.negative, expected.negative);
-    ASSERT_EQ(found.uncertain, expected.uncertain);
-    positive.push_back(found.positive);
-  }
-  std::vector<std::uint64_t> positive;
-
- private:
-  void look(Certificates& certificates, const std::vector<bool>& mirrored) {
-    const std::span<const LocalPositions::Record> records = scene_.local.records();
-    float sum = 0;
-    for (const LocalPositions::Record& r : records) sum += r.at[1];
-    const float twice_middle = 2 * sum / static_cast<float>(records.size());
-    certificates.start(scene_.local);
-    for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p) {
-      PatchLanes lanes = load(records, scene_.tree.patches[p].vertex);
-      if (!mirrored.empty() && mirrored[p])
-        for (Float16(&end)[3] : lanes.at) end[1] = twice_middle - end[1];
-      certificates.look(p, lanes);
-    }
-    certificates.finish();
-  }
-  Scene& scene_;
-};
-
-// Nothing stays of the intervals before (rule fresh-detector), whether all was positive in them, or negative,
-// or next to nothing. Mutations: what was seen otherwise by itself, what was spoiled, or what it was labelled
-// stays where a patch is usual again; what is above a label stays; nothing is forgotten where the motion
-// leaves the range or other covers are used.
-TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
-  Scene scene(0.04, 3, 1);
-  const Scene other(0.06, 2, 7);
-  const auto scaled = [](std::vector<Vec3> points, double by) {
-    for (Vec3& p : points) p *= by;
-    return points;
-  };
-  const std::vector<Vec3>&rest = scene.shape.positions, opposite = scaled(rest, -1), far = scaled(rest, 1e10);
-  const Motion intervals[] = {scene.motion(), Motion(rest, rest), other.motion(), Motion(rest, opposite),
-                              Motion(far, far)};
-  FreshBesideUsed both(scene);
-  for (const std::size_t covers : {kCovers, std::size_t{1}, kCovers}) {
-    scene.certificates.use_covers(covers);
-    for (const std::size_t i : {0, 1, 2, 1, 3, 1, 4, 0, 4, 2, 0, 3, 2})
-      ASSERT_NO_FATAL_FAILURE(both.take(intervals[i], {}, covers)) << "interval " << i;
-  }
-  std::mt19937 random(1);
-  std::vector<bool> mirrored(scene.tree.patches.size());
-  for (int i = 0; i < 12; ++i) {
-    for (std::size_t p = 0; p < mirrored.size(); ++p) mirrored[p] = i % 2 == 0 || random() % 4 == 0;
-    ASSERT_NO_FATAL_FAILURE(both.take(intervals[1], mirrored, kCovers)) << "mirrored " << i;
-  }
-  EXPECT_EQ(*std::min_element(both.positive.begin(), both.positive.end()), 0u);
-  EXPECT_EQ(*std::max_element(both.positive.begin(), both.positive.end()), scene.mesh.triangle_count());
-}
-
-// Signs certify less near seams than capped clusters do, and other triangles. Mutation: what one of the two
-// certified stays when the other takes its place.
-TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
-  Scene scene(0, 0, 1);
-  const auto with_caps = [&] {
-    std::vector<CappedClusters> capped;
-    for (std::size_t c = 0; c < scene.covers.size(); ++c)
-      capped.emplace_back(scene.mesh, scene.shape.positions, scene.covers[c], c);
-    return Certificates(scene.tree, scene.covers, std::move(capped));
-  };
-  const auto look = [&](Certificates& certificates, bool all) {
-    certificates.keep_all(all);
-    certificates.start(scene.local);
-    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
-      certificates.look(p, load(scene.local.records(), scene.tree.patches[p].vertex));
-    certificates.finish();
-  };
-  Certificates used = with_caps();
-  std::size_t different = 0;
-  for (const bool all : {true, false, false, true, false}) {
-    look(used, all);
-    Certificates fresh = with_caps(), other = with_caps();
-    look(fresh, all), look(other, !all);
-    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
-      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
-        const Certificates::Shared found = used.shared(p, q), expected = fresh.shared(p, q);
-        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
-        different += found.p != other.shared(p, q).p;
-      }
-    for (std::size_t a = 0; a < scene.tree.nodes.size(); ++a)
-      for (std::size_t b = a; b < scene.tree.nodes.size(); ++b)
-        ASSERT_EQ(used.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
-  }
-  EXPECT_GT(different, 100u);
-}
-
 // The triangles of each cover that are certainly positive and clear, as the contour tests of its clusters say
 // if they are asked directly: [covers][patches].
-std::vector<std::vector<Mask16>> clear_triangles(const Scene& scene) {
+std::vector<std::vector<Mask16>> clear_triangles(const CertifiedBody& scene) {
   std::vector<std::vector<Mask16>> clear;
   for (std::size_t c = 0; c < scene.covers.size(); ++c) {
     const Cover& cover = scene.covers[c];
@@ -408,16 +182,11 @@ std::vector<std::vector<Mask16>> clear_triangles(const Scene& scene) {
 // Mutations: patches that the ray of one cover may cross are not counted; a patch counts as clear in all
 // covers if it is in one; clear triangles of the second patch are entered elsewhere.
 TEST(Certificates, CapsDropAPairOfAClusterWhereOneTriangleIsClear) {
-  for (const auto& [bend, bones] : {std::pair(0.5, Scene::Bones::chain), {3.0, Scene::Bones::sixths}}) {
-    Scene scene(0.02, bend, 1, false, bones);
-    std::vector<CappedClusters> capped;
-    for (std::size_t c = 0; c < scene.covers.size(); ++c)
-      capped.emplace_back(scene.mesh, scene.shape.positions, scene.covers[c], c);
-    Certificates certificates(scene.tree, scene.covers, std::move(capped));
-    certificates.start(scene.local);
-    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
-      certificates.look(p, load(scene.local.records(), scene.tree.patches[p].vertex));
-    certificates.finish();
+  for (const auto& [bend, bones] :
+       {std::pair(0.5, CertifiedBody::Bones::chain), {3.0, CertifiedBody::Bones::sixths}}) {
+    CertifiedBody scene(0.02, bend, 1, false, bones);
+    Certificates certificates = scene.with_caps();
+    look_at_all(certificates, scene.tree, scene.local);
     const std::vector<std::vector<Mask16>> clear = clear_triangles(scene);
     std::size_t dropped_by_one_cover = 0, wrong = 0;
     for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
@@ -445,7 +214,7 @@ TEST(Certificates, CapsDropAPairOfAClusterWhereOneTriangleIsClear) {
 // A picture shows what the certificates say: signs of the first cover, clusters of all covers, patches, and
 // observers where they stand in the scene.
 TEST(Certificates, AreShownAsTheyAre) {
-  Scene scene(0.04, 3, 1, false, Scene::Bones::sixths);
+  CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
   for (const std::size_t covers : {kCovers, std::size_t{1}}) {
     scene.certificates.use_covers(covers);
     scene.certify();
@@ -481,12 +250,7 @@ TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
   Certificates certificates(cut.tree, cut.covers);
   LocalPositions local(sphere.positions);
   local.update(Motion(sphere.positions, sphere.positions));
-  const auto certify = [&] {
-    certificates.start(local);
-    for (std::size_t p = 0; p < cut.tree.patches.size(); ++p)
-      certificates.look(p, load(local.records(), cut.tree.patches[p].vertex));
-    certificates.finish();
-  };
+  const auto certify = [&] { look_at_all(certificates, cut.tree, local); };
   const std::size_t first = static_cast<std::size_t>(cut.tree.leaf.front()),
                     last = static_cast<std::size_t>(cut.tree.leaf.back());
   certify();
@@ -502,7 +266,7 @@ TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
 }
 
 TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
-  Scene scene(0.01, 1, 1);
+  CertifiedBody scene(0.01, 1, 1);
   for (Vec3& p : scene.start) p *= 1e10;  // changes no sign, but leaves the range
   for (Vec3& p : scene.end) p *= 1e10;
   scene.local.update(scene.motion());
