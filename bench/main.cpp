@@ -1,9 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <unistd.h>
 
 #include "bench/command_line/help_format.h"
 #include "bench/command_line/standard_streams.h"
@@ -23,6 +27,26 @@ int complain(const std::string& text) {
   std::fprintf(stderr, "cscd: %s\n", text.c_str());
   return kBadUsage;
 }
+
+#ifdef CSCD_ALL_ISAS
+// This program is compiled for plain x86-64, and programs beside it for wider instruction sets. Runs the widest
+// that the machine has in the place of this process, and returns if that is this program.
+void run_for_this_machine(char** argv) {
+  using enum cscd::InstructionSet;
+  const cscd::InstructionSet chosen = cscd::chosen_among(std::array{avx512, avx2, baseline});
+  if (chosen == cscd::engine_set()) return;
+  const std::string program =
+      std::filesystem::read_symlink("/proc/self/exe").string() + "-" + std::string(to_string(chosen));
+  execv(program.c_str(), argv);
+  throw cscd::InputError(program + ": " + std::strerror(errno) +
+                         "; install the whole program, or choose what is here with CSCD_ISA=baseline");
+}
+#else
+// The engine is compiled for one instruction set: refuses to be asked for another, or to run without it.
+void run_for_this_machine(char** /*argv*/) {
+  cscd::chosen_among(std::array{cscd::engine_set()});
+}
+#endif
 
 int run(int argc, char** argv) {
   CLI::App app(
@@ -67,8 +91,7 @@ int run(int argc, char** argv) {
   cscd::bench::add_help(app);
 
   try {
-    // The program has kernels for one instruction set, and refuses to be asked for another.
-    cscd::chosen_among(std::array{cscd::kCompiledFor});
+    run_for_this_machine(argv);
     cscd::bench::require_text(argc, argv);
     app.parse(argc, argv);
     return 0;

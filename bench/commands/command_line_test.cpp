@@ -57,7 +57,7 @@ TEST_F(CommandLine, RefusesWordsThatAreNoText) {
 // As `cmake --install` leaves it: the scenes lie beside the program, where a user cannot write.
 TEST_F(CommandLine, FindsItsScenesWhereItIsInstalled) {
   const Ran ran = run(R"sh(mkdir -p prefix/bin prefix/share/cscd home
-cp "$(command -v cscd)" prefix/bin
+cp "$(command -v cscd)"{,-*} prefix/bin
 mv scenes prefix/share/cscd
 here=$PWD
 cd /

@@ -9,6 +9,8 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "core/base/instruction_set.h"
+
 #include "build_info.h"
 #include "commit.h"
 
@@ -76,19 +78,22 @@ std::string kernel() {
   return std::string(name.sysname) + " " + name.release + " " + name.machine;
 }
 
-// The instruction set that the kernels were compiled for. The whole program is compiled with the same flags.
-constexpr const char* kInstructionSet =
-#if defined(__AVX512F__)
-    "AVX-512";
-#elif defined(__AVX2__) && defined(__FMA__)
-    "AVX2 and FMA";
-#elif defined(__AVX2__)
-    "AVX2";
-#elif defined(__SSE2__)
-    "SSE2";
+// The instruction set that the engine and the baselines are compiled for.
+std::string instruction_set_name() {
+  switch (engine_set()) {
+    case InstructionSet::avx512:
+      return "AVX-512";
+    case InstructionSet::avx2:
+      return "AVX2 and FMA";
+    case InstructionSet::baseline:
+      break;
+  }
+#if defined(__x86_64__)
+  return "SSE2";
 #else
-    "other";
+  return "other";
 #endif
+}
 
 }  // namespace
 
@@ -97,7 +102,7 @@ ordered_json build_environment() {
           {"dirty", build_info::kDirty},
           {"compiler", build_info::kCompiler},
           {"flags", build_info::kFlags},
-          {"instruction_set", kInstructionSet},
+          {"instruction_set", instruction_set_name()},
           {"build_type", build_info::kBuildType},
           {"libraries",
            {{"eigen", build_info::kEigen},

@@ -19,6 +19,10 @@ std::string names_of(std::span<const InstructionSet> sets) {
 
 }  // namespace
 
+InstructionSet engine_set() {
+  return kCompiledFor;
+}
+
 std::string_view to_string(InstructionSet set) {
   switch (set) {
     case InstructionSet::avx512:
@@ -55,7 +59,7 @@ InstructionSet chosen_among(std::span<const InstructionSet> built) {
     if (best == std::end(kAll))
       throw InputError(
           "this build has kernels for " + names_of(built) +
-          " alone, which this machine lacks; configure with -DCSCD_ALL_ISAS=ON, or build on this machine");
+          " alone, which this machine lacks; build without CSCD_NATIVE, or on this machine");
     return *best;
   }
   const std::string what = "CSCD_ISA=" + std::string(asked);
@@ -65,7 +69,7 @@ InstructionSet chosen_among(std::span<const InstructionSet> built) {
                      ", or leave it unset");
   if (std::ranges::find(built, *named) == built.end())
     throw InputError(what + ": this build has kernels for " + names_of(built) +
-                     " alone; give one of them, or configure with -DCSCD_ALL_ISAS=ON");
+                     " alone; give one of them, or build without CSCD_NATIVE");
   if (!machine_has(*named))
     throw InputError(what + ": this machine lacks it; leave it unset for the best that the machine has");
   return *named;

@@ -3,8 +3,8 @@
 #include <span>
 #include <string_view>
 
-// The instruction sets for which the kernels of core/geometry are written. One build compiles the engine for
-// one of them, or for all of them (scripts/cmake/instruction_sets.cmake) and chooses when the program runs.
+// The instruction sets for which the kernels of core/geometry are written. A build compiles the engine for all
+// of them (scripts/cmake/instruction_sets.cmake) and chooses when the program runs, or for one of them.
 namespace cscd {
 
 // In the order in which they are preferred. `baseline` is what every processor of the architecture has.
@@ -19,6 +19,10 @@ inline constexpr InstructionSet kCompiledFor =
 #else
     InstructionSet::baseline;
 #endif
+
+// Returns the instruction set for which the engine of this program is compiled. In a build for all sets, files
+// outside of the engine are compiled for plain x86-64 (kCompiledFor), whatever the engine is compiled for.
+InstructionSet engine_set();
 
 // Returns the name of the enumerator.
 std::string_view to_string(InstructionSet set);

@@ -18,6 +18,10 @@ function(cscd_build_info room)
   if(CSCD_NATIVE)
     string(APPEND flags " -march=native")
   endif()
+  set(instruction_sets "one")
+  if(CSCD_ALL_ISAS)
+    set(instruction_sets "avx512, avx2 and baseline")
+  endif()
   configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/build_info.h.in ${generated}/build_info.h @ONLY)
 
   add_custom_target(cscd_commit
