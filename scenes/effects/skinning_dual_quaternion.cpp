@@ -3,35 +3,14 @@
 
 #include "scenes/effects/effect.h"
 #include "scenes/effects/rotation.h"
+#include "scenes/shape/dual_quaternion.h"
 
 namespace cscd::scenes {
 namespace {
 
-// Dual quaternion skinning (Kavan, Collins, Zara, O'Sullivan, "Geometric skinning with approximate dual
-// quaternion blending", ACM TOG 27(4), 2008), without scale.
-//
-// Each vertex is carried by a rigid motion between the rigid motions of its bones. So a twisted limb keeps
-// its thickness, while linear blending lets it collapse. Every quaternion stands for the same motion as its
-// negative. The quaternion of a bone is taken with the sign that brings it nearer to the bone of the
-// largest weight, so that blended quaternions never cancel out.
 struct Quaternion {
   double w;
   Vec3 v;
-};
-
-Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-  return {a.w * b.w - a.v.dot(b.v), a.w * b.v + b.w * a.v + a.v.cross(b.v)};
-}
-double dot(const Quaternion& a, const Quaternion& b) {
-  return a.w * b.w + a.v.dot(b.v);
-}
-void add(Quaternion& sum, double weight, const Quaternion& q) {
-  sum.w += weight * q.w;
-  sum.v += weight * q.v;
-}
-
-struct DualQuaternion {
-  Quaternion real, dual;
 };
 
 // The quaternion of a rotation matrix, computed from its largest component (Shepperd, "Quaternion from
@@ -62,31 +41,24 @@ class SkinningDualQuaternion final : public Effect {
     motion_.resize(reference.size());
     for (std::size_t bone = 0; bone < reference.size(); ++bone) {
       const Vec3 moved = state.bones[bone].head - rotated(state.rotations[bone], reference[bone].head);
-      const Quaternion real = quaternion(state.rotations[bone]);
-      motion_[bone] = {real, Quaternion{0, moved / 2} * real};
+      const Quaternion turn = quaternion(state.rotations[bone]);
+      motion_[bone] = rigid_motion(turn.w, turn.v, moved);
     }
     for (std::size_t vertex = 0; vertex < state.positions.size(); ++vertex) {
       const JointWeights& weights = state.shape.weights[vertex];
       if (!weights.has_bones()) continue;  // cloth that moves by itself
-      state.positions[vertex] = carried(weights, state.shape.positions[vertex]);
+      state.positions[vertex] = carried(blended(weights), state.shape.positions[vertex]);
     }
   }
 
  private:
-  Vec3 carried(const JointWeights& weights, const Vec3& at) const {
+  DualQuaternion blended(const JointWeights& weights) const {
     const auto heaviest = std::ranges::max_element(weights.weight) - weights.weight.begin();
-    const Quaternion& pivot = motion_[+weights.bone[heaviest]].real;
-    DualQuaternion sum{{0, Vec3::Zero()}, {0, Vec3::Zero()}};
-    for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k) {
-      const DualQuaternion& motion = motion_[+weights.bone[k]];
-      const double weight = dot(pivot, motion.real) < 0 ? -weights.weight[k] : weights.weight[k];
-      add(sum.real, weight, motion.real);
-      add(sum.dual, weight, motion.dual);
-    }
-    const double length = std::sqrt(dot(sum.real, sum.real));
-    const double w = sum.real.w / length, dual_w = sum.dual.w / length;
-    const Vec3 v = sum.real.v / length, dual_v = sum.dual.v / length;
-    return at + 2 * v.cross(v.cross(at) + w * at) + 2 * (w * dual_v - dual_w * v + v.cross(dual_v));
+    const DualQuaternion& pivot = motion_[+weights.bone[heaviest]];
+    DualQuaternion sum;
+    for (std::size_t k = 0; k < JointWeights::most && weights.bone[k] != BoneId{-1}; ++k)
+      add_motion(sum, weights.weight[k], motion_[+weights.bone[k]], pivot);
+    return sum;
   }
 
   std::vector<DualQuaternion> motion_;  // [bones]: motion from the reference pose
