@@ -69,6 +69,11 @@ void check_part(const Character& character, const Part& part) {
       if (!usable(target.displacements[v]))
         refuse(target_where + ", vertex " + std::to_string(v) + ": is not finite, or beyond 1e15; repair it");
   }
+  const auto is_share = [](double share) { return share >= 0 && share <= 1; };
+  if (!part.dual_quaternion.empty() &&
+      (part.dual_quaternion.size() != vertices ||
+       !std::all_of(part.dual_quaternion.begin(), part.dual_quaternion.end(), is_share)))
+    refuse(where + ": its shares of dual quaternions are not one in [0, 1] a vertex; repair it");
   if (part.first.size() != vertices + 1 || part.first.front() != 0 ||
       part.first.back() != part.influences.size() || !std::is_sorted(part.first.begin(), part.first.end()))
     refuse(where + ": its influences are not one list a vertex; repair it");

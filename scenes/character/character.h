@@ -67,6 +67,9 @@ struct Part {
   std::vector<std::size_t> first;     // [vertices + 1]; vertex v has influences[first[v] .. first[v + 1])
   std::vector<Influence> influences;  // weights are positive; those of one vertex sum to 1
   std::vector<MorphTarget> targets{};
+  // [vertices], or empty where all are 0: the share by which a vertex follows its joints by dual quaternions
+  // (see skin in pose.h); it follows them linearly by the rest.
+  std::vector<double> dual_quaternion{};
   // The numbers, as the file counts them, of the mesh and of the primitive in the mesh that the part was
   // made from. Two parts may be instances of one mesh. Vertex v of the part is vertex v of that primitive.
   int mesh = -1, primitive = -1;

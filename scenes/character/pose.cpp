@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 
+#include "scenes/character/dual_skin.h"
+
 namespace cscd::scenes {
 namespace {
 
@@ -199,6 +201,8 @@ void skin(const Character& character, const Pose& pose, const MorphWeights& weig
     const Part& part = character.parts[p];
     moved.clear();
     for (const Joint& joint : part.joints) moved.push_back(composed(pose[at(joint.node)], joint.offset));
+    std::optional<DualSkin> dual;
+    if (!part.dual_quaternion.empty()) dual.emplace(character, part, moved);
     for (std::size_t v = 0; v < part.positions.size(); ++v) {
       Vec3 x = part.positions[v];
       for (std::size_t t = 0; t < part.targets.size(); ++t)
@@ -207,12 +211,18 @@ void skin(const Character& character, const Pose& pose, const MorphWeights& weig
         out.push_back(pose[at(part.node)](x));
         continue;
       }
+      const double dual_share = dual ? part.dual_quaternion[v] : 0;
+      if (dual_share == 1) {
+        out.push_back(dual->moved(v, x));
+        continue;
+      }
       Vec3 sum = Vec3::Zero();
       for (std::size_t i = part.first[v]; i < part.first[v + 1]; ++i) {
         const Influence& influence = part.influences[i];
         const Vec3 where = moved[at(influence.joint)](x);
         sum += influence.weight * where;
       }
+      if (dual_share > 0) sum = (1 - dual_share) * sum + dual_share * dual->moved(v, x);
       out.push_back(sum);
     }
   }

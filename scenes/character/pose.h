@@ -38,8 +38,9 @@ Pose blend(const Character& character, const Pose& a, const Pose& b, double s);
 
 // Writes the positions of all vertices to `out`, the parts one after the other. Displacements of morph
 // targets are added by their weights first. Then the joints move each vertex by linear blend skinning: the
-// vertex goes to the weighted mean of the places to which its joints would take it. The overload without
-// weights uses the weights at rest.
+// vertex goes to the weighted mean of the places to which its joints would take it. A vertex with a share of
+// dual quaternions goes by this share towards the place that DualSkin gives it instead. The overload without
+// weights uses the weights at rest. Throws InputError where DualSkin does.
 void skin(const Character& character, const Pose& pose, const MorphWeights& weights, std::vector<Vec3>& out);
 void skin(const Character& character, const Pose& pose, std::vector<Vec3>& out);
 

@@ -122,6 +122,8 @@ void add_influences(const Part& part, Buffer& buffer, Json& attributes) {
 Json mesh_of(const Part& part, Buffer& buffer) {
   if (part.triangles.empty()) refuse("mesh '" + part.name + "': has no triangles");
   if (!part.targets.empty()) refuse("mesh '" + part.name + "': has morph targets, which are not written");
+  if (!part.dual_quaternion.empty())
+    refuse("mesh '" + part.name + "': follows its joints by dual quaternions, which glTF does not have");
   std::vector<float> positions;
   for (const Vec3& x : part.positions) append(positions, x);
   std::vector<std::uint32_t> corners;

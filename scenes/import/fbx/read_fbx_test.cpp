@@ -64,23 +64,51 @@ TEST(FbxSkin, InTheModeTotalOneTheMeshsNodeTakesWhatMissesOfOne) {
             std::string::npos);
 }
 
-TEST(FbxSkin, SeveralSkinsAndDualQuaternionsAreRefused) {
+TEST(FbxSkin, RefusesSeveralSkinsAndVerticesThatAreNone) {
   Skinned twice;
   twice.file.skin(45, 10);
   twice.file.cluster(46, 45, 30, {0}, {1}, matrix({}), matrix({}));
   EXPECT_NE(refusal_of(twice.file.text()).find("several skins"), std::string::npos);
-  Skinned dual;
-  dual.file.objects.insert(dual.file.objects.find("\"Skin\" {") + 8, "\nSkinningType: \"DualQuaternion\"\n");
-  EXPECT_NE(refusal_of(dual.file.text()).find("dual quaternions"), std::string::npos);
-  for (const double share : {0.0, 0.5}) {
-    Skinned blend;
-    blend.file.objects.insert(blend.file.objects.find("\"Skin\" {") + 8,
-                              "\nSkinningType: \"Blend\"\n" + array("BlendWeights", {0, share}));
-    EXPECT_EQ(refusal_of(blend.file.text()).empty(), share == 0);
-  }
   Skinned outside;
   outside.file.cluster(47, 40, 30, {7}, {1}, matrix({}), matrix({}));
   EXPECT_NE(refusal_of(outside.file.text()).find("weighs vertex 7 of 3"), std::string::npos);
+}
+
+// The skin of a mesh at the origin whose vertex 1 follows two bones that are turned by 0 and 90 degrees about
+// z. `body` is put into the skin.
+FbxText twisted(const std::string& body) {
+  FbxText file;
+  file.model(20, "mesh", 0, "", "Mesh");
+  file.model(30, "still", 0, "");
+  file.model(31, "turned", 0, property("Lcl Rotation", {0, 0, 90}));
+  file.triangle(10, 20);
+  file.skin(40, 10);
+  file.objects.insert(file.objects.find("\"Skin\" {") + 8, "\n" + body);
+  file.cluster(41, 40, 30, {0, 1, 2}, {0.5, 0.5, 0.5}, matrix({}), matrix({}));
+  file.cluster(42, 40, 31, {0, 1, 2}, {0.5, 0.5, 0.5}, matrix({}), matrix({}));
+  return file;
+}
+
+TEST(FbxSkin, DualQuaternionsMoveAllOrSomeVertices) {
+  const double half = std::sqrt(0.5);
+  // Vertex 1 is (0, 1, 0): linear skinning takes the mean of (0, 1, 0) and (-1, 0, 0).
+  const Vec3 linear(-0.5, 0.5, 0), dual(-half, half, 0);
+  const auto second = [](const std::string& body) { return vertices_at(read(twisted(body)), 0)[1]; };
+  const auto blend = [](const std::vector<double>& vertices, const std::vector<double>& shares) {
+    return "SkinningType: \"Blend\"\n" + array("Indexes", vertices) + array("BlendWeights", shares);
+  };
+  expect_at(second(""), linear);
+  expect_at(second("SkinningType: \"Linear\"\n"), linear);
+  expect_at(second("SkinningType: \"DualQuaternion\"\n"), dual);
+  expect_at(second(blend({0, 1}, {0, 0.25})), 0.75 * linear + 0.25 * dual);
+  expect_at(second(blend({1}, {7})), dual);
+  expect_at(second(blend({1}, {-7})), linear);
+  expect_at(second(blend({0, 2}, {1, 1})), linear);
+  EXPECT_NE(refusal_of(twisted(blend({1, 2}, {0.5})).text()).find("2 vertices and 1 blend weights"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(twisted(blend({3}, {0.5})).text()).find("blends vertex 3 of 3"), std::string::npos);
+  EXPECT_NE(refusal_of(twisted(blend({1}, {std::nan("")})).text()).find("vertex 1: its blend weight"),
+            std::string::npos);
 }
 
 TEST(FbxMesh, InstancesStandWhereTheirNodesDo) {

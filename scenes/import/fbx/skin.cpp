@@ -1,5 +1,6 @@
 #include "scenes/import/fbx/skin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -36,7 +37,7 @@ class SkinReader {
 
   void read(const Object* skin) {
     if (skin != nullptr) {
-      require_linear(*skin);
+      read_shares(*skin);
       for (const Object* deformer : objects_.sources(*skin, "Deformer"))
         if (deformer->subtype == "Cluster") read_cluster(*deformer);
     }
@@ -51,17 +52,32 @@ class SkinReader {
 
   std::string where() const { return "mesh '" + part_.name + "'"; }
 
-  void require_linear(const Object& skin) const {
+  // Reads by which share each vertex follows its bones by dual quaternions. In the kind "Blend", a vertex
+  // that is not listed is skinned linearly. In the other kinds, the list has no meaning.
+  void read_shares(const Object& skin) {
     const Element* type = skin.element->child("SkinningType");
     const std::string_view kind = type == nullptr ? std::string_view() : type->text(0);
-    bool quaternions = kind == "DualQuaternion";
-    // 3ds Max blends linear and dual quaternion skinning vertex by vertex. A vertex that is not listed is
-    // skinned linearly.
-    const Element* shares = skin.element->child("BlendWeights");
-    if (kind == "Blend" && shares != nullptr)
-      for (const double share : reals(*shares, limits_.vertices, where())) quaternions |= share != 0;
-    if (quaternions)
-      throw InputError(where() + ": is skinned by dual quaternions; choose linear skinning on export");
+    const std::size_t count = part_.positions.size();
+    if (kind == "DualQuaternion") part_.dual_quaternion.assign(count, 1);
+    const Element *indexes = skin.element->child("Indexes"), *shares = skin.element->child("BlendWeights");
+    if (kind != "Blend" || shares == nullptr) return;
+    const std::vector<double> share = reals(*shares, limits_.vertices, where());
+    const std::vector<std::int64_t> vertex =
+        indexes == nullptr ? std::vector<std::int64_t>() : integers(*indexes, limits_.vertices, where());
+    if (std::all_of(share.begin(), share.end(), [](double s) { return s == 0; })) return;
+    if (vertex.size() != share.size())
+      throw InputError(where() + ": its skin has " + std::to_string(vertex.size()) + " vertices and " +
+                       std::to_string(share.size()) + " blend weights; repair it");
+    part_.dual_quaternion.assign(count, 0);
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      if (vertex[i] < 0 || vertex[i] >= static_cast<std::int64_t>(count))
+        throw InputError(where() + ": its skin blends vertex " + std::to_string(vertex[i]) + " of " +
+                         std::to_string(count) + "; repair it");
+      if (!std::isfinite(share[i]))
+        throw InputError(where() + ", vertex " + std::to_string(vertex[i]) +
+                         ": its blend weight is not finite; repair it");
+      part_.dual_quaternion[static_cast<std::size_t>(vertex[i])] = std::clamp(share[i], 0.0, 1.0);
+    }
   }
 
   void read_cluster(const Object& cluster) {

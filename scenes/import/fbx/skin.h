@@ -25,12 +25,13 @@ const Object* skin_of(const Objects& objects, const Object& geometry);
 
 // Fills a part's joints and influences. The part's vertices are those of the geometry, and `part.node` is the
 // node that they follow without a skin. If `skin` is null, no joint moves the vertices. Throws InputError for
-// damage, for counts above the limits, and for kinds of skinning other than the recipe below.
+// damage, for counts above the limits, and for additive clusters.
 //
 // The FBX SDK moves a vertex v, whose mesh has the map `geometry` to its node, to
 //   sum over clusters of weight * link * TransformLink^-1 * Transform * geometry * v,
 // where `link` is the current map of the cluster's bone. A file's Transform already holds the product
-// TransformLink^-1 * Transform.
+// TransformLink^-1 * Transform. Skins of the kinds "DualQuaternion" and "Blend" blend the same maps otherwise
+// (Part::dual_quaternion).
 void read_skin(const Objects& objects, const Object* skin, const SkinPlace& place,
                const CharacterLimits& limits, Part& part, SkinLeftOut& left_out);
 
