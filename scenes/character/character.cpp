@@ -41,6 +41,15 @@ void require_node(const Character& character, int node, const std::string& where
            "; repair the file");
 }
 
+void check_response(const MorphTarget& target, const std::string& where) {
+  const auto& knots = target.response;
+  bool fits = knots.size() != 1;
+  for (std::size_t k = 0; k < knots.size(); ++k)
+    fits = fits && usable(knots[k].driven) && usable(knots[k].weight) &&
+           (k == 0 || knots[k - 1].driven < knots[k].driven);
+  if (!fits) refuse(where + ": its weights do not ascend, or are not finite; repair it");
+}
+
 void check_part(const Character& character, const Part& part) {
   const std::string where = "mesh '" + part.name + "'";
   const std::size_t vertices = part.positions.size();
@@ -65,6 +74,7 @@ void check_part(const Character& character, const Part& part) {
       refuse(target_where + ": has " + std::to_string(target.displacements.size()) + " displacements for " +
              std::to_string(vertices) + " vertices; repair it");
     if (!std::isfinite(target.weight)) refuse(target_where + ": its weight is not finite; repair it");
+    check_response(target, target_where);
     for (std::size_t v = 0; v < vertices; ++v)
       if (!usable(target.displacements[v]))
         refuse(target_where + ", vertex " + std::to_string(v) + ": is not finite, or beyond 1e15; repair it");
@@ -103,15 +113,43 @@ void check_keys(const std::vector<Key<Value>>& keys, const std::string& where) {
   }
 }
 
-void check_components(const Components& components, const std::string& where) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    check_keys(components.axis[k], where);
-    if (!std::isfinite(components.rest[k])) refuse(where + ": is not finite at rest; repair the animation");
+void check_curve(const Curve& curve, const std::string& where) {
+  check_keys(curve.keys, where);
+  const Extrapolation& beyond = curve.beyond;
+  if (!(beyond.repeats_before >= 0 && beyond.repeats_after >= 0 && std::isfinite(beyond.first) &&
+        std::isfinite(beyond.last) && std::isfinite(beyond.tick)))
+    refuse(where + ": how it repeats its keys is not finite; repair the animation");
+}
+
+template <std::size_t Width>
+void check_components(const Components<Width>& components, const std::string& where) {
+  for (const Curve& curve : components.axis) check_curve(curve, where);
+  for (const double rest : components.rest)
+    if (!std::isfinite(rest)) refuse(where + ": is not finite at rest; repair the animation");
+}
+
+template <std::size_t Width>
+void check_layers(const Layered<Width>& layered, std::size_t weights, const std::string& where) {
+  check_components(layered.base, where);
+  for (const Layer<Width>& layer : layered.above) {
+    check_components(layer.values, where);
+    if (layer.weight < -1 || layer.weight >= static_cast<int>(weights))
+      refuse(where + ": a layer has no weight; repair the animation");
   }
 }
 
-std::size_t keys_of(const Components& components) {
-  return components.axis[0].size() + components.axis[1].size() + components.axis[2].size();
+template <std::size_t Width>
+std::size_t keys_of(const Components<Width>& components) {
+  std::size_t keys = 0;
+  for (const Curve& curve : components.axis) keys += curve.keys.size();
+  return keys;
+}
+
+template <std::size_t Width>
+std::size_t keys_of(const Layered<Width>& layered) {
+  std::size_t keys = keys_of(layered.base);
+  for (const Layer<Width>& layer : layered.above) keys += keys_of(layer.values);
+  return keys;
 }
 
 std::size_t keys_of(const Animation& animation) {
@@ -121,14 +159,26 @@ std::size_t keys_of(const Animation& animation) {
             keys_of(channel.move_components) + keys_of(channel.scale_components) +
             keys_of(channel.angles.degrees);
   for (const MorphChannel& morph : animation.morphs)
-    for (const Curve& curve : morph.weights) keys += curve.size();
+    for (const Layered<1>& driven : morph.weights) keys += keys_of(driven);
+  for (const Curve& weight : animation.layer_weights) keys += weight.keys.size();
   return keys;
+}
+
+void check_order_of_layers(const Layered<3>& degrees, const std::string& where) {
+  bool as_maps = false;
+  for (const Layer<3>& layer : degrees.above) {
+    if (as_maps && !layer.as_maps)
+      refuse(where + ": a layer adds angles to a layer of rotations; repair the animation");
+    as_maps |= layer.as_maps;
+  }
 }
 
 void check_animation(const Character& character, const Animation& animation) {
   const std::string where = "clip '" + animation.name + "'";
   if (!std::isfinite(animation.start + animation.seconds) || animation.seconds < 0)
     refuse(where + ": its length is not a number of seconds; repair it");
+  const std::size_t layers = animation.layer_weights.size();
+  for (const Curve& weight : animation.layer_weights) check_curve(weight, where + ", weight of a layer");
   for (const Channel& channel : animation.channels) {
     require_node(character, channel.node, where);
     const std::string node =
@@ -136,9 +186,10 @@ void check_animation(const Character& character, const Animation& animation) {
     check_keys(channel.moves, node);
     check_keys(channel.rotations, node);
     check_keys(channel.scales, node);
-    check_components(channel.move_components, node);
-    check_components(channel.scale_components, node);
-    check_components(channel.angles.degrees, node);
+    check_layers(channel.move_components, layers, node);
+    check_layers(channel.scale_components, layers, node);
+    check_layers(channel.angles.degrees, layers, node);
+    check_order_of_layers(channel.angles.degrees, node);
     std::array<int, 3> axes = channel.angles.order;
     std::sort(axes.begin(), axes.end());
     if (axes != std::array{0, 1, 2}) refuse(node + ": its order of rotation is unknown; repair it");
@@ -148,8 +199,8 @@ void check_animation(const Character& character, const Animation& animation) {
     if (morph.part < 0 || part >= character.parts.size() ||
         morph.weights.size() != character.parts[part].targets.size())
       refuse(where + ": its weights fit no mesh's morph targets; repair it");
-    for (const Curve& curve : morph.weights)
-      check_keys(curve, where + ", weights of mesh '" + character.parts[part].name + "'");
+    for (const Layered<1>& driven : morph.weights)
+      check_layers(driven, layers, where + ", weights of mesh '" + character.parts[part].name + "'");
   }
 }
 

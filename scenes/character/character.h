@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/character/transform.h"
@@ -55,6 +58,12 @@ struct MorphTarget {
   std::string name;
   std::vector<Vec3> displacements;  // [vertices]
   double weight = 0;                // at rest
+  // The weight as a function of the value that animations drive: straight lines from knot to knot, of which
+  // the first and the last go on. Without knots, the driven value is the weight itself.
+  struct Knot {
+    double driven, weight;
+  };
+  std::vector<Knot> response{};  // at least two knots where there are any; `driven` ascends
 };
 
 // One surface of triangles, in coordinates of its own.
@@ -101,21 +110,82 @@ struct Key {
   Value arriving = kFlat<Value>, leaving = kFlat<Value>;
 };
 
-// One number over time, as its keys.
-using Curve = std::vector<Key<double>>;
-
-// A vector or a set of angles whose three components each have keys at times of their own (as in FBX). A
-// component without keys stays at `rest`.
-struct Components {
-  std::array<Curve, 3> axis;
-  std::array<double, 3> rest{};
-  bool empty() const { return axis[0].empty() && axis[1].empty() && axis[2].empty(); }
+// How a curve goes on before its first key or after its last key.
+enum class Beyond {
+  hold,      // at the value of that key
+  straight,  // along the slope that it has there
+  repeat,    // through all its keys again
+  rise,   // through all its keys again, where each repetition starts at the value that the last one reached
+  mirror  // through all its keys again, backwards the first time, forwards the second time, and so on
 };
 
+// What a curve does before its first key and after its last key.
+struct Extrapolation {
+  Beyond before = Beyond::hold, after = Beyond::hold;
+  // How often the keys are repeated. The value that the last repetition reaches holds from there on.
+  double repeats_before = std::numeric_limits<double>::infinity(), repeats_after = repeats_before;
+  double first = 0, last = 0;  // seconds: the span that is repeated
+  // The file's unit of time in seconds. Two moments that are less than half of it apart count as the same, so
+  // that the rounding of a time does not move it from the start of a repetition to the end of the one before.
+  double tick = 0;
+};
+
+// One number over time.
+struct Curve {
+  std::vector<Key<double>> keys;
+  Extrapolation beyond{};
+  bool empty() const { return keys.empty(); }
+};
+
+// Numbers that each have keys at times of their own (as in FBX): the three parts of a vector, or one number
+// by itself. A number without keys stays at `rest`.
+template <std::size_t Width>
+struct Components {
+  std::array<Curve, Width> axis;
+  std::array<double, Width> rest{};
+  bool empty() const {
+    return std::all_of(axis.begin(), axis.end(), [](const Curve& curve) { return curve.empty(); });
+  }
+};
+
+// How a layer of an animation acts on the value that the layers below it have made, at the share w in [0, 1]
+// of the layer's weight.
+enum class LayerBlend {
+  add,  // below + w * value
+  mix   // (1 - w) * below + w * value
+};
+
+// One layer above others.
+template <std::size_t Width>
+struct Layer {
+  Components<Width> values;
+  LayerBlend blend = LayerBlend::add;
+  // Rotations and scalings are combined as maps instead of number by number. A rotation is turned by the
+  // share w of the layer's rotation (add) or towards it (mix), along the shorter way. A scaling is multiplied
+  // by the layer's scaling to the power of w (add); both are multiplied to the powers of 1 - w and w (mix).
+  bool as_maps = false;
+  int weight = -1;  // index into Animation::layer_weights; -1 where w is 1 at all times
+};
+
+// Numbers that the layers of an animation make together, the lowest layer first. The lowest layer is taken as
+// it is.
+template <std::size_t Width>
+struct Layered {
+  Components<Width> base;
+  std::vector<Layer<Width>> above{};
+  bool empty() const { return base.empty() && above.empty(); }
+};
+
+// Returns one number that keys drive, without layers.
+inline Layered<1> driven(std::vector<Key<double>> keys) {
+  return {{{Curve{std::move(keys)}}}};
+}
+
 // A rotation as three angles in degrees about x, y and z. `order` lists the axes in the order in which the
-// rotations about them are applied.
+// rotations about them are applied. A layer that adds or mixes angles number by number must not lie above a
+// layer that combines rotations as maps, because no three angles are distinguished there.
 struct EulerAngles {
-  Components degrees;
+  Layered<3> degrees{};
   std::array<int, 3> order{0, 1, 2};
 };
 
@@ -126,14 +196,15 @@ struct Channel {
   std::vector<Key<Vec3>> moves;
   std::vector<Key<Quaternion>> rotations;
   std::vector<Key<Vec3>> scales;
-  Components move_components{}, scale_components{};
+  Layered<3> move_components{}, scale_components{};
   EulerAngles angles{};
 };
 
 // The keys that blend one part towards its morph targets.
 struct MorphChannel {
   int part;
-  std::vector<Curve> weights;  // [targets]
+  std::vector<Layered<1>>
+      weights;  // [targets]: the driven value of each target; empty where it stays at rest
 };
 
 // One clip: what moves during it, and when.
@@ -143,6 +214,7 @@ struct Animation {
   double ticks_per_second = 0;    // 0 where the file does not say; 1 in formats that count in seconds
   std::vector<Channel> channels;
   std::vector<MorphChannel> morphs{};
+  std::vector<Curve> layer_weights{};  // shares; below 0 counts as 0, and above 1 as 1
 };
 
 // Everything that is read from one model file.

@@ -1,76 +1,17 @@
 #include "scenes/character/pose.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 
 #include "scenes/character/dual_skin.h"
+#include "scenes/character/sample.h"
 
 namespace cscd::scenes {
 namespace {
 
 std::size_t at(int index) {
   return static_cast<std::size_t>(index);
-}
-
-double between(double a, double b, double s) {
-  return (1 - s) * a + s * b;
-}
-Vec3 between(const Vec3& a, const Vec3& b, double s) {
-  return (1 - s) * a + s * b;
-}
-Quaternion between(const Quaternion& a, const Quaternion& b, double s) {
-  return slerp(a, b, s);
-}
-
-// The value at share s of the cubic from p with slope m to q with slope n. Both slopes are per whole way
-// from p to q (glTF 2.0, appendix C).
-double hermite(double p, double m, double q, double n, double s) {
-  const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * m + (3 * s2 - 2 * s3) * q + (s3 - s2) * n;
-}
-double cubic(const Key<double>& a, const Key<double>& b, double s) {
-  const double length = b.time - a.time;
-  return hermite(a.value, length * a.leaving, b.value, length * b.arriving, s);
-}
-Vec3 cubic(const Key<Vec3>& a, const Key<Vec3>& b, double s) {
-  const double length = b.time - a.time;
-  Vec3 out;
-  for (int k = 0; k < 3; ++k)
-    out[k] = hermite(a.value[k], length * a.leaving[k], b.value[k], length * b.arriving[k], s);
-  return out;
-}
-Quaternion cubic(const Key<Quaternion>& a, const Key<Quaternion>& b, double s) {
-  const double length = b.time - a.time;
-  const auto along = [&](double Quaternion::*x) {
-    return hermite(a.value.*x, length * a.leaving.*x, b.value.*x, length * b.arriving.*x, s);
-  };
-  return normalised(
-      {along(&Quaternion::w), along(&Quaternion::x), along(&Quaternion::y), along(&Quaternion::z)});
-}
-
-template <class Value>
-Value sample(const std::vector<Key<Value>>& keys, double seconds) {
-  const auto next = std::upper_bound(keys.begin(), keys.end(), seconds,
-                                     [](double time, const Key<Value>& key) { return time < key.time; });
-  if (next == keys.begin()) return keys.front().value;
-  const Key<Value>& before = *(next - 1);
-  if (next == keys.end() || before.next == Between::constant) return before.value;
-  const double s = (seconds - before.time) / (next->time - before.time);
-  return before.next == Between::cubic ? cubic(before, *next, s) : between(before.value, next->value, s);
-}
-
-Vec3 sample(const Components& components, double seconds) {
-  Vec3 out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out[static_cast<int>(k)] =
-        components.axis[k].empty() ? components.rest[k] : sample(components.axis[k], seconds);
-  return out;
-}
-
-Quaternion sample(const EulerAngles& angles, double seconds) {
-  return from_euler(sample(angles.degrees, seconds), angles.order);
 }
 
 // The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's map.
@@ -125,17 +66,18 @@ Pose bind_pose(const Character& character) {
 Pose pose_at(const Character& character, const Animation& animation, double seconds) {
   std::vector<Transform> local;
   for (const Node& node : character.nodes) local.push_back(node.local);
+  const std::vector<double> shares = layer_shares(animation, seconds);
   std::map<int, Vec3> scales;  // scales of the nodes that the clip drives
   for (const Channel& channel : animation.channels) {
     const ScaleTurnMove rest = parts_at_rest(character.nodes[at(channel.node)]);
     Vec3 move = rest.move, scale = rest.scale;
     Quaternion rotation = rest.rotation;
     if (!channel.moves.empty()) move = sample(channel.moves, seconds);
-    if (!channel.move_components.empty()) move = sample(channel.move_components, seconds);
+    if (!channel.move_components.empty()) move = sample(channel.move_components, shares, seconds);
     if (!channel.rotations.empty()) rotation = sample(channel.rotations, seconds);
-    if (!channel.angles.degrees.empty()) rotation = sample(channel.angles, seconds);
+    if (!channel.angles.degrees.empty()) rotation = sample(channel.angles, shares, seconds);
     if (!channel.scales.empty()) scale = sample(channel.scales, seconds);
-    if (!channel.scale_components.empty()) scale = sample(channel.scale_components, seconds);
+    if (!channel.scale_components.empty()) scale = sample(channel.scale_components, shares, seconds);
     local[at(channel.node)] = from_parts(move, rotation, scale);
     scales[channel.node] = scale;
   }
@@ -163,9 +105,12 @@ MorphWeights rest_weights(const Character& character) {
 
 MorphWeights weights_at(const Character& character, const Animation& animation, double seconds) {
   MorphWeights weights = rest_weights(character);
+  const std::vector<double> shares = layer_shares(animation, seconds);
   for (const MorphChannel& morph : animation.morphs)
     for (std::size_t t = 0; t < morph.weights.size(); ++t)
-      if (!morph.weights[t].empty()) weights[at(morph.part)][t] = sample(morph.weights[t], seconds);
+      if (!morph.weights[t].empty())
+        weights[at(morph.part)][t] =
+            weight_of(character.parts[at(morph.part)].targets[t], sample(morph.weights[t], shares, seconds));
   return weights;
 }
 

@@ -22,8 +22,9 @@ Pose rest_pose(const Character& character);
 Pose bind_pose(const Character& character);
 
 // Returns the pose at a time of an animation, in seconds. Values go from key to key as each key says
-// (Between); the first key's value holds before it, and the last key's value after it. Nodes that the
-// animation does not drive stay at rest.
+// (Between), and beyond the keys as each curve says (Extrapolation); without a word of the curve, the first
+// key's value holds before it, and the last key's value after it. Nodes that the animation does not drive
+// stay at rest.
 Pose pose_at(const Character& character, const Animation& animation, double seconds);
 
 // The weights of the morph targets at rest, at a time of an animation in seconds, and at the share s in

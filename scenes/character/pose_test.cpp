@@ -94,8 +94,9 @@ TEST(Pose, CubicRotationsAreNormalised) {
 TEST(Pose, ComponentsHaveKeysOfTheirOwnAndElseRest) {
   Character tube = bending_tube();
   Channel channel{4, {}, {}, {}};
-  channel.move_components = {{Curve{{0, 1.0}, {4, 5.0}}, {}, Curve{{1, 0.0}, {2, 8.0}}}, {9, 7, 9}};
-  channel.angles = {{{Curve{}, Curve{}, Curve{{0, 0.0}, {1, 90.0}}}, {90, 0, 0}}, {0, 1, 2}};
+  channel.move_components = {
+      {{Curve{{{0, 1.0}, {4, 5.0}}}, Curve{}, Curve{{{1, 0.0}, {2, 8.0}}}}, {9, 7, 9}}};
+  channel.angles = {{{{Curve{}, Curve{}, Curve{{{0, 0.0}, {1, 90.0}}}}, {90, 0, 0}}}, {0, 1, 2}};
   tube.animations[0].channels = {channel};
   const Transform upper = pose_at(tube, tube.animations[0], 1.5)[4];
   EXPECT_LT((upper.origin - Vec3(1 + 2.5, 7, 5 + 4)).norm(), kNear);
@@ -122,7 +123,7 @@ TEST(Pose, MorphTargetsAreAddedBeforeJointsMove) {
   Part& part = tube.parts[0];
   part.targets = {{"wide", std::vector<Vec3>(part.positions.size(), Vec3(0, 1, 0)), 0.25},
                   {"high", std::vector<Vec3>(part.positions.size(), Vec3(0, 0, 2)), 0}};
-  tube.animations[0].morphs = {{0, {Curve{}, Curve{{0, 0.0}, {1, 1.0}}}}};
+  tube.animations[0].morphs = {{0, {Layered<1>{}, driven({{0, 0.0}, {1, 1.0}})}}};
   validate(tube, {});
   std::vector<Vec3> out;
   skin(tube, pose_at(tube, tube.animations[0], 1), weights_at(tube, tube.animations[0], 0.5), out);
@@ -278,11 +279,11 @@ TEST(Validate, NamesWhatIsWrong) {
             }).find("'smile': has 1 displacements"),
             std::string::npos);
   EXPECT_NE(refusal([](Character& c) {
-              c.animations[0].morphs = {{0, {Curve{}}}};
+              c.animations[0].morphs = {{0, {Layered<1>{}}}};
             }).find("morph targets"),
             std::string::npos);
   EXPECT_NE(refusal([&](Character& c) {
-              c.animations[0].channels[0].angles.degrees.axis[1] = {{0, nan}};
+              c.animations[0].channels[0].angles.degrees.base.axis[1].keys = {{0, nan}};
             }).find("key 0"),
             std::string::npos);
 }

@@ -15,13 +15,6 @@ Quaternion weighted(double s, const Quaternion& a, double t, const Quaternion& b
   return {s * a.w + t * b.w, s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
 }
 
-// The rotation that first does `before`, then `after`.
-Quaternion product(const Quaternion& after, const Quaternion& before) {
-  const Quaternion &p = after, &q = before;
-  return {p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
-          p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
-}
-
 std::array<Vec3, 3> columns_of(const Quaternion& q) {
   return {Vec3(1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y + q.w * q.z), 2 * (q.x * q.z - q.w * q.y)),
           Vec3(2 * (q.x * q.y - q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z + q.w * q.x)),
@@ -79,6 +72,12 @@ Quaternion normalised(const Quaternion& q) {
   const double length = std::sqrt(dot(q, q));
   if (!(length > 0) || !std::isfinite(length)) return {};
   return {q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+Quaternion product(const Quaternion& after, const Quaternion& before) {
+  const Quaternion &p = after, &q = before;
+  return {p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+          p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double s) {

@@ -33,6 +33,9 @@ struct Quaternion {
 // The unit quaternion in the direction of q. Returns the identity if q is zero or not finite.
 Quaternion normalised(const Quaternion& q);
 
+// The rotation that first does `before`, then `after`.
+Quaternion product(const Quaternion& after, const Quaternion& before);
+
 // Returns the rotation at the share s in [0, 1] of the shorter way from a to b, at constant angular speed
 // (spherical linear interpolation: Shoemake, SIGGRAPH 1985). It halves the way until the rest is straight
 // to 1e-12, which takes square roots only and no sine.

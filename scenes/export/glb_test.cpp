@@ -167,7 +167,7 @@ TEST(Glb, WhatTheFileCannotSayIsRefused) {
   says(refusal([](C& c) { c.animations[0].channels[0].rotations[0].next = Between::cubic; }),
        "not joined by straight lines");
   says(refusal([](C& c) {
-         c.animations[0].channels[0].angles.degrees.axis[0] = {{0, 1}};
+         c.animations[0].channels[0].angles.degrees.base.axis[0].keys = {{0, 1}};
        }),
        "keys for single components");
   says(refusal([](C& c) { c.animations[0].channels.clear(); }), "moves nothing");

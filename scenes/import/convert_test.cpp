@@ -106,7 +106,7 @@ TEST_F(Convert, ClipsBlendMorphTargets) {
   Part& part = tube.parts[0];
   part.targets = {{"up", std::vector<Vec3>(part.positions.size(), Vec3(0, 0, 2)), 0.5}};
   tube.animations[0].channels.clear();
-  tube.animations[0].morphs = {{0, {Curve{{0, 0.0}, {1, 1.0}}}}};
+  tube.animations[0].morphs = {{0, {driven({{0, 0.0}, {1, 1.0}})}}};
   ImportOptions options;
   options.fps = 10;
   const Clip clip = converted(tube, options);
@@ -250,7 +250,7 @@ TEST_F(Convert, TakesTheFirstClipThatMovesTheSurface) {
 
   // A clip that moves the surface by morph targets alone is found too.
   Animation smile{"smile", 0, 1, 0, {}};
-  smile.morphs = {{0, {Curve{{0, 0.0}, {1, 1.0}}}}};
+  smile.morphs = {{0, {driven({{0, 0.0}, {1, 1.0}})}}};
   tube.parts[0].targets = {{"wide", std::vector<Vec3>(tube.parts[0].positions.size(), Vec3(0, 0.5, 0)), 0}};
   tube.animations = {camera, smile};
   const Clip clip = converted(tube);

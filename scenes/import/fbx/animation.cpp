@@ -7,7 +7,6 @@
 
 #include "core/base/error.h"
 #include "scenes/import/fbx/curve.h"
-#include "scenes/import/fbx/curve_sum.h"
 #include "scenes/import/fbx/layers.h"
 
 namespace cscd::scenes::fbx {
@@ -35,7 +34,6 @@ class ClipReader {
     clip_.name = stack.name;
     first_ = std::numeric_limits<double>::infinity();
     last_ = -first_;
-    curves_.clear();
     const std::vector<const Object*> layers = objects_.sources(stack, "AnimationLayer");
     const bool solo = std::any_of(layers.begin(), layers.end(),
                                   [](const Object* layer) { return integer(*layer, "Solo", 0) != 0; });
@@ -47,48 +45,42 @@ class ClipReader {
         read_layer(layer, i == 0);
     }
     set_range(stack);
-    check_extrapolation();
     return std::move(clip_);
   }
 
  private:
   void read_layer(const Object& layer, bool base) {
-    const Blending blending = read_blending(layer, weight_of(layer), base);
+    const LayerRule rule = read_rule(layer, weight_of(layer), base, clip_.layer_weights);
     for (const Object* node : objects_.sources(layer, "AnimationCurveNode"))
       for (const Connection& connection : objects_.out_of(*node)) {
         if (connection.destination == nullptr || connection.property.empty()) continue;
-        read_property(*node, *connection.destination, connection.property, blending);
+        read_property(*node, *connection.destination, connection.property, rule);
       }
   }
 
-  // Returns the layer's weight in per cent, or nullopt where it changes.
-  std::optional<double> weight_of(const Object& layer) const {
+  // Returns the layer's weight in per cent.
+  Curve weight_of(const Object& layer) {
     double weight = number(layer, "Weight", 100);
     for (const Connection& connection : objects_.into(layer)) {
       if (connection.property != "Weight" || connection.source->type != "AnimationCurveNode") continue;
       weight = number(*connection.source, "d|Weight", weight);
       for (const Connection& inner : objects_.into(*connection.source)) {
         if (inner.source->type != "AnimationCurve") continue;
-        const Curve keys = read_curve(*inner.source, ticks_per_second_, limits_.keys).keys;
-        if (!is_level(keys)) return std::nullopt;
-        if (!keys.empty()) weight = keys.front().value;
+        Curve curve = read_keys(*inner.source).curve;
+        if (!curve.empty()) return curve;
       }
     }
-    return weight;
+    return {{{0, weight}}};
   }
 
   void read_property(const Object& node, const Object& target, std::string_view property,
-                     const Blending& blending) {
+                     const LayerRule& rule) {
     if (weighs_shape(target, property)) {
       const std::string name = "d|" + std::string(property);
       const double rest = number(target, property, 0);
-      const Components values = read_components(node, {name, "", ""}, Vec3(rest, 0, 0));
-      Curve& curve = clip_.shapes[{&target, std::string(property)}];
-      Components base;
-      base.axis[0] = curve;
-      base.rest[0] = rest;
-      combine(base, values, Combined::shape, blending);
-      curve = base.axis[0];
+      Layered<1>& driven = clip_.shapes[{&target, std::string(property)}];
+      if (driven.empty()) driven.base.rest = {rest};
+      put_layer(driven, read_components<1>(node, {name}, {rest}), false, rule);
       return;
     }
     if (target.type != "Model") return;
@@ -99,11 +91,11 @@ class ClipReader {
       return;
     }
     if (property == "Lcl Translation")
-      read_motion(node, target, property, Vec3::Zero(), &Motion::moves, Combined::move, blending);
+      read_motion(node, target, property, Vec3::Zero(), &Motion::moves, false, rule);
     if (property == "Lcl Rotation")
-      read_motion(node, target, property, Vec3::Zero(), &Motion::turns, Combined::turn, blending);
+      read_motion(node, target, property, Vec3::Zero(), &Motion::turns, rule.turns_as_maps, rule);
     if (property == "Lcl Scaling")
-      read_motion(node, target, property, Vec3::Ones(), &Motion::scales, Combined::scale, blending);
+      read_motion(node, target, property, Vec3::Ones(), &Motion::scales, rule.scales_as_maps, rule);
   }
 
   static bool weighs_shape(const Object& target, std::string_view property) {
@@ -115,58 +107,95 @@ class ClipReader {
   }
 
   void read_motion(const Object& node, const Object& model, std::string_view property, const Vec3& otherwise,
-                   Components Motion::*part, Combined kind, const Blending& blending) {
+                   Layered<3> Motion::*part, bool as_maps, const LayerRule& rule) {
     const Vec3 rest = vector(model, property, otherwise);
-    const Components values = read_components(node, {"d|X", "d|Y", "d|Z"}, rest);
-    Components& base = clip_.models[&model].*part;
-    if (base.empty()) base.rest = {rest.x(), rest.y(), rest.z()};
-    if (kind == Combined::turn && integer(model, "QuaternionInterpolate", 0) != 0)
-      require_dense(values, model);
+    Components<3> values = read_components<3>(node, {"d|X", "d|Y", "d|Z"}, {rest.x(), rest.y(), rest.z()});
+    Layered<3>& below = clip_.models[&model].*part;
+    if (below.empty()) below.base.rest = {rest.x(), rest.y(), rest.z()};
+    const bool turns = part == &Motion::turns;
+    if (turns && integer(model, "QuaternionInterpolate", 0) != 0) require_dense(values, model);
     try {
-      combine(base, values, kind, blending);
+      put_layer(below, std::move(values), as_maps, rule);
+      if (turns) require_order(below, integer(model, "RotationOrder", 0) == 0);
     } catch (const InputError& error) {
       throw InputError(told("node", model) + ", clip '" + clip_.name + "': " + error.what());
     }
   }
 
+  // Refuses layers of rotations whose result is not determined. A rotation has many sets of angles, and
+  // which of them a layer by channel finds above a layer that combines rotations as maps is not known. In
+  // orders other than XYZ, Maya and the FBX SDK do not agree on what such a layer does.
+  static void require_order(const Layered<3>& turns, bool xyz) {
+    bool as_maps = false;
+    for (const Layer<3>& layer : turns.above) {
+      if (as_maps && !layer.as_maps)
+        throw InputError(
+            "a layer adds angles by channel above a layer whose rotations are combined by layer; bake the "
+            "animation to one layer on export");
+      as_maps |= layer.as_maps;
+    }
+    if (as_maps && !xyz && axes_of(turns) > 1)
+      throw InputError(
+          "layers of rotations are combined by layer in an order other than XYZ; bake the animation to one "
+          "layer on export");
+  }
+
+  // Returns the number of axes about which the layers turn. Rotations about a single axis commute.
+  static int axes_of(const Layered<3>& turns) {
+    int axes = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto turns_about = [k](const Components<3>& components) {
+        const Curve& curve = components.axis[k];
+        return curve.empty() ? components.rest[k] != 0 : !is_level(curve) || curve.keys.front().value != 0;
+      };
+      axes += turns_about(turns.base) ||
+              std::any_of(turns.above.begin(), turns.above.end(),
+                          [&](const Layer<3>& layer) { return turns_about(layer.values); });
+    }
+    return axes;
+  }
+
   // Reads the curves of a curve node. A component without a curve has the value that the curve node itself
   // gives, or else the value of the property.
-  Components read_components(const Object& node, const std::array<std::string_view, 3>& names,
-                             const Vec3& otherwise) {
-    Components components;
-    for (std::size_t k = 0; k < 3; ++k)
-      components.rest[k] = number(node, names[k], otherwise[static_cast<int>(k)]);
+  template <std::size_t Width>
+  Components<Width> read_components(const Object& node, const std::array<std::string_view, Width>& names,
+                                    const std::array<double, Width>& otherwise) {
+    Components<Width> components;
+    for (std::size_t k = 0; k < Width; ++k) components.rest[k] = number(node, names[k], otherwise[k]);
     for (const Connection& connection : objects_.into(node)) {
       if (connection.source->type != "AnimationCurve") continue;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (connection.property == names[k]) components.axis[k] = read_keys(*connection.source);
+      for (std::size_t k = 0; k < Width; ++k)
+        if (connection.property == names[k]) {
+          components.axis[k] = read_keys(*connection.source).curve;
+          note_range(components.axis[k]);
+        }
     }
     // A curve node without curves holds its values all the time.
-    if (components.empty()) components.axis[0].push_back({0, components.rest[0]});
+    if (components.empty()) components.axis[0].keys.push_back({0, components.rest[0]});
     return components;
   }
 
-  Curve read_keys(const Object& curve) {
+  ReadCurve read_keys(const Object& curve) {
     ReadCurve read = read_curve(curve, ticks_per_second_, limits_.keys);
-    keys_ += read.keys.size();
+    keys_ += read.curve.keys.size();
     if (keys_ > limits_.keys)
       throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
     left_out_.keys += read.dropped;
-    // A single key holds at all times, so it does not bear on the length.
-    if (read.keys.size() > 1) {
-      first_ = std::min(first_, read.keys.front().time);
-      last_ = std::max(last_, read.keys.back().time);
-    }
-    if (!read.keys.empty() && (read.goes_on_before || read.goes_on_after))
-      curves_.push_back({curve.id, read.goes_on_before ? read.keys.front().time : -1e300,
-                         read.goes_on_after ? read.keys.back().time : 1e300});
-    return read.keys;
+    left_out_.ends += read.unknown_ends;
+    return read;
+  }
+
+  // A single key holds at all times, so it does not bear on the clip's length.
+  void note_range(const Curve& curve) {
+    if (curve.keys.size() < 2) return;
+    first_ = std::min(first_, curve.keys.front().time);
+    last_ = std::max(last_, curve.keys.back().time);
   }
 
   bool moves(const Object& node) const {
     for (const Connection& connection : objects_.into(node)) {
       if (connection.source->type != "AnimationCurve") continue;
-      const Curve keys = read_curve(*connection.source, ticks_per_second_, limits_.keys).keys;
+      const auto keys = read_curve(*connection.source, ticks_per_second_, limits_.keys).curve.keys;
       for (const Key<double>& key : keys)
         if (key.value != keys.front().value) return true;
     }
@@ -175,11 +204,12 @@ class ClipReader {
 
   // Joining angles one by one and joining quaternions differ visibly between rotations that are far apart,
   // so this refuses keys that are.
-  void require_dense(const Components& values, const Object& model) const {
+  void require_dense(const Components<3>& values, const Object& model) const {
     constexpr double kWidest = 1.0 / 20;
     for (const Curve& curve : values.axis)
-      for (std::size_t i = 0; i + 1 < curve.size(); ++i)
-        if (curve[i + 1].time - curve[i].time > kWidest && curve[i + 1].value != curve[i].value)
+      for (std::size_t i = 0; i + 1 < curve.keys.size(); ++i)
+        if (curve.keys[i + 1].time - curve.keys[i].time > kWidest &&
+            curve.keys[i + 1].value != curve.keys[i].value)
           throw InputError(told("node", model) + ", clip '" + clip_.name +
                            "': its rotation keys are joined as quaternions; bake the animation on export");
   }
@@ -196,26 +226,12 @@ class ClipReader {
     }
   }
 
-  void check_extrapolation() const {
-    for (const GoesOn& curve : curves_)
-      if (clip_.start < curve.first || clip_.start + clip_.seconds > curve.last)
-        throw InputError("clip '" + clip_.name + "', animation curve " + std::to_string(curve.id) +
-                         ": goes on beyond its keys by repeating or rising; bake the animation on export");
-  }
-
-  // A curve whose value goes on changing before its first key or after its last key.
-  struct GoesOn {
-    std::int64_t id;
-    double first, last;
-  };
-
   const Objects& objects_;
   const CharacterLimits& limits_;
   LeftOut& left_out_;
   double ticks_per_second_;
   Clip clip_;
   double first_ = 0, last_ = 0;  // over all keys of the clip
-  std::vector<GoesOn> curves_;
   std::size_t keys_ = 0;
 };
 

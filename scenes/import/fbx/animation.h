@@ -12,7 +12,7 @@ namespace cscd::scenes::fbx {
 
 // The curves by which one clip moves one Model. A part without keys keeps its value at rest.
 struct Motion {
-  Components moves, turns, scales;
+  Layered<3> moves, turns, scales;
 };
 
 // One AnimationStack, with its layers combined.
@@ -22,12 +22,13 @@ struct Clip {
   double start = 0, seconds = 0;
   std::map<const Object*, Motion> models;
   // Percentages of blend shapes, by the object that holds a percentage and its property.
-  std::map<std::pair<const Object*, std::string>, Curve> shapes;
+  std::map<std::pair<const Object*, std::string>, Layered<1>> shapes;
+  std::vector<Curve> layer_weights;  // as in Animation
 };
 
 // Counts of what was left out, for notes.
 struct LeftOut {
-  std::size_t keys = 0, layers = 0;
+  std::size_t keys = 0, layers = 0, ends = 0;
 };
 
 // Reads all clips of a file, and adds to `left_out` what it leaves out. Throws InputError for

@@ -69,9 +69,14 @@ class CurveReader {
     ReadCurve result;
     std::vector<RawKey> keys = read_keys(result.dropped);
     find_slopes(keys);
-    result.keys = join(keys);
-    result.goes_on_before = goes_on("Pre-Extrapolation");
-    result.goes_on_after = goes_on("Post-Extrapolation");
+    result.curve.keys = join(keys);
+    if (keys.empty()) return result;
+    Extrapolation& beyond = result.curve.beyond;
+    beyond.first = keys.front().seconds;
+    beyond.last = keys.back().seconds;
+    beyond.tick = 1 / ticks_per_second_;
+    read_end("Pre-Extrapolation", beyond.before, beyond.repeats_before, result.unknown_ends);
+    read_end("Post-Extrapolation", beyond.after, beyond.repeats_after, result.unknown_ends);
     return result;
   }
 
@@ -209,8 +214,8 @@ class CurveReader {
   }
 
   // Converts the file's keys to those of a Curve.
-  Curve join(const std::vector<RawKey>& raw) const {
-    Curve curve;
+  std::vector<Key<double>> join(const std::vector<RawKey>& raw) const {
+    std::vector<Key<double>> curve;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const RawKey& key = raw[i];
       const bool steps_here = i > 0 && raw[i - 1].is(kConstant);
@@ -241,7 +246,7 @@ class CurveReader {
 
   // Adds the keys of a weighted segment. The segment is a Bezier curve in the plane of time and value, and
   // becomes cubics over its parts.
-  void add_weighted(const RawKey& a, const RawKey& b, Curve& curve) const {
+  void add_weighted(const RawKey& a, const RawKey& b, std::vector<Key<double>>& curve) const {
     const double length = b.seconds - a.seconds, w = a.weight_after, v = a.weight_before_next;
     if (!(w >= 0 && w <= 1 && v >= 0 && v <= 1))
       throw InputError(where_ + ": a tangent's weight is not between 0 and 1; resample the animation");
@@ -266,11 +271,37 @@ class CurveReader {
     if (!(curve.back().time < b.seconds)) curve.pop_back();
   }
 
-  bool goes_on(std::string_view name) const {
-    const Element* extrapolation = element_.child(name);
-    const Element* type = extrapolation == nullptr ? nullptr : extrapolation->child("Type");
-    if (type == nullptr || type->values.empty()) return false;
-    return type->values[0].kind == Value::Kind::text ? type->text(0) != "C" : type->integer(0) != 'C';
+  // Reads how the curve goes on at one of its ends. Text files write the letter of the kind as a word, binary
+  // files as a number. A negative number of repetitions stands for no limit.
+  void read_end(std::string_view name, Beyond& kind, double& repeats, bool& unknown) const {
+    const Element* end = element_.child(name);
+    const Element* type = end == nullptr ? nullptr : end->child("Type");
+    if (type == nullptr || type->values.empty()) return;
+    const std::string_view word = type->text(0);
+    const std::int64_t letter =
+        type->values[0].kind == Value::Kind::text ? (word.empty() ? 0 : word[0]) : type->integer(0);
+    switch (letter) {
+      case 'C':
+        return;
+      case 'K':
+        kind = Beyond::straight;
+        return;
+      case 'R':
+        kind = Beyond::repeat;
+        break;
+      case 'A':
+        kind = Beyond::rise;
+        break;
+      case 'M':
+        kind = Beyond::mirror;
+        break;
+      default:
+        unknown = true;
+        return;
+    }
+    const Element* count = end->child("Repetition");
+    const std::int64_t most = count == nullptr ? -1 : count->integer(0, -1);
+    if (most >= 0) repeats = static_cast<double>(most);
   }
 
   const Element& element_;
@@ -283,6 +314,25 @@ class CurveReader {
 
 ReadCurve read_curve(const Object& curve, double ticks_per_second, std::size_t most) {
   return CurveReader(curve, ticks_per_second, most).read();
+}
+
+Curve scaled(Curve curve, double factor, double offset) {
+  for (Key<double>& key : curve.keys) {
+    key.value = factor * key.value + offset;
+    key.arriving *= factor;
+    key.leaving *= factor;
+  }
+  return curve;
+}
+
+bool is_level(const Curve& curve) {
+  const std::vector<Key<double>>& keys = curve.keys;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (keys[i].value != keys.front().value) return false;
+    if (keys[i].next != Between::cubic || i + 1 == keys.size()) continue;
+    if (keys[i].leaving != 0 || keys[i + 1].arriving != 0) return false;
+  }
+  return true;
 }
 
 }  // namespace cscd::scenes::fbx

@@ -1,31 +1,37 @@
 #pragma once
 
+#include <utility>
+
+#include "core/base/error.h"
 #include "scenes/character/character.h"
 #include "scenes/import/fbx/objects.h"
 
 namespace cscd::scenes::fbx {
 
 // How a layer of an animation acts on the value that the layers below it have made.
-enum class BlendMode { replace, mix, ignore, refused };
-
-// The way in which one layer is blended with those below it.
-struct Blending {
-  BlendMode mode = BlendMode::replace;
-  double weight = 1, keep = 1;  // mix: keep * value below + weight * value of the layer
-  bool by_channel = false;      // rotations are added angle by angle
-  bool scales_add = false;      // scalings are added instead of multiplied
-  std::string refusal;          // the error of a layer that cannot be used
+struct LayerRule {
+  bool ignored = false;   // the layer's weight is 0
+  bool replaces = false;  // the layer hides those below it
+  LayerBlend blend = LayerBlend::add;
+  bool turns_as_maps = false, scales_as_maps = false;
+  int weight = -1;      // as in Layer
+  std::string refusal;  // the error of a layer that cannot be used; empty where it can
 };
 
-// Reads how a layer is blended. `weight` is in per cent, or nullopt where it changes. The base
-// layer is taken as it is.
-Blending read_blending(const Object& layer, std::optional<double> weight, bool base);
+// Reads the rule of a layer whose weight in per cent is `percent`, a curve with keys. A weight between 0 and
+// 100 is added to `weights` as a share. The base layer is taken as it is.
+LayerRule read_rule(const Object& layer, const Curve& percent, bool base, std::vector<Curve>& weights);
 
-// The kinds of values that layers combine.
-enum class Combined { move, turn, scale, shape };
-
-// Lets a layer's values act on `base`. A `base` without keys stands still at its `rest`. Throws InputError
-// for combinations that no curves can express.
-void combine(Components& base, const Components& layer, Combined kind, const Blending& blending);
+// Lets a layer's values act on those below. Throws InputError where the rule or the order of the layers does
+// not allow it.
+template <std::size_t Width>
+void put_layer(Layered<Width>& below, Components<Width> values, bool as_maps, const LayerRule& rule) {
+  if (!rule.refusal.empty()) throw InputError(rule.refusal);
+  if (rule.ignored) return;
+  if (rule.replaces)
+    below = {std::move(values), {}};
+  else
+    below.above.push_back({std::move(values), rule.blend, as_maps, rule.weight});
+}
 
 }  // namespace cscd::scenes::fbx

@@ -1,6 +1,7 @@
 #include "scenes/import/fbx/morphs.h"
 
 #include "core/base/error.h"
+#include "scenes/character/sample.h"
 #include "scenes/import/fbx/mesh.h"
 
 namespace cscd::scenes::fbx {
@@ -51,20 +52,21 @@ std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geom
   std::vector<ShapeChannel> channels;
   const std::size_t vertices = part.positions.size();
   const auto add = [&](const ShapeChannel& channel, const Element& shape, const std::string& name,
-                       double percent) {
+                       double percent, double full) {
     const std::string what = told("mesh", geometry) + ", blend shape '" + name + "'";
     if ((part.targets.size() + 1) * vertices > limits.displacements)
       throw InputError(what + ": is more than the " + std::to_string(limits.displacements) +
                        " displacements that are supported; simplify the model");
-    part.targets.push_back(
-        {name, displacements_of(shape, vertices, what), channel.weight_per_percent * percent});
+    MorphTarget target{name, displacements_of(shape, vertices, what), 0, {{0, 0}, {full, 1}}};
+    target.weight = weight_of(target, percent);
+    part.targets.push_back(std::move(target));
     channels.push_back(channel);
   };
   // FBX 2011 writes shapes into the mesh, weighted by a property with the shape's name.
   for (const Element& shape : geometry.element->children) {
     if (shape.name != "Shape") continue;
     const std::string name(shape.text(0));
-    add({&geometry, name, 1 / kFullPercent}, shape, name, number(geometry, name, 0));
+    add({&geometry, name}, shape, name, number(geometry, name, 0), kFullPercent);
   }
   for (const Object* deformer : objects.sources(geometry, "Deformer")) {
     if (deformer->subtype != "BlendShape") continue;
@@ -74,8 +76,8 @@ std::vector<ShapeChannel> read_shapes(const Objects& objects, const Object& geom
       const std::string what = told("mesh", geometry) + ", " + told("blend shape", *channel);
       if (shapes.empty()) continue;
       if (shapes.size() > 1) throw InputError(what + ": has shapes in between; export one shape a channel");
-      add({channel, "DeformPercent", 1 / full_weight(*channel, limits.vertices, what)}, *shapes[0]->element,
-          channel->name, percent_of(*channel));
+      add({channel, "DeformPercent"}, *shapes[0]->element, channel->name, percent_of(*channel),
+          full_weight(*channel, limits.vertices, what));
     }
   }
   return channels;

@@ -5,11 +5,10 @@
 
 namespace cscd::scenes::fbx {
 
-// A property that moves one morph target of a part. The property holds a percentage.
+// A property that drives one morph target of a part. The property holds a percentage.
 struct ShapeChannel {
   const Object* owner;
   std::string property;
-  double weight_per_percent;
 };
 
 // Adds the blend shapes of a geometry to a part as morph targets, and returns their channels in the same

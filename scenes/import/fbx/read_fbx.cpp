@@ -8,7 +8,6 @@
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/animation.h"
 #include "scenes/import/fbx/curve.h"
-#include "scenes/import/fbx/curve_sum.h"
 #include "scenes/import/fbx/mesh.h"
 #include "scenes/import/fbx/model_transform.h"
 #include "scenes/import/fbx/morphs.h"
@@ -71,20 +70,29 @@ class Builder {
   }
 
   static bool same(const Curve& a, const Curve& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Key<double>& p, const Key<double>& q) {
+    const auto same_keys = [](const Key<double>& p, const Key<double>& q) {
       return p.time == q.time && p.value == q.value && p.next == q.next && p.arriving == q.arriving &&
              p.leaving == q.leaving;
-    });
+    };
+    return std::equal(a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(), same_keys) &&
+           a.beyond.before == b.beyond.before && a.beyond.after == b.beyond.after &&
+           a.beyond.repeats_before == b.beyond.repeats_before &&
+           a.beyond.repeats_after == b.beyond.repeats_after;
   }
-  static bool is_uniform(const Components& scales) {
+  static bool is_uniform(const Components<3>& scales) {
     const auto& axis = scales.axis;
     if (!axis[0].empty() && same(axis[0], axis[1]) && same(axis[0], axis[2])) return true;
     double value[3];
     for (std::size_t k = 0; k < 3; ++k) {
       if (!is_level(axis[k])) return false;
-      value[k] = axis[k].empty() ? scales.rest[k] : axis[k].front().value;
+      value[k] = axis[k].empty() ? scales.rest[k] : axis[k].keys.front().value;
     }
     return value[0] == value[1] && value[1] == value[2];
+  }
+  static bool is_uniform(const Layered<3>& scales) {
+    return is_uniform(scales.base) &&
+           std::all_of(scales.above.begin(), scales.above.end(),
+                       [](const Layer<3>& layer) { return is_uniform(layer.values); });
   }
 
   // Returns the model that a model hangs on, or null for the scene.
@@ -206,12 +214,19 @@ class Builder {
     return number;
   }
 
-  static Components shifted(Components components, const Vec3& by) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      components.axis[k] = scaled(std::move(components.axis[k]), 1, by[static_cast<int>(k)]);
-      components.rest[k] += by[static_cast<int>(k)];
-    }
-    return components;
+  // Adds a vector to a value that layers make. A layer that adds to those below does not change what they
+  // were shifted by; a layer that mixes has to be shifted with them.
+  static Layered<3> shifted(Layered<3> layered, const Vec3& by) {
+    const auto shift = [&by](Components<3>& components) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        components.axis[k] = scaled(std::move(components.axis[k]), 1, by[static_cast<int>(k)]);
+        components.rest[k] += by[static_cast<int>(k)];
+      }
+    };
+    shift(layered.base);
+    for (Layer<3>& layer : layered.above)
+      if (layer.blend == LayerBlend::mix) shift(layer.values);
+    return layered;
   }
 
   void add_animation(const Clip& clip) {
@@ -231,6 +246,7 @@ class Builder {
       if (!motion.turns.empty()) channel(animation, chain.turns).angles = {motion.turns, transform.order};
       if (!motion.scales.empty()) channel(animation, chain.scales).scale_components = motion.scales;
     }
+    animation.layer_weights = clip.layer_weights;
     add_morphs(clip, animation);
     character_.animations.push_back(std::move(animation));
   }
@@ -246,18 +262,28 @@ class Builder {
     return added;
   }
 
-  void add_morphs(const Clip& clip, Animation& animation) const {
+  void add_morphs(const Clip& clip, Animation& animation) {
     for (std::size_t p = 0; p < shapes_.size(); ++p) {
-      MorphChannel morph{static_cast<int>(p), std::vector<Curve>(shapes_[p].size())};
+      MorphChannel morph{static_cast<int>(p), std::vector<Layered<1>>(shapes_[p].size())};
       bool any = false;
       for (std::size_t t = 0; t < shapes_[p].size(); ++t) {
         const auto found = clip.shapes.find({shapes_[p][t].owner, shapes_[p][t].property});
-        if (found == clip.shapes.end()) continue;
-        morph.weights[t] = scaled(found->second, shapes_[p][t].weight_per_percent, 0);
+        if (found == clip.shapes.end() || found->second.empty()) continue;
+        count_copied(found->second);
+        morph.weights[t] = found->second;
         any = true;
       }
       if (any) animation.morphs.push_back(std::move(morph));
     }
+  }
+
+  // The keys of a channel are copied for each of its shapes, which a small file can make many.
+  void count_copied(const Layered<1>& driven) {
+    copied_keys_ += driven.base.axis[0].keys.size();
+    for (const Layer<1>& layer : driven.above) copied_keys_ += layer.values.axis[0].keys.size();
+    if (copied_keys_ > limits_.keys)
+      throw InputError("has more than " + std::to_string(limits_.keys) +
+                       " animation keys of blend shapes; resample it");
   }
 
   void add_notes() {
@@ -271,6 +297,7 @@ class Builder {
     note(empty_clips_, "clips that animate nothing left out");
     note(objects_.all("Constraint").size(), "constraints not applied");
     note(clip_left_out_.keys, "keys out of order or not finite ignored");
+    note(clip_left_out_.ends, "animation curves go on in an unknown way, and hold beyond their keys");
     note(clip_left_out_.layers, "muted animation layers ignored");
     note(skin_left_out_.weights, "weights not positive or without a bone ignored");
   }
@@ -286,8 +313,8 @@ class Builder {
   Pose rest_;
   std::map<const Object*, Mesh> meshes_;
   std::set<const Object*> skinned_;  // geometries placed by bones alone that already have a part
-  std::vector<std::vector<ShapeChannel>> shapes_;  // [parts]
-  std::size_t vertices_ = 0, triangles_ = 0;       // counts so far
+  std::vector<std::vector<ShapeChannel>> shapes_;               // [parts]
+  std::size_t vertices_ = 0, triangles_ = 0, copied_keys_ = 0;  // counts so far
   LeftOut clip_left_out_;
   SkinLeftOut skin_left_out_;
   std::size_t lines_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;

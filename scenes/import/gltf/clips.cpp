@@ -134,7 +134,7 @@ void Clips::read_weights(const tinygltf::Animation& source, const tinygltf::Anim
     }
     const Sampled from = sampled(source, channel.sampler, channel.target_path, targets);
     for (std::size_t t = 0; t < targets; ++t)
-      to->second.weights.push_back(keys<double>(from, [t](const auto& at) { return at(t)[0]; }));
+      to->second.weights.push_back(driven(keys<double>(from, [t](const auto& at) { return at(t)[0]; })));
   }
   no_targets_ += !any;
 }
@@ -183,7 +183,7 @@ Animation Clips::read(const tinygltf::Animation& source, const Tree& tree, const
     animation.channels.push_back(std::move(channel));
   }
   for (auto& [part, morph] : by_part) {
-    for (const Curve& weights : morph.weights) reach.take(weights);
+    for (const Layered<1>& weight : morph.weights) reach.take(weight.base.axis[0].keys);
     animation.morphs.push_back(std::move(morph));
   }
   if (reach.first <= reach.last) {
