@@ -132,6 +132,11 @@ std::optional<double> Objects::setting(std::string_view name) const {
                              : number_in(property_in(settings->child("Properties70"), name), 0);
 }
 
+bool Objects::made_by(std::string_view program) const {
+  const Element* creator = document_.root.child("Creator");
+  return creator != nullptr && creator->text(0).find(program) != std::string_view::npos;
+}
+
 double Objects::ticks_per_second() const {
   // Newer files may state by TCDefinition that they count time in other ticks; 127 stands for the old ticks.
   constexpr double kOld = 46186158000.0, kNew = 141120000.0;

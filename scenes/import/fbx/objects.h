@@ -48,6 +48,8 @@ class Objects {
 
   // Returns the first number of a property of the scene's settings, or nullopt.
   std::optional<double> setting(std::string_view name) const;
+  // Tells whether the file says that a program of this name wrote it.
+  bool made_by(std::string_view program) const;
   // Returns the number of the file's units of time in a second.
   double ticks_per_second() const;
 

@@ -205,11 +205,84 @@ TEST(FbxShapes, PercentagesBlendAtRestAndInClips) {
   expect_at(vertices_at(character, 0.25)[0], kPoints[0]);
 }
 
-TEST(FbxShapes, ShapesInBetweenAreRefused) {
-  FbxText file = shaped("");
-  file.add("Geometry", 43, "half", "Shape", "", array("Indexes", {1}) + array("Vertices", {0, 0, 1}));
-  file.connect(43, 41);
-  EXPECT_NE(refusal_of(file.text()).find("blend shape 'smile': has shapes in between"), std::string::npos);
+// A channel with three shapes that move vertex 1 to x = 1, y = 1 and z = 1; `full_weights` are theirs, and
+// `percent` is the channel's percentage.
+FbxText in_between(const std::vector<double>& full_weights, double percent) {
+  FbxText file;
+  file.model(20, "node", 0, "", "Mesh");
+  file.triangle(10, 20);
+  file.add("Deformer", 40, "shapes", "BlendShape", "");
+  file.connect(40, 10);
+  file.add("Deformer", 41, "smile", "BlendShapeChannel", property("DeformPercent", {percent}),
+           array("FullWeights", full_weights));
+  file.connect(41, 40);
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> by(3, 0);
+    by[static_cast<std::size_t>(k)] = 1;
+    file.add("Geometry", 42 + k, "shape" + std::to_string(k), "Shape", "",
+             array("Indexes", {1}) + array("Vertices", by));
+    file.connect(42 + k, 41);
+  }
+  return file;
+}
+
+TEST(FbxShapes, ShapesInBetweenAreBlendedFromOneFullWeightToTheNext) {
+  // In the order of full weights, z is shown at 25, x at 50 and y at 100 per cent.
+  const auto moved_by = [](double percent) -> Vec3 {
+    return vertices_at(read(in_between({50, 100, 25}, percent)), 0)[1] - kPoints[1];
+  };
+  expect_at(moved_by(0), {0, 0, 0});
+  expect_at(moved_by(12.5), {0, 0, 0.5});
+  expect_at(moved_by(25), {0, 0, 1});
+  expect_at(moved_by(30), {0.2, 0, 0.8});
+  expect_at(moved_by(75), {0.5, 0.5, 0});
+  expect_at(moved_by(125), {-0.5, 1.5, 0});  // the last line goes on
+  expect_at(moved_by(-25), {0, 0, -1});      // and so does the first one
+  // Full weights below 0 lie on the other side of the mesh without shapes.
+  const auto both_ways = [](double percent) -> Vec3 {
+    return vertices_at(read(in_between({-100, 100, -50}, percent)), 0)[1] - kPoints[1];
+  };
+  expect_at(both_ways(-25), {0, 0, 0.5});
+  expect_at(both_ways(-75), {0.5, 0, 0.5});
+  expect_at(both_ways(200), {0, 2, 0});
+}
+
+TEST(FbxShapes, AClipDrivesAllShapesOfAChannel) {
+  FbxText file = in_between({50, 100, 25}, 0);
+  file.clip(0, 1);
+  file.curve_node(60, 51, 41, "DeformPercent", property("d|DeformPercent", {0}));
+  file.curve(61, 60, "d|DeformPercent", {0, 1}, {0, 100}, {4, 4});
+  file.layer(52, property("Weight", {50}));
+  file.curve_node(70, 52, 41, "DeformPercent", property("d|DeformPercent", {40}));
+  const Character character = read(file);
+  expect_at(vertices_at(character, 0.1)[1], kPoints[1] + Vec3(0.2, 0, 0.8));
+  CharacterLimits few;
+  few.keys = 5;
+  EXPECT_NE(refusal_of(file.text(), few).find("more than 5 animation keys of blend shapes"),
+            std::string::npos);
+}
+
+TEST(FbxShapes, FullWeightsHaveToDiffer) {
+  EXPECT_NE(refusal_of(in_between({50, 100, 50}, 0).text()).find("'smile': two shapes have one full weight"),
+            std::string::npos);
+  EXPECT_EQ(refusal_of(in_between({50, 80}, 0).text()), "") << "a full weight that is not written is 100";
+  EXPECT_NE(refusal_of(in_between({50}, 0).text()).find("two shapes have one full weight"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(in_between({50, 100, 0}, 0).text()).find("a shape has the full weight 0"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(in_between({50, 100, std::nan("")}, 0).text()).find("a full weight is not finite"),
+            std::string::npos);
+}
+
+// Blender writes in the place of full weights how strongly a vertex group lets the shape act on each vertex.
+TEST(FbxShapes, BlendersVertexGroupsWeakenDisplacements) {
+  const auto text = [](const FbxText& file) {
+    return "Creator: \"Blender (stable FBX IO)\"\n" + file.text();
+  };
+  const Character character = read_fbx(text(shaped(array("FullWeights", {50}))), {});
+  expect_at(vertices_at(character, 0)[1], kPoints[1] + Vec3(0, 0, 2));
+  EXPECT_NE(refusal_of(text(shaped(array("FullWeights", {50, 60})))).find("2 weights of a vertex group"),
+            std::string::npos);
 }
 
 TEST(Fbx, RefusesWhatIsDamagedOrCannotBe) {

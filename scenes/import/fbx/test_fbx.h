@@ -117,10 +117,10 @@ inline Character read(const FbxText& file) {
   return character;
 }
 
-inline std::string refusal_of(const std::string& bytes) {
+inline std::string refusal_of(const std::string& bytes, const CharacterLimits& limits = {}) {
   try {
-    const Character character = read_fbx(bytes, {});
-    validate(character, {});
+    const Character character = read_fbx(bytes, limits);
+    validate(character, limits);
     return {};
   } catch (const InputError& error) {
     return error.what();
