@@ -27,6 +27,7 @@ Prepared make_first(const Setup& setup) {
 Prepared make_complete(const Setup& setup) {
   return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
 }
+constexpr int kMostThreads = 1024;  // each has memory of its own
 const Strategy kFirst{"drvbc_fast", "", Guarantee::first_contact, {.closed_mesh = true}, make_first};
 const Strategy kComplete{.name = "drvbc_fast_complete",
                          .source = "",
@@ -38,15 +39,30 @@ const Strategy kComplete{.name = "drvbc_fast_complete",
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
-std::span<const Vec3> rows_of(const Positions& positions) {
-  return {reinterpret_cast<const Vec3*>(positions.data()), static_cast<std::size_t>(positions.rows())};
+std::span<const Vec3> rows_of(const Positions& positions, std::string_view name) {
+  positions.require_three_columns(name, "vertex");
+  return {reinterpret_cast<const Vec3*>(positions.data()), positions.rows()};
+}
+
+std::span<const Vec3> rows_of(const Positions& positions, std::size_t count, std::string_view name) {
+  const std::span<const Vec3> rows = rows_of(positions, name);
+  if (rows.size() != count)
+    throw InputError(std::string(name) + ": " + std::to_string(rows.size()) + " rows for " +
+                     std::to_string(count) + " vertices; give one row a vertex");
+  return rows;
 }
 
 std::vector<Triangle> triangles_of(const Faces& faces) {
+  faces.require_three_columns("faces", "triangle");
   std::vector<Triangle> triangles;
-  for (Eigen::Index f = 0; f < faces.rows(); ++f)
-    triangles.push_back({VertexId{faces(f, 0)}, VertexId{faces(f, 1)}, VertexId{faces(f, 2)}});
+  triangles.reserve(faces.rows());
+  for (const int* c = faces.data(); triangles.size() < faces.rows(); c += 3)
+    triangles.push_back({VertexId{c[0]}, VertexId{c[1]}, VertexId{c[2]}});
   return triangles;
+}
+
+std::vector<Vec3> copy_of(std::span<const Vec3> positions) {
+  return {positions.begin(), positions.end()};
 }
 
 template <class Id>
@@ -68,7 +84,8 @@ Exclusions exclusions_of(const TriangleMesh& mesh, std::span<const Vec3> referen
   out.exclude(mesh, ids_of<TriangleId>(asked.face_pairs));
   if (asked.rings < 0) throw InputError("exclude: rings is negative; give at least 0");
   out.exclude_rings(mesh, asked.rings);
-  if (!(asked.rest_distance >= 0)) throw InputError("exclude: rest_distance is not a length of at least 0");
+  if (!(asked.rest_distance >= 0) || !std::isfinite(asked.rest_distance))
+    throw InputError("exclude: rest_distance is no finite length; give at least 0");
   out.exclude_near(reference, asked.rest_distance);
   return out;
 }
@@ -121,11 +138,13 @@ class SelfCollision::Engine {
  public:
   Engine(const Faces& faces, const Positions& reference, Options options)
       : options_(std::move(options)),
-        reference_(rows_of(reference).begin(), rows_of(reference).end()),
+        reference_(copy_of(rows_of(reference, "reference positions"))),
         mesh_(triangles_of(faces), reference_.size(), "faces"),
         beside_(beside_of(options_.obstacles)) {
     require_finite(reference_, "reference positions");
-    if (options_.threads < 1) throw InputError("options: threads is less than 1; give at least 1");
+    if (options_.threads < 1 || options_.threads > kMostThreads)
+      throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
+                       std::to_string(kMostThreads));
     options_.obstacles.clear();
     if (beside_)
       obstacles_.emplace(mesh_, reference_, beside_->mesh, beside_->positions, beside_->first_vertex,
@@ -143,12 +162,11 @@ class SelfCollision::Engine {
 
   // Sessions look for numbers that are not finite in the pass in which they look whether a start is known.
   Motion motion(const Positions& start, const Positions& end) const {
-    check_size(start, mesh_.vertex_count(), "start positions");
-    check_size(end, mesh_.vertex_count(), "end positions");
-    return {rows_of(start), rows_of(end)};
+    return {rows_of(start, mesh_.vertex_count(), "start positions"),
+            rows_of(end, mesh_.vertex_count(), "end positions")};
   }
-  void check_finite(const Positions& positions, const std::string& which) const {
-    if (options_.check_positions) require_finite(rows_of(positions), which);
+  void check_finite(std::span<const Vec3> positions, const std::string& which) const {
+    if (options_.check_positions) require_finite(positions, which);
   }
 
   void move(std::size_t obstacle, const Positions& start, const Positions& end) {
@@ -156,11 +174,12 @@ class SelfCollision::Engine {
     const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
     if (obstacle >= count)
       throw InputError(name + ": there are " + std::to_string(count) + "; obstacles are counted from 0");
-    check_size(start, obstacles_->vertex_count(obstacle), name + ", start positions");
-    check_size(end, obstacles_->vertex_count(obstacle), name + ", end positions");
-    check_finite(start, name + ", start positions");
-    check_finite(end, name + ", end positions");
-    obstacles_->move(obstacle, rows_of(start), rows_of(end));
+    const std::string start_name = name + ", start positions", end_name = name + ", end positions";
+    const std::span<const Vec3> from = rows_of(start, obstacles_->vertex_count(obstacle), start_name);
+    const std::span<const Vec3> to = rows_of(end, obstacles_->vertex_count(obstacle), end_name);
+    check_finite(from, start_name);
+    check_finite(to, end_name);
+    obstacles_->move(obstacle, from, to);
   }
 
   // Answers one step. The answer is kept until the next.
@@ -278,12 +297,6 @@ class SelfCollision::Engine {
     });
   }
 
-  static void check_size(const Positions& positions, std::size_t count, const std::string& which) {
-    if (static_cast<std::size_t>(positions.rows()) != count)
-      throw InputError(which + ": " + std::to_string(positions.rows()) + " rows for " +
-                       std::to_string(count) + " vertices; give one row a vertex");
-  }
-
   static std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair) {
     const auto [a, b, c, d] = vertices_of(mesh, pair);
     return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d)};
@@ -384,8 +397,8 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
   return checked([&] {
     Candidates out;
     const Motion motion = engine_->motion(start, end);
-    engine_->check_finite(start, "start positions");
-    engine_->check_finite(end, "end positions");
+    engine_->check_finite(motion.start(), "start positions");
+    engine_->check_finite(motion.end(), "end positions");
     engine_->candidates(motion, radius, out);
     return out;
   });

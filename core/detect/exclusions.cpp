@@ -1,12 +1,17 @@
 #include "core/detect/exclusions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 
 namespace cscd {
 namespace {
+
+constexpr std::int32_t kMostGroups = 4096;
+constexpr std::size_t kMostPairs = std::size_t{1} << 27;  // a gibibyte
 
 template <class Id>
 std::uint64_t key(Id a, Id b) {
@@ -69,9 +74,12 @@ void Exclusions::set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> 
   if (const auto least = std::ranges::min_element(group); least != group.end() && *least < 0)
     throw InputError("groups: vertex " + std::to_string(least - group.begin()) + " has group " +
                      std::to_string(*least) + "; number groups from 0");
-  groups_ = group.empty() ? 0 : 1 + *std::ranges::max_element(group);
+  const std::int32_t last = group.empty() ? -1 : *std::ranges::max_element(group);
+  if (last >= kMostGroups)
+    throw InputError("groups: group " + std::to_string(last) + "; number groups from 0 to " +
+                     std::to_string(kMostGroups - 1));
+  groups_ = last + 1;
   const auto count = static_cast<std::size_t>(groups_);
-  if (groups_ > 4096) throw InputError("groups: " + std::to_string(groups_) + " of them; give at most 4096");
   ignores_.assign(count * count, false);
   for (const auto& [a, b] : ignoring) {
     for (const std::int32_t g : {a, b})
@@ -94,24 +102,34 @@ void Exclusions::exclude(const TriangleMesh& mesh, std::span<const std::pair<Tri
 
 void Exclusions::exclude_rings(const TriangleMesh& mesh, int rings) {
   std::vector<VertexId> reached;
+  std::vector<VertexId> reached_from(mesh.vertex_count(), VertexId{-1});  // the last start that reached each
   for (std::size_t v = 0; v < mesh.vertex_count() && rings > 0; ++v) {
-    reached.assign(1, VertexId{static_cast<std::int32_t>(v)});
-    for (int ring = 0; ring < rings; ++ring)
-      for (std::size_t i = 0, before = reached.size(); i < before; ++i) {
-        for (const TriangleId t : mesh.triangles_at(reached[i]))
+    const VertexId start{static_cast<std::int32_t>(v)};
+    reached.assign(1, start);
+    reached_from[v] = start;
+    std::size_t first = 0;  // of the outermost ring
+    for (int ring = 0; ring < rings && first < reached.size(); ++ring)
+      for (const std::size_t end = reached.size(); first < end; ++first)
+        for (const TriangleId t : mesh.triangles_at(reached[first]))
           for (const VertexId corner : mesh.corners(t))
-            if (std::ranges::find(reached, corner) == reached.end()) reached.push_back(corner);
-      }
+            if (std::exchange(reached_from[+corner], start) != start) reached.push_back(corner);
     for (const VertexId u : reached)
-      if (+u > v) vertex_pairs_.push_back(key(VertexId{static_cast<std::int32_t>(v)}, u));
+      if (u > start) vertex_pairs_.push_back(key(start, u));
+    if (vertex_pairs_.size() > kMostPairs)
+      throw InputError("exclusion by rings: " + std::to_string(rings) + " rings hold more than " +
+                       std::to_string(kMostPairs) + " pairs of vertices; give fewer rings");
   }
   sort(vertex_pairs_);
 }
 
 void Exclusions::exclude_near(std::span<const Vec3> reference, double distance) {
-  if (!(distance >= 0)) throw InputError("exclusion by distance: give a length of at least 0");
+  if (!(distance >= 0) || !std::isfinite(distance))
+    throw InputError("exclusion by distance: give a finite length of at least 0");
   reference_.assign(reference.begin(), reference.end());
-  near_ = distance;
+  int exponent = 0;
+  std::frexp(distance, &exponent);
+  scale_ = std::ldexp(1, std::clamp(-exponent, -1000, 1000));
+  near_ = distance * scale_;
 }
 
 bool Exclusions::excludes(VertexId u, VertexId v) const {
@@ -119,7 +137,7 @@ bool Exclusions::excludes(VertexId u, VertexId v) const {
   if (!group_.empty() && ignores_[static_cast<std::size_t>(group_[+u]) * static_cast<std::size_t>(groups_) +
                                   static_cast<std::size_t>(group_[+v])])
     return true;
-  if (near_ > 0 && (reference_[+u] - reference_[+v]).squaredNorm() < near_ * near_) return true;
+  if (near_ > 0 && ((reference_[+u] - reference_[+v]) * scale_).squaredNorm() < near_ * near_) return true;
   return !vertex_pairs_.empty() && has(vertex_pairs_, key(u, v));
 }
 

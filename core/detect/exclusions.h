@@ -49,7 +49,9 @@ class Exclusions {
   std::vector<std::uint64_t> vertex_pairs_;    // sorted; the smaller index in the upper half
   std::vector<std::uint64_t> triangle_pairs_;  // sorted; the smaller index in the upper half
   std::vector<Vec3> reference_;
-  double near_ = 0;
+  // The power of two that makes the distance about 1, so that no square overflows or vanishes, and the
+  // distance in that scale.
+  double scale_ = 1, near_ = 0;
 };
 
 }  // namespace cscd

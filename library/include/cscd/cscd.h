@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "cscd/matrix_view.h"
+
 #if defined(__GNUC__)
 #define CSCD_EXPORT __attribute__((visibility("default")))
 #else
@@ -45,10 +47,12 @@ namespace cscd {
 // constructor copies what it is given; the positions of a step are read during the call alone.
 class CSCD_EXPORT SelfCollision {
  public:
-  // Positions, one row a vertex. Row-major matrices of doubles are taken as they are, others are copied.
-  using Positions = Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
-  // Corners of triangles, one row a triangle, counter-clockwise seen from outside.
-  using Faces = Eigen::Ref<const Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>>;
+  // Positions, one row a vertex. A parameter of this type takes any matrix or expression of Eigen, of doubles
+  // or floats, and flat arrays such as std::vector or std::span (matrix_view.h). Doubles that stand row by
+  // row are read where they are, others are copied.
+  using Positions = MatrixView<double>;
+  // Corners of triangles, one row a triangle, counter-clockwise seen from outside; any type of integers.
+  using Faces = MatrixView<int>;
 
   // A surface that the mesh collides with. Obstacles never collide with each other or with themselves. Their
   // positions are no part of a step: an obstacle rests where it is until it is placed elsewhere or moved.
@@ -59,10 +63,12 @@ class CSCD_EXPORT SelfCollision {
     std::vector<std::array<double, 3>> positions;
 
     Obstacle(const Faces& corners, const Positions& where) {
-      for (Eigen::Index f = 0; f < corners.rows(); ++f)
-        faces.push_back({corners(f, 0), corners(f, 1), corners(f, 2)});
-      for (Eigen::Index v = 0; v < where.rows(); ++v)
-        positions.push_back({where(v, 0), where(v, 1), where(v, 2)});
+      corners.require_three_columns("obstacle, faces", "triangle");
+      where.require_three_columns("obstacle, positions", "vertex");
+      for (const int* c = corners.data(); faces.size() < corners.rows(); c += 3)
+        faces.push_back({c[0], c[1], c[2]});
+      for (const double* p = where.data(); positions.size() < where.rows(); p += 3)
+        positions.push_back({p[0], p[1], p[2]});
     }
   };
 
