@@ -87,7 +87,7 @@ struct Surface {
 
 ByRow<double> any_positions(Numbers& numbers, Index rows) {
   ByRow<double> out(any_count(numbers, rows), any_count(numbers, 3));
-  const bool wild = numbers.byte() >= 230;
+  const bool wild = is_odd(numbers);  // exact arithmetic takes long for numbers of all sizes
   for (Index i = 0; i < out.size(); ++i)
     out.data()[i] = wild && numbers.byte() % 2 == 0 ? any_double(numbers) : numbers.coordinate();
   return out;

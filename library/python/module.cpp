@@ -1,12 +1,13 @@
-#include <pybind11/eigen.h>
+#include <pybind11/eigen.h>  // vectors of contacts
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include "cscd/cscd.h"
 
-// The Python module `cscd`: the library with numpy arrays in and out. Row-major arrays of doubles are read
-// where they are. Calls release the lock of the interpreter.
+// The module `cscd._cscd`: the library with numpy arrays in and out. The package around it (cscd/__init__.py)
+// turns what callers give into arrays of the types below, which are read where they are, and has the
+// documentation. Calls release the lock of the interpreter.
 namespace {
 
 namespace py = pybind11;
@@ -39,9 +40,23 @@ py::array_t<int> table_of(const std::vector<std::array<int, kWidth>>& rows) {
   return out;
 }
 
-// Obstacles: faces and positions of each.
-using Surfaces = std::vector<std::pair<Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>,
-                                       Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>>;
+// A table of numbers, row by row.
+template <class Number>
+using Table = py::array_t<Number, py::array::c_style>;
+using Reals = Table<double>;
+using Surfaces = std::vector<std::pair<Table<int>, Reals>>;  // faces and positions
+
+template <class Number>
+cscd::MatrixView<Number> view(const Table<Number>& table) {
+  using Rows = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const Rows>(table.data(), table.shape(0), table.shape(1));
+}
+
+std::size_t index_of(int obstacle) {
+  if (obstacle < 0)
+    throw std::invalid_argument("obstacle " + std::to_string(obstacle) + ": obstacles are counted from 0");
+  return static_cast<std::size_t>(obstacle);
+}
 
 constexpr auto kWithoutLock = py::call_guard<py::gil_scoped_release>();
 
@@ -50,26 +65,14 @@ constexpr auto kWithoutLock = py::call_guard<py::gil_scoped_release>();
 PYBIND11_MODULE(_cscd, module) {
   module.doc() = "Continuous self-collision detection of deforming triangle meshes.";
 
-  py::class_<SelfCollision::Exclusions>(module, "Exclusions", R"(What does not count as a collision.
-
-Two features may collide if some vertex of one may collide with some vertex of the other.)")
+  py::class_<SelfCollision::Exclusions>(module, "Exclusions")
       .def(py::init([](std::vector<bool> obstacle, std::vector<int> group,
                        std::vector<std::pair<int, int>> ignoring, std::vector<std::pair<int, int>> vertices,
                        std::vector<std::pair<int, int>> faces, int rings, double rest_distance) {
-             return SelfCollision::Exclusions{std::move(obstacle), std::move(group), std::move(ignoring),
-                                              std::move(vertices), std::move(faces), rings,
-                                              rest_distance};
-           }),
-           py::kw_only(), py::arg("obstacle") = std::vector<bool>(), py::arg("group") = std::vector<int>(),
-           py::arg("groups_that_ignore_each_other") = std::vector<std::pair<int, int>>(),
-           py::arg("vertex_pairs") = std::vector<std::pair<int, int>>(),
-           py::arg("face_pairs") = std::vector<std::pair<int, int>>(), py::arg("rings") = 0,
-           py::arg("rest_distance") = 0.0,
-           R"(obstacle: [vertices] bool; vertices that never collide with each other.
-group: [vertices] int from 0, and pairs of groups that do not collide with each other.
-vertex_pairs, face_pairs: pairs of indices that do not collide.
-rings: vertices that are joined by at most so many edges do not collide.
-rest_distance: nor do vertices nearer than this in the reference positions.)");
+        return SelfCollision::Exclusions{std::move(obstacle), std::move(group), std::move(ignoring),
+                                         std::move(vertices), std::move(faces), rings,
+                                         rest_distance};
+      }));
 
   py::class_<SelfCollision::Contact>(module, "Contact", "Two features that touch.")
       .def_readonly("edges", &SelfCollision::Contact::edges,
@@ -139,65 +142,63 @@ rest_distance: nor do vertices nearer than this in the reference positions.)");
                std::to_string(a.start_crossings.size()) + " crossings at the start>";
       });
 
-  py::class_<SelfCollision>(module, "SelfCollision", R"(Continuous self-collision detection of one mesh.
-
-faces: [faces, 3] int, corners counter-clockwise seen from outside.
-reference: [vertices, 3] float, a pose without crossings, such as the pose at rest.
-obstacles: list of (faces, positions) of surfaces that the mesh collides with, and that never collide with each
-other; each rests until place_obstacle() or move_obstacle(). Their vertices and faces are numbered behind the
-mesh's, in contacts and in `exclude`.
-A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
-the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
-One object is used by one thread at a time; different objects are independent.)")
-      .def(py::init([](const SelfCollision::Faces& faces, const SelfCollision::Positions& reference,
-                       int threads, bool check_positions, bool check_start,
-                       const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
+  py::class_<SelfCollision>(module, "SelfCollision")
+      .def(py::init([](const Table<int>& faces, const Reals& reference, int threads, bool check_positions,
+                       bool check_start, const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
                        const std::string& preparation) {
              SelfCollision::Options options{threads, check_positions, check_start, exclude, {}, {}};
              const auto* const bytes = reinterpret_cast<const std::byte*>(preparation.data());
              options.preparation.assign(bytes, bytes + preparation.size());
              for (const auto& [corners, positions] : obstacles)
-               options.obstacles.emplace_back(corners, positions);
-             return std::make_unique<SelfCollision>(faces, reference, std::move(options));
+               options.obstacles.emplace_back(view(corners), view(positions));
+             return std::make_unique<SelfCollision>(view(faces), view(reference), std::move(options));
            }),
-           py::arg("faces"), py::arg("reference"), py::kw_only(), py::arg("threads") = 1,
-           py::arg("check_positions") = true, py::arg("check_start") = true,
-           py::arg("exclude") = SelfCollision::Exclusions(), py::arg("obstacles") = Surfaces(),
-           py::arg("preparation") = py::bytes(), kWithoutLock)
-      .def("place_obstacle", &SelfCollision::place_obstacle, py::arg("obstacle"), py::arg("positions"),
-           kWithoutLock, "Places an obstacle, counted from 0, where it rests in the steps from then on.")
-      .def("move_obstacle", &SelfCollision::move_obstacle, py::arg("obstacle"), py::arg("start"),
-           py::arg("end"), kWithoutLock,
-           "Moves an obstacle from start to end in every step, until it is placed or moved again.")
-      .def("is_free", &SelfCollision::is_free, py::arg("start"), py::arg("end"), kWithoutLock,
-           "Returns whether the step is free of contacts, and starts without crossings.")
-      .def("first_contact",
-           py::overload_cast<const SelfCollision::Positions&, const SelfCollision::Positions&>(
-               &SelfCollision::first_contact),
-           py::arg("start"), py::arg("end"), kWithoutLock,
-           "Returns an Answer with contacts of the earliest time, at least one where anything touches.")
-      .def("all_contacts",
-           py::overload_cast<const SelfCollision::Positions&, const SelfCollision::Positions&>(
-               &SelfCollision::all_contacts),
-           py::arg("start"), py::arg("end"), kWithoutLock, "Returns an Answer with all contacts.")
-      .def("largest_step", &SelfCollision::largest_step, py::arg("start"), py::arg("end"),
-           py::arg("safety") = 0.9, kWithoutLock,
-           "Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step.")
+           kWithoutLock)
       .def(
-          "candidates",
-          [](SelfCollision& self, const SelfCollision::Positions& start, const SelfCollision::Positions& end,
-             double radius) {
-            SelfCollision::Candidates found;
-            {
-              const py::gil_scoped_release without_lock;
-              found = self.candidates(start, end, radius);
-            }
-            return py::make_tuple(table_of(found.vertex_face), table_of(found.edge_edge));
+          "place_obstacle",
+          [](SelfCollision& self, int obstacle, const Reals& positions) {
+            self.place_obstacle(index_of(obstacle), view(positions));
           },
-          py::arg("start"), py::arg("end"), py::arg("radius"),
-          "Returns all pairs that come within the radius: [n, 2] int of a vertex and a face, and [m, 4] int "
-          "of "
-          "the ends of two edges.")
+          kWithoutLock)
+      .def(
+          "move_obstacle",
+          [](SelfCollision& self, int obstacle, const Reals& start, const Reals& end) {
+            self.move_obstacle(index_of(obstacle), view(start), view(end));
+          },
+          kWithoutLock)
+      .def(
+          "is_free",
+          [](SelfCollision& self, const Reals& start, const Reals& end) {
+            return self.is_free(view(start), view(end));
+          },
+          kWithoutLock)
+      .def(
+          "first_contact",
+          [](SelfCollision& self, const Reals& start, const Reals& end) {
+            return self.first_contact(view(start), view(end));
+          },
+          kWithoutLock)
+      .def(
+          "all_contacts",
+          [](SelfCollision& self, const Reals& start, const Reals& end) {
+            return self.all_contacts(view(start), view(end));
+          },
+          kWithoutLock)
+      .def(
+          "largest_step",
+          [](SelfCollision& self, const Reals& start, const Reals& end, double safety) {
+            return self.largest_step(view(start), view(end), safety);
+          },
+          kWithoutLock)
+      .def("candidates",
+           [](SelfCollision& self, const Reals& start, const Reals& end, double radius) {
+             SelfCollision::Candidates found;
+             {
+               const py::gil_scoped_release without_lock;
+               found = self.candidates(view(start), view(end), radius);
+             }
+             return py::make_tuple(table_of(found.vertex_face), table_of(found.edge_edge));
+           })
       .def(
           "preparation",
           [](const SelfCollision& self) {

@@ -72,10 +72,32 @@ function(cscd_python_module path)
   set(package ${PROJECT_BINARY_DIR}/python/cscd)
   set_target_properties(cscd_python PROPERTIES OUTPUT_NAME _cscd LIBRARY_OUTPUT_DIRECTORY ${package})
   target_link_libraries(cscd_python PRIVATE cscd_static cscd_flags)
-  configure_file(${PROJECT_SOURCE_DIR}/${path}/cscd/__init__.py ${package}/__init__.py COPYONLY)
-  set(python_folder lib/python3/dist-packages CACHE PATH "Where the Python package is installed")
-  install(TARGETS cscd_python DESTINATION ${python_folder}/cscd COMPONENT python)
-  install(FILES ${PROJECT_SOURCE_DIR}/${path}/cscd/__init__.py DESTINATION ${python_folder}/cscd COMPONENT python)
+  file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/cscd/*.py)
+  foreach(script IN LISTS scripts)
+    get_filename_component(name ${script} NAME)
+    configure_file(${script} ${package}/${name} COPYONLY)
+  endforeach()
+  # The folder depends on the prefix, and installing may name another prefix than configuring did: one below the prefix in
+  # which the Python looks for packages, or else where the Python of a virtual environment at the prefix would look.
+  execute_process(COMMAND ${PYTHON_EXECUTABLE} -c "import site, sys
+print(*site.getsitepackages(), sep=';', end='|lib/python%d.%d/site-packages' % sys.version_info[:2])"
+                  OUTPUT_VARIABLE folders COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCH "^(.*)\\|(.*)$" folders "${folders}")
+  install(CODE "
+    set(searched \"${CMAKE_MATCH_1}\")
+    if(NOT CSCD_PYTHON_FOLDER)
+      set(CSCD_PYTHON_FOLDER ${CMAKE_MATCH_2})
+      foreach(folder IN LISTS searched)
+        string(FIND \"\${folder}\" \"\${CMAKE_INSTALL_PREFIX}/lib\" at)
+        if(at EQUAL 0)
+          file(RELATIVE_PATH CSCD_PYTHON_FOLDER \"\${CMAKE_INSTALL_PREFIX}\" \"\${folder}\")
+          break()
+        endif()
+      endforeach()
+    endif()" COMPONENT python)
+  set(destination "\${CSCD_PYTHON_FOLDER}/cscd")
+  install(TARGETS cscd_python DESTINATION ${destination} COMPONENT python)
+  install(FILES ${scripts} DESTINATION ${destination} COMPONENT python)
 endfunction()
 
 # The examples, a consumer outside the tree, and the pages of the interface, as tests.

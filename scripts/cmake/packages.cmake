@@ -19,6 +19,8 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libgmp-dev"
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${summary}: C++ library")
 if(TARGET cscd_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
+  # cpack installs below a folder of its own, where nothing tells that the prefix will be /usr.
+  set(CPACK_CUSTOM_INSTALL_VARIABLES CSCD_PYTHON_FOLDER=lib/python3/dist-packages)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-cscd)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   # A module is for one minor version of Python.

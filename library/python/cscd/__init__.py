@@ -5,6 +5,10 @@
     answer = body.first_contact(before, after)       # [vertices, 3] float each
     print(answer.free, answer.time, answer.points)
 
+Arrays may have any layout and any real type that holds no number which the library cannot hold exactly: an index is
+whole and has at most 32 bits, a position is a number in double precision. Row-major arrays of doubles are read where they
+are. What is wrong raises ValueError with one line.
+
 read() gives the frames of a character or a point cache through the program `cscd`.
 """
 import pathlib
@@ -12,9 +16,119 @@ import shutil
 import subprocess
 import tempfile
 
-from ._cscd import Answer, Contact, Exclusions, SelfCollision, instruction_set
+from . import _cscd
+from ._cscd import Answer, Contact, instruction_set
+from ._values import INDEX, REAL, as_array, flag, numbers
 
 __all__ = ["Answer", "Contact", "Exclusions", "SelfCollision", "instruction_set", "read"]
+
+
+def _faces(value, name="faces"):
+    return numbers(value, name, INDEX, "faces", 3)
+
+
+def _positions(value, name):
+    return numbers(value, name, REAL, "vertices", 3)
+
+
+def _pairs(value, name):
+    empty = isinstance(value, (list, tuple)) and not value
+    return [] if empty else numbers(value, name, INDEX, "pairs", 2).tolist()
+
+
+class Exclusions(_cscd.Exclusions):
+    """What does not count as a collision.
+
+    Two features may collide if some vertex of one may collide with some vertex of the other.
+
+    obstacle: [vertices] bool; vertices that never collide with each other.
+    group: [vertices] int from 0, and pairs of groups that do not collide with each other.
+    vertex_pairs, face_pairs: [pairs, 2] int; pairs of indices that do not collide.
+    rings: vertices that are joined by at most so many edges do not collide.
+    rest_distance: nor do vertices nearer than this in the reference positions.
+    """
+
+    def __init__(self, *, obstacle=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,
+                 rest_distance=0.0):
+        marked = as_array(obstacle, "exclude, obstacle")
+        if marked.ndim != 1 or (marked.size and marked.dtype.kind != "b"):
+            raise ValueError("exclude, obstacle: give one boolean a vertex")
+        super().__init__(marked.tolist(), numbers(group, "exclude, group", INDEX, "vertices").tolist(),
+                         _pairs(groups_that_ignore_each_other, "exclude, groups_that_ignore_each_other"),
+                         _pairs(vertex_pairs, "exclude, vertex_pairs"), _pairs(face_pairs, "exclude, face_pairs"),
+                         int(numbers(rings, "exclude, rings", INDEX)),
+                         float(numbers(rest_distance, "exclude, rest_distance", REAL)))
+
+
+class SelfCollision(_cscd.SelfCollision):
+    """Continuous self-collision detection of one mesh.
+
+    faces: [faces, 3] int, corners counter-clockwise seen from outside.
+    reference: [vertices, 3] float, a pose without crossings, such as the pose at rest.
+    threads: on which one step is answered; answers do not depend on it.
+    check_positions: whether positions are searched for numbers that are not finite.
+    check_start: whether answers say which triangles cross at the start.
+    exclude: what does not count as a collision, an object of Exclusions.
+    obstacles: list of (faces, positions) of surfaces that the mesh collides with, and that never collide with each
+        other; each rests until place_obstacle() or move_obstacle(). Their vertices and faces are numbered behind the
+        mesh's, in contacts and in `exclude`.
+    preparation: what preparation() of another object returned.
+
+    A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
+    the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
+    One object is used by one thread at a time; different objects are independent.
+    """
+
+    def __init__(self, faces, reference, *, threads=1, check_positions=True, check_start=True, exclude=None, obstacles=(),
+                 preparation=b""):
+        if exclude is not None and not isinstance(exclude, Exclusions):
+            raise ValueError("exclude: give an object of cscd.Exclusions")
+        if not isinstance(preparation, (bytes, bytearray, memoryview)):
+            raise ValueError("preparation: give the bytes that preparation() returned")
+        try:
+            surfaces = [(corners, where) for corners, where in obstacles]
+        except (TypeError, ValueError):
+            raise ValueError("obstacles: give a list of pairs of faces and positions") from None
+        super().__init__(_faces(faces), _positions(reference, "reference positions"),
+                         int(numbers(threads, "threads", INDEX)), flag(check_positions, "check_positions"),
+                         flag(check_start, "check_start"), Exclusions() if exclude is None else exclude,
+                         [(_faces(corners, f"obstacle {i}, faces"), _positions(where, f"obstacle {i}, positions"))
+                          for i, (corners, where) in enumerate(surfaces)], bytes(preparation))
+
+    def place_obstacle(self, obstacle, positions):
+        """Places an obstacle, counted from 0, where it rests in the steps from then on."""
+        super().place_obstacle(int(numbers(obstacle, "obstacle", INDEX)), _positions(positions, "positions"))
+
+    def move_obstacle(self, obstacle, start, end):
+        """Moves an obstacle from start to end in every step, until it is placed or moved again."""
+        super().move_obstacle(int(numbers(obstacle, "obstacle", INDEX)), *_step(start, end))
+
+    def is_free(self, start, end):
+        """Returns whether the step is free of contacts, and starts without crossings."""
+        return super().is_free(*_step(start, end))
+
+    def first_contact(self, start, end):
+        """Returns an Answer with contacts of the earliest time, at least one where anything touches."""
+        return super().first_contact(*_step(start, end))
+
+    def all_contacts(self, start, end):
+        """Returns an Answer with all contacts."""
+        return super().all_contacts(*_step(start, end))
+
+    def largest_step(self, start, end, safety=0.9):
+        """Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step."""
+        return super().largest_step(*_step(start, end), float(numbers(safety, "safety", REAL)))
+
+    def candidates(self, start, end, radius):
+        """Returns all pairs that come within the radius.
+
+        These are [n, 2] int of a vertex and a face, and [m, 4] int of the ends of two edges.
+        """
+        return super().candidates(*_step(start, end), float(numbers(radius, "radius", REAL)))
+
+
+def _step(start, end):
+    return _positions(start, "start positions"), _positions(end, "end positions")
 
 
 def read(path, *options, program="cscd"):
