@@ -78,6 +78,10 @@ TEST(Input, EveryLayoutIsReadAlike) {
   const Wide twice = kStart.replicate(1, 2).reshaped<Eigen::RowMajor>(12, 3);
   expect_time(body(), Eigen::Map<const Rows, 0, Eigen::OuterStride<>>(twice.data(), 6, 3, {6}), kEnd);
 
+  std::vector<Eigen::Vector3d> list;
+  for (const auto& row : kStart.rowwise()) list.push_back(row.transpose());
+  expect_time(body(), std::span(list.data()->data(), 3 * list.size()), end);
+
   const std::vector<std::uint32_t> flat_faces{0, 1, 2, 3, 4, 5};
   const Eigen::Matrix<long, Dynamic, Dynamic> long_faces = kFaces.cast<long>();
   const Eigen::Matrix<std::uint8_t, 2, 3> small_faces = kFaces.cast<std::uint8_t>();

@@ -33,9 +33,9 @@
 //   - candidates() holds every pair of features that comes within the radius.
 // Nothing is sampled, and no tolerance decides. The proofs are in core/soundness.md of the project.
 //
-// What it costs: preparing a character takes as long as some hundreds to some thousands of steps without
-// contacts, preparing cloth as long as some tens. A step takes longer the more of the surface is in contact.
-// The README of the project shows times from records.
+// What it costs: preparing a character takes as long as some hundreds of steps without contacts, at times a
+// thousand, and preparing cloth as long as some tens. A step takes longer the more of the surface is in
+// contact. The README of the project shows times from records.
 namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
@@ -86,11 +86,11 @@ class CSCD_EXPORT SelfCollision {
     std::vector<std::pair<int, int>> vertex_pairs;
     std::vector<std::pair<int, int>> face_pairs;
     int rings = 0;             // vertices joined by at most so many edges do not collide
-    double rest_distance = 0;  // nor do vertices that are nearer than this in the reference positions
+    double rest_distance = 0;  // nor do vertices that are nearer than this in the reference positions; finite
   };
 
   struct Options {
-    int threads = 1;  // on which one step is answered; answers do not depend on it
+    int threads = 1;  // on which one step is answered, 1 to 1024; answers do not depend on it
     // Whether positions are searched for numbers that are not finite. Switch it off where the caller has done
     // so; the answer to such numbers is then undefined.
     bool check_positions = true;
