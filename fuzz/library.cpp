@@ -227,8 +227,9 @@ void target(Bytes bytes) {
   std::optional<Surface> beside;
   if (numbers.byte() % 4 == 0) {
     beside = any_surface(numbers);
-    for (int k = 0; k < std::min<Index>(3, beside->positions.cols()); ++k)
-      if (!is_odd(numbers)) beside->positions.col(k).array() += 300;
+    if (numbers.byte() % 2 == 0)  // elsewhere, so that many steps meet no obstacle
+      for (double* p = beside->positions.data(); p < beside->positions.data() + beside->positions.size(); ++p)
+        *p += 300;
     bool taken = false;
     const bool refused_alone = refused(beside->faces.cols() == 3 && beside->positions.cols() == 3 &&
                                            (beside->faces.array() >= std::numeric_limits<int>::min()).all() &&

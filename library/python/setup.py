@@ -31,7 +31,7 @@ class ByCMake(build_ext):
         if not GIVEN:
             subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCSCD_LIBRARY_ONLY=ON", "-DCMAKE_BUILD_TYPE=Release",
                             f"-DPYTHON_EXECUTABLE={sys.executable}"], check=True)
-            subprocess.run(["cmake", "--build", build, "--target", "cscd_python", "--parallel"], check=True)
+            subprocess.run(["cmake", "--build", build, "--target", "cscd_python", "--parallel", str(os.cpu_count())], check=True)
         subprocess.run(["cmake", f"-DCMAKE_INSTALL_PREFIX={pathlib.Path(self.build_lib).resolve()}",
                         "-DCMAKE_INSTALL_COMPONENT=python", "-DCSCD_PYTHON_FOLDER=.", "-P", build / "cmake_install.cmake"],
                        check=True)
