@@ -3,7 +3,6 @@
 
 #include "core/elementary/catalogue.h"
 #include "core/elementary/exact/exact.h"
-
 #include "fuzz/numbers.h"
 
 namespace cscd::fuzz {

@@ -7,7 +7,6 @@
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
-
 #include "fuzz/numbers.h"
 
 namespace cscd::fuzz {

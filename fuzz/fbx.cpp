@@ -1,9 +1,8 @@
 // FBX files, binary and text: they are read, and posed within their clips and far beyond.
 #include "core/base/error.h"
+#include "fuzz/target.h"
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/read_fbx.h"
-
-#include "fuzz/target.h"
 
 namespace cscd::fuzz {
 

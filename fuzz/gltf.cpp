@@ -1,8 +1,7 @@
 // glTF files, text and binary.
 #include "core/base/error.h"
-#include "scenes/import/gltf/read_gltf.h"
-
 #include "fuzz/input_file.h"
+#include "scenes/import/gltf/read_gltf.h"
 
 namespace cscd::fuzz {
 

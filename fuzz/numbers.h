@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "core/base/vec3.h"
-
 #include "fuzz/target.h"
 
 namespace cscd::fuzz {

@@ -5,9 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/mesh/triangle_mesh.h"
-#include "scenes/clip/test_hdf5_leaks.h"
-
 #include "fuzz/input_file.h"
+#include "scenes/clip/test_hdf5_leaks.h"
 
 namespace cscd::fuzz {
 

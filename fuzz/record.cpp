@@ -2,7 +2,6 @@
 #include "bench/record/record.h"
 
 #include "core/base/error.h"
-
 #include "fuzz/input_file.h"
 
 namespace cscd::fuzz {

@@ -2,7 +2,6 @@
 #include "scenes/exchange/surface_file.h"
 
 #include "core/base/error.h"
-
 #include "fuzz/target.h"
 
 namespace cscd::fuzz {

@@ -6,9 +6,9 @@
 
 #include "core/base/test_allocations.h"
 #include "core/mesh/test_shapes.h"
+#include "library/test_steps.h"
 
 #include "cscd/cscd.h"
-#include "library/test_steps.h"
 
 namespace cscd {
 namespace {

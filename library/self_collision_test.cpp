@@ -6,7 +6,6 @@
 
 #include "core/fast/drvbc_fast.h"
 #include "core/session/session.h"
-
 #include "library/test_steps.h"
 
 // Holds every answer of the library to a search of all feature pairs with the exact test.

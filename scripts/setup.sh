@@ -11,8 +11,8 @@ packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
 packages_counters=(valgrind)
 packages_kernels=(libbenchmark-dev)
-packages_tests=(assimp-testmodels chromium pybind11-dev python3-dev python3-numpy python3-h5py python3-yaml doxygen
-                pkg-config python3-pip python3-setuptools python3-wheel)
+packages_tests=(assimp-testmodels chromium clang-format pybind11-dev python3-dev python3-numpy python3-h5py
+                python3-pip python3-setuptools python3-wheel doxygen pkg-config)
 packages_clang=(clang)
 
 say() { printf '\n== %s\n' "$*"; }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-
 #include "library/dispatch/copy.h"
 
 // The functions of cscd.h in a build for all instruction sets. Each hands the call on to the copy that is

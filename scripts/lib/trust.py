@@ -22,8 +22,8 @@ import subprocess
 
 from pages import table
 from records import read_json, refuse
+from tracked import ROOT, tracked_files
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "results" / "trust"
 # What the page adds to every record of a kind.
 NOTES = {
@@ -57,7 +57,9 @@ def write_record(record):
 def read_records():
     """(path, record), the oldest first."""
     records = []
-    for path in FOLDER.glob("*.json"):
+    for path in tracked_files("results/trust"):
+        if path.suffix != ".json":
+            continue
         record = read_json(path)
         missing = {"kind", "title", "says", "date", "commit", "command", "headline", "figures", "tables"} - record.keys()
         if missing:

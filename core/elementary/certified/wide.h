@@ -19,7 +19,7 @@ class Wide {
   static constexpr int kWords = 288;
   static constexpr int kBits = 64 * kWords;
 
-  // NOLINTNEXTLINE: words beyond the size are never read, and clearing them would cost more than most sums.
+  // Words beyond the size are never read, and clearing them would cost more than most sums.
   Wide() {}
   Wide(std::int64_t value) : size_(value != 0), negative_(value < 0) {
     word_[0] = negative_ ? 0 - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
