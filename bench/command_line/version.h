@@ -4,7 +4,7 @@
 
 namespace cscd::bench {
 
-// "0.1.0"
+// The version that CMakeLists.txt gives the project, such as "1.2.3".
 std::string version_number();
 
 // Returns what this program was built from and with, one line each: version, commit, compiler, instruction
