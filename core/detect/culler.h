@@ -54,7 +54,7 @@ class TrianglePairSink {
 };
 
 // A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions
-// are called three times an interval, never once per pair. A culler owns its scratch memory and reuses it;
+// are called a few times an interval, never once per pair. A culler owns its scratch memory and reuses it;
 // its results depend on the interval alone, unless the strategy follows the surface (rule fresh-detector,
 // core/soundness.md).
 class Culler {

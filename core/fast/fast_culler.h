@@ -21,9 +21,9 @@ namespace cscd::fast {
 // A pair of triangles that is passed on to the elementary test costs about as much as so many overlap tests.
 inline constexpr std::uint64_t kTestsOfPair = 40;
 
-// The culler behind `drvbc_fast` and `drvbc_fast_complete`. An interval takes one pass over all vertices
-// (refit), one pass over all patches (classify), and a descent to the pairs of triangles that nothing proves
-// apart (cull), all three on as many threads as the set-up asks for.
+// The culler behind all strategies that make_drvbc_fast (drvbc_fast.h) prepares. An interval takes one pass
+// over all vertices (refit), one pass over all patches (classify), and a descent to the pairs of triangles
+// that nothing proves apart (cull), all three on as many threads as the set-up asks for.
 //
 // In a long step, in which the surface moves far, hardly a triangle faces its observer throughout, and most
 // boxes overlap. Such a step is looked at in parts: a pair of triangles that does not touch in any of them
