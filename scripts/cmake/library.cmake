@@ -33,7 +33,7 @@ function(cscd_install_library room)
     add_library(cscd_${kind} ${type} ${objects})
     add_library(cscd::cscd_${kind} ALIAS cscd_${kind})
     set_target_properties(cscd_${kind} PROPERTIES OUTPUT_NAME cscd LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
-                          SOVERSION ${PROJECT_VERSION_MAJOR})
+                          SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
     target_compile_features(cscd_${kind} INTERFACE cxx_std_20)
     target_include_directories(cscd_${kind} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/library/include>
                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
