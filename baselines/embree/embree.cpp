@@ -1,6 +1,10 @@
 #include "baselines/embree/embree.h"
 
+#if __has_include(<embree3/rtcore.h>)
 #include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
 #include <span>
 #include <stdexcept>
 #include <string>

@@ -74,7 +74,7 @@ constexpr std::array kStrategies = {
     of_paper({"selfccd", "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
               Guarantee::complete, kAnySurface, make_selfccd}),
 #ifdef CSCD_BASELINES_EMBREE
-    in_library({"embree", "Embree 3, rtcCollide of boxes", Guarantee::complete, kAnySurface, make_embree}),
+    in_library({"embree", kEmbreeTitle, Guarantee::complete, kAnySurface, make_embree}),
 #endif
 #ifdef CSCD_BASELINES_CGAL_BOXES
     in_library(
