@@ -29,6 +29,15 @@ TEST(Dyadic, HoldsEveryKindOfDoubleExactly) {
   }
 }
 
+// scripts/test builds with assertions. Mutation: it builds without them, and this test is skipped.
+TEST(DyadicDeathTest, AssertsThatTheNumberIsFinite) {
+#ifdef NDEBUG
+  GTEST_SKIP() << "built without assertions";
+#else
+  EXPECT_DEATH(dyadic(std::numeric_limits<double>::infinity()), "isfinite");
+#endif
+}
+
 TEST(Dyadic, ComparesAndHalvesAcrossExponents) {
   EXPECT_LT(compare(dyadic(0.25), dyadic(0.5)), 0);
   EXPECT_GT(compare(dyadic(3.0), dyadic(0x1p-1074)), 0);

@@ -1,0 +1,5 @@
+# cmake -C scripts/cmake/test.cmake: the release build with this project's assertions on, for the test suite. Those of Eigen and CGAL
+# stay off, because they are in the innermost loops.
+include(${CMAKE_CURRENT_LIST_DIR}/release.cmake)
+# FORCE: a folder that was configured without assertions has other flags in its cache.
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DEIGEN_NO_DEBUG -DCGAL_NDEBUG" CACHE STRING "" FORCE)
