@@ -62,7 +62,6 @@ TEST(Input, EveryLayoutIsReadAlike) {
       float_end(flat_end.begin(), flat_end.end());
   const Eigen::Matrix<double, 6, 3> fixed = kStart;
 
-  const SelfCollision plain(kFaces, kStart);
   const auto body = [&] { return SelfCollision(kFaces, kStart); };
   expect_time(body(), start, end);
   expect_time(body(), kStart, kEnd);
@@ -152,31 +151,32 @@ TEST(Input, WrongShapesAreRefusedWhereverTheyAreGiven) {
       {"end positions", [&](const MatrixXd& x) { body.candidates(kStart, x, 1); }},
       {"obstacle 0, start positions", [&](const MatrixXd& x) { body.place_obstacle(0, x); }},
       {"obstacle 0, start positions", [&](const MatrixXd& x) { body.move_obstacle(0, x, kEnd); }},
-      {"obstacle 0, end positions", [&](const MatrixXd& x) { body.move_obstacle(0, kStart, x); }},
-      {"obstacle, positions", [&](const MatrixXd& x) {
-         SelfCollision::Obstacle made(kFaces, x);
-         if (x.rows() != 6) throw std::invalid_argument("obstacle, positions: checked with the mesh");
-       }}};
+      {"obstacle 0, end positions", [&](const MatrixXd& x) { body.move_obstacle(0, kStart, x); }}};
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
-  for (const auto& [name, call] : calls) {
+  for (const std::pair<const char*, Call>& entry : calls) {
+    const std::string name = entry.first;
+    const Call& call = entry.second;
     SCOPED_TRACE(name);
     for (const Eigen::Index columns : {0, 1, 2, 4, 6, 17})
-      expect_refused(std::string(name) + ": 6 rows of " + std::to_string(columns) + " columns",
+      expect_refused(name + ": 6 rows of " + std::to_string(columns) + " columns",
                      [&] { call(MatrixXd::Zero(6, columns)); });
-    expect_refused("3 rows of 6 columns; give one row of three for each vertex: transpose",
+    expect_refused(name + ": 3 rows of 6 columns; give one row of three for each vertex: transpose",
                    [&] { call(kStart.transpose()); });
-    expect_refused("", [&] { call(MatrixXd()); });
-    if (std::string(name) == "obstacle, positions") break;
-    for (const Eigen::Index count : {0, 1, 3, 5, 7, 600})
-      if (std::string(name) != "reference positions" || count < 6)
-        expect_refused(std::string(name) == "reference positions" ? "outside [0, " : name,
-                       [&] { call(MatrixXd::Zero(count, 3)); });
+    expect_refused(name, [&] { call(MatrixXd()); });
+    for (const Eigen::Index count : {0, 1, 3, 5, 7, 600}) {
+      if (name != "reference positions")
+        expect_refused(name, [&] { call(MatrixXd::Zero(count, 3)); });
+      else if (count < 6)
+        expect_refused("outside [0, ", [&] { call(MatrixXd::Zero(count, 3)); });
+    }
     for (const double wrong : {nan, inf, -inf}) {
       MatrixXd x = kStart;
       x(4, 2) = wrong;
-      expect_refused(std::string(name) + ": vertex 4", [&] { call(x); });
+      expect_refused(name + ": vertex 4", [&] { call(x); });
     }
   }
+  expect_refused("obstacle, positions: 3 rows of 6 columns",
+                 [&] { SelfCollision::Obstacle(kFaces, kStart.transpose()); });
   expect_refused("obstacle, faces: 1 rows of 4 columns", [&] { SelfCollision::Obstacle(quads, square); });
   EXPECT_EQ(body.first_contact(kStart, kEnd).time(), 0.5) << "the object outlives wrong calls";
 }
