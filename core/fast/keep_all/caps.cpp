@@ -160,7 +160,7 @@ std::ptrdiff_t positive(const Loop& loop, std::span<const Vec3> positions, const
 // Chooses the apex of a loop. `all` are the vertices of the cluster.
 Cap cap(const Loop& loop, const Loop& all, std::span<const Vec3> reference, const Vec3& from) {
   Cap best{};
-  Vec3 apex;
+  Vec3 apex = Vec3::Zero();
   std::ptrdiff_t most = -1;
   for (const auto& [towards, opposite] :
        {std::pair(middle(loop), false), std::pair(middle(loop), true), std::pair(middle(all), true)}) {
