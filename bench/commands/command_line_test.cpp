@@ -161,11 +161,9 @@ TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
   EXPECT_EQ(record["scene"]["name"], "mein_Stück");
   EXPECT_EQ(record["scene"]["path"], "mein Stück.json");
   const Ran tables = run("cscd tables r.json");
-  EXPECT_NE(tables.out.find("| mein_Stück |"), std::string::npos) << tables.out;
+  EXPECT_NE(tables.out.find(" mein_Stück\n"), std::string::npos) << tables.out;
   EXPECT_EQ(tables.out.find("no record of"), std::string::npos) << tables.out;
   EXPECT_NE(tables.out.find("times faster"), std::string::npos);
-  EXPECT_NE(tables.out.find("--scene 'mein Stück.json' --strategy base,drvbc_fast "), std::string::npos)
-      << tables.out;
 }
 
 TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {

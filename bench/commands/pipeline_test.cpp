@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "bench/rows/catalogue.h"
 #include "bench/testing/test_shell.h"
@@ -94,11 +95,15 @@ TEST_F(PipelineRun, IsNamedByRecordsTablesAndClaims) {
     for (const char* counter : {"bvot", "pctp", "feature_pairs", "contacts"})
       EXPECT_EQ(today["strategies"][s]["counts"][counter], published["strategies"][s]["counts"][counter]);
 
-  const std::string tables = text("tables.md");
-  EXPECT_NE(tables.find("**small**, pipeline `published`"), std::string::npos) << tables;
-  EXPECT_NE(tables.find("base: refit (ms), `published`"), std::string::npos) << tables;
-  EXPECT_NE(tables.find("base: refit (ms), `today`"), std::string::npos) << tables;
-  EXPECT_NE(tables.find("| base: PCTP (thousands) |"), std::string::npos) << "counters stand once";
+  const std::string page = text("tables.md"), csv = text("tables.csv");
+  EXPECT_NE(page.find("| small, published |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| small, today |"), std::string::npos) << page;
+  for (const char* pipeline : {"published", "today"}) {
+    const std::regex line("\nbeside,small,base.refit,[^\n]*," + std::string(pipeline) + ",\n");
+    EXPECT_TRUE(std::regex_search(csv, line)) << csv;
+  }
+  EXPECT_TRUE(std::regex_search(csv, std::regex("\nbeside,small,base.pctp,[^\n]*,both,\n")))
+      << "counters stand once";
 
   // A record without the field is an old one.
   nlohmann::json old = today;
@@ -106,7 +111,7 @@ TEST_F(PipelineRun, IsNamedByRecordsTablesAndClaims) {
   put("old.json", old.dump());
   const Ran read = run("cscd tables old.json");
   EXPECT_EQ(read.status, 0) << read.errors;
-  EXPECT_NE(read.out.find("pipeline `today`"), std::string::npos);
+  EXPECT_NE(read.out.find("(pipeline today)"), std::string::npos) << read.out;
   expect_refused(run("cscd tables old.json today.json"), "in the pipeline today");
 }
 
@@ -118,18 +123,31 @@ TEST_F(PipelineRun, RefusesWhatThePaperDoesNotHave) {
   EXPECT_EQ(files(), "");
 }
 
-TEST_F(PipelineRun, TablesShowWhatIsAskedFor) {
-  ASSERT_EQ(run("cscd run --scene small --strategy base,mcd,drvbc --repetitions 2 --json r.json").status, 0);
-  const Ran ran = run("cscd tables r.json --strategy base --columns pctp,refit --no-intervals");
-  ASSERT_EQ(ran.status, 0) << ran.errors;
-  EXPECT_NE(ran.out.find("base: PCTP"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("base: refit"), std::string::npos) << ran.out;
-  const std::string shown = ran.out.substr(ran.out.find("\n### "));  // what precedes names the command
-  EXPECT_EQ(shown.find("mcd"), std::string::npos) << shown;
-  EXPECT_EQ(ran.out.find("BVOT"), std::string::npos) << ran.out;
-  expect_refused(run("cscd tables r.json --strategy nobody"), "in no record");
-  expect_refused(run("cscd tables r.json --columns nothing"), "no column is left");
-  expect_refused(run("cscd tables r.json --scene nowhere"), "neither published nor in a record");
+// A folder that scripts/reproduce wrote holds tables.json.gz too. Mutation: what is no record of a run is
+// read.
+TEST_F(PipelineRun, TablesAndReportsTakeAFolder) {
+  const Ran made = run(
+      "mkdir results && cscd run --scene small --strategy base,mcd,drvbc,drvbc_fast --repetitions 2 --json "
+      "results/r.json.gz && cscd tables results --out results && gzip results/tables.json");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const Ran folder = run("cscd tables results"), files = run("cscd tables results/*.json.gz");
+  EXPECT_EQ(folder.status, 0) << folder.errors;
+  EXPECT_EQ(folder.errors, "");
+  EXPECT_NE(folder.out.find("Table 3. "), std::string::npos) << folder.out;
+  EXPECT_EQ(files.status, 0) << files.errors;
+  EXPECT_NE(files.errors.find("left out: results/tables.json.gz"), std::string::npos) << files.errors;
+  EXPECT_EQ(folder.out.substr(0, folder.out.rfind('\n', folder.out.size() - 2)),
+            files.out.substr(0, files.out.rfind('\n', files.out.size() - 2)))
+      << "but for the place of the page";
+  EXPECT_NE(run("cscd tables results --intervals").out.find(" low "), std::string::npos);
+  EXPECT_EQ(folder.out.find(" low "), std::string::npos);
+  const Ran report = run("cscd report results/ -o results/site && cscd tables results");
+  EXPECT_EQ(report.status, 0) << report.errors;
+  EXPECT_NE(report.out.find("page        results/site/index.html\n"), std::string::npos) << report.out;
+  expect_refused(run("mkdir none && cscd tables none"), "none holds no record of cscd run");
+  expect_refused(run("cscd tables results/tables.json.gz"), "holds no record of cscd run");
+  expect_refused(run("echo '{' >results/broken.json; cscd tables results"), "broken.json: is no record");
+  expect_refused(run("cscd tables nowhere"), "nowhere");
 }
 
 }  // namespace

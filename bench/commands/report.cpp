@@ -1,5 +1,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -18,7 +19,8 @@
 #include "bench/tables/claims.h"
 #include "bench/tables/paper_tables.h"
 #include "bench/tables/record_inputs.h"
-#include "bench/tables/tables_text.h"
+#include "bench/tables/shaped_table.h"
+#include "bench/tables/tables_json.h"
 #include "bench/view/html.h"
 #include "core/base/error.h"
 
@@ -33,35 +35,15 @@ struct ReportOptions {
   bool views = false, force = false;
 };
 
-// The files that were named, by what they hold.
-struct Sources {
-  std::vector<std::string> runs, accuracy, scale;
-};
+constexpr std::string_view kAccuracySchema = "cscd.accuracy/1", kScaleSchema = "cscd.scale/1";
 
-// Reads a record of any kind whole. Throws InputError for a file that cannot be read or is no JSON object.
-json read_document(const std::string& path) {
-  json document = json::parse(record_text(path), nullptr, false);
-  if (!document.is_object())
-    throw InputError("record " + path + ": is no record; name what cscd run, accuracy or scale wrote");
-  return document;
-}
-
-Sources sorted_by_kind(const std::vector<std::string>& paths) {
-  Sources sources;
-  for (const std::string& path : paths) {
-    const json document = read_document(path);
-    const json schema = document.value("schema", json());
-    (schema == "cscd.accuracy/1" ? sources.accuracy
-     : schema == "cscd.scale/1"  ? sources.scale
-                                 : sources.runs)
-        .push_back(path);
-  }
-  if (sources.runs.empty())
-    throw InputError("none of these is a record of cscd run, which a report is about; name at least one");
-  if (sources.accuracy.size() > 1 || sources.scale.size() > 1)
-    throw InputError("record " + (sources.accuracy.size() > 1 ? sources.accuracy : sources.scale)[1] +
-                     ": a second record of this study; give one");
-  return sources;
+// The only record of a study; an empty path where none was named.
+std::filesystem::path only_record(const RecordFiles& files, std::string_view schema) {
+  const auto found = files.find(std::string(schema));
+  if (found == files.end()) return {};
+  if (found->second.size() > 1)
+    throw InputError("record " + found->second[1].string() + ": a second record of this study; give one");
+  return found->second.front();
 }
 
 // The mean over the timed intervals, and of the repetitions the median.
@@ -92,13 +74,13 @@ json strategy_of(const StrategyRecord& strategy) {
 
 // What the page says of the record of a study, where there is one: its environment, the command that made
 // it, and its points.
-json study_json(const std::vector<std::string>& paths, const char* schema_file,
+json study_json(const std::filesystem::path& path, const char* schema_file,
                 json (*points)(const json& record), const std::function<std::string(std::string)>& link) {
-  if (paths.empty()) return nullptr;
-  const json record = read_document(paths[0]);
+  if (path.empty()) return nullptr;
+  const json record = json::parse(record_text(path));
   if (const std::string violation = schema_violation(record, schema_file); !violation.empty())
-    throw InputError("record " + paths[0] + ": does not follow its schema at " + violation);
-  return {{"file", link(paths[0])},
+    throw InputError("record " + path.string() + ": does not follow its schema at " + violation);
+  return {{"file", link(path)},
           {"command", record.at("command")},
           {"environment", record.at("environment")},
           {"data", points(record)}};
@@ -123,8 +105,12 @@ json write_views(const std::vector<Record>& records, const std::filesystem::path
 
 void report(const ReportOptions& options) {
   require_viewer();
-  const Sources sources = sorted_by_kind(options.records);
-  const std::vector<Record> records = read_records(sources.runs);
+  constexpr std::array<std::string_view, 3> wanted = {kRunSchema, kAccuracySchema, kScaleSchema};
+  const RecordFiles files = record_files(options.records, wanted);
+  const std::filesystem::path accuracy = only_record(files, kAccuracySchema),
+                              scale = only_record(files, kScaleSchema);
+  std::vector<std::filesystem::path> runs = files.at(std::string(kRunSchema));
+  const std::vector<Record> records = read_records(runs);
   const std::filesystem::path folder(options.folder), page = folder / "index.html";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -141,7 +127,7 @@ void report(const ReportOptions& options) {
   json rows = json::array();
   std::string command = "cscd report";
   for (const std::string& path : options.records)
-    command += " " + std::filesystem::path(path).filename().string();
+    command += " " + std::filesystem::path(path + "/").parent_path().filename().string();
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     json strategies = json::array();
@@ -149,7 +135,7 @@ void report(const ReportOptions& options) {
     // A record made with the paper's code around every method says so.
     rows.push_back({{"scene", record.scene.name},
                     {"pipeline", to_string(record.pipeline)},
-                    {"file", link(sources.runs[r])},
+                    {"file", link(runs[r])},
                     {"counted_intervals", record.counted_intervals},
                     {"strategies", std::move(strategies)}});
   }
@@ -160,14 +146,19 @@ void report(const ReportOptions& options) {
     history["folder"] = link(options.history);
   }
   if (options.views) command += " --view";
+  const std::vector<PaperTable> made = paper_tables(records);
+  std::vector<ShapedTable> shaped = shaped_tables(made, records);
+  shaped.push_back(times_of_strategies(records));
   const std::string text =
       report_with({{"schema", "cscd.report/1"},
                    {"base", ""},
                    {"command", command + " -o " + folder.filename().string()},
                    {"records", std::move(rows)},
-                   {"tables", tables_json(paper_tables(records), judge_claims(records), records)},
-                   {"accuracy", study_json(sources.accuracy, "accuracy.schema.json", accuracy_points, link)},
-                   {"growth", study_json(sources.scale, "scale.schema.json", growth_points, link)},
+                   {"shaped", shaped_json(shaped)},
+                   {"mark_note", kMarkNote},
+                   {"tables", tables_json(made, judge_claims(records), records)},
+                   {"accuracy", study_json(accuracy, "accuracy.schema.json", accuracy_points, link)},
+                   {"growth", study_json(scale, "scale.schema.json", growth_points, link)},
                    {"history", std::move(history)},
                    {"views", options.views ? write_views(records, folder, options.force) : json::object()}});
   output.commit(text);
@@ -184,12 +175,12 @@ void add_report(CLI::App& app) {
       "Write one HTML page of the numbers in records: speed, work per interval, stage times, the paper's "
       "tables\n"
       "published beside measured, its claims, accuracy against time, growth and history.\n\n"
-      "  cscd report results/FOLDER/{rope,hand}*.json.gz --view -o site\n\n"
+      "  cscd report results/FOLDER --view -o site\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
   command
       ->add_option("records", options->records,
                    "what cscd run wrote, at most one a scene and pipeline; and what cscd accuracy and cscd "
-                   "scale wrote")
+                   "scale wrote; or folders of these")
       ->required();
   command->add_option("--history", options->history,
                       "a folder of entries of cscd history, such as results/history, to show too");

@@ -39,7 +39,7 @@ TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
   ASSERT_EQ(
       run("cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json").status,
       0);
-  expect_refused(run("cscd report a.json -o site"), "none of these is a record of cscd run");
+  expect_refused(run("cscd report a.json -o site"), "a.json holds no record of cscd run");
   expect_refused(run("cscd report small.json a.json a.json -o site"), "a second record of this study");
   expect_refused(run("echo {} > empty.json; cscd report empty.json -o site"), "empty.json");
   expect_refused(run("echo nothing > text.json; cscd report text.json -o site"), "text.json: is no record");

@@ -35,41 +35,22 @@ std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::
   return columns;
 }
 
-std::vector<std::string> rows_of(const ordered_json& definition, const ordered_json& published,
-                                 std::span<const Record> records, const TableChoice& choice) {
-  std::vector<std::string> scenes, recorded;
-  for (const Record& record : records) add_new(recorded, record.scene.name);
-  if (definition.contains("scenes"))
-    if (const ordered_json* rows = find_published(published, definition["scenes"], ""))
-      for (const auto& [scene, figures] : rows->items()) scenes.push_back(scene);
-  // Where no scene of the paper's was recorded, its columns would be empty: the scenes that were take them.
-  const bool of_paper = std::any_of(records.begin(), records.end(), [&](const Record& record) {
-    return record.scene.path.empty() &&
-           std::find(scenes.begin(), scenes.end(), record.scene.name) != scenes.end();
-  });
-  if (!of_paper && !records.empty()) scenes = recorded;
-  std::erase_if(scenes, [&](const std::string& scene) { return !choice.wants_scene(scene); });
-  return scenes;
-}
-
 Cell fill(const ordered_json& column, const ordered_json& published, const std::string& scene,
           std::span<const Record> records, Pipeline pipeline) {
   Cell cell;
-  const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
-    return candidate.scene.name == scene && candidate.pipeline == pipeline;
-  });
-  if (record == records.end())
+  const Record* record = find_record(records, scene, pipeline);
+  if (record == nullptr)
     cell.measured.reason =
-        "no record of " + scene +
-        (pipelines_of(records).size() == 2 ? " in the pipeline " + std::string(to_string(pipeline)) : "") +
-        " was given";
+        "no record of " + scene + " in the pipeline " + std::string(to_string(pipeline)) + " was given";
   else
     cell.measured = measure(column, *record);
   // A scene of the user's own is not the paper's, even if it has that name.
-  const bool own = record != records.end() && !record->scene.path.empty();
-  if (column.contains("published") && !own)
-    if (const ordered_json* figure = find_published(published, column["published"], scene))
+  if (record != nullptr && !record->scene.path.empty()) return cell;
+  for (const std::string path : column.value("published", ordered_json::array()))
+    if (const ordered_json* figure = find_published(published, path, scene)) {
       cell.published = figure->get<double>();
+      break;
+    }
   return cell;
 }
 
@@ -122,10 +103,6 @@ std::vector<Filled> by_pipeline(const ordered_json& definition, const ordered_js
   return columns;
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 }  // namespace
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -144,12 +121,6 @@ const ordered_json* find_published(const ordered_json& published, const std::str
   return place;
 }
 
-std::optional<Pipeline> only_pipeline(const PaperTable& table) {
-  for (const Column& column : table.columns)
-    if (column.pipeline != table.columns.front().pipeline) return std::nullopt;
-  return table.columns.empty() ? std::nullopt : table.columns.front().pipeline;
-}
-
 std::string_view pipeline_text(const Column& column) {
   return column.pipeline ? to_string(*column.pipeline) : "both";
 }
@@ -163,41 +134,39 @@ std::vector<Pipeline> pipelines_of(std::span<const Record> records) {
   return pipelines;
 }
 
-bool TableChoice::wants(const ordered_json& column) const {
-  const std::string key = column.at("key");
-  const auto named = [&](const std::string& part) { return key.find(part) != std::string::npos; };
-  if (!columns.empty() && std::ranges::none_of(columns, named)) return false;
-  if (strategies.empty() || !column.contains("strategy")) return true;
-  return contains(strategies, column["strategy"]) &&
-         (!column.contains("over") || contains(strategies, column["over"]));
-}
-
-bool TableChoice::wants_scene(const std::string& scene) const {
-  return scenes.empty() || contains(scenes, scene);
+const Record* find_record(std::span<const Record> records, const std::string& scene, Pipeline pipeline) {
+  const auto record = std::ranges::find_if(records, [&](const Record& candidate) {
+    return candidate.scene.name == scene && candidate.pipeline == pipeline;
+  });
+  return record == records.end() ? nullptr : &*record;
 }
 
 std::vector<PaperTable> paper_tables(const ordered_json& definitions, const ordered_json& published,
-                                     std::span<const Record> records, const TableChoice& choice) {
+                                     std::span<const Record> records) {
+  std::vector<std::string> scenes;
+  for (const Record& record : records) add_new(scenes, record.scene.name);
   std::vector<PaperTable> tables;
   for (const ordered_json& definition : definitions.at("tables")) {
-    PaperTable table{definition.at("id"), definition.at("title"), {}, {}};
-    const std::vector<std::string> scenes = rows_of(definition, published, records, choice);
+    PaperTable table{definition.at("id"),
+                     definition.at("title"),
+                     {},
+                     {},
+                     definition.value("legend", ""),
+                     definition.value("shape", ordered_json())};
     for (const std::string& scene : scenes) table.rows.push_back({scene, {}});
-    for (const ordered_json& column : expanded_columns(definition, records)) {
-      if (!choice.wants(column)) continue;
+    for (const ordered_json& column : expanded_columns(definition, records))
       for (Filled& filled : by_pipeline(column, published, scenes, records)) {
         table.columns.push_back(std::move(filled.column));
         for (std::size_t row = 0; row < scenes.size(); ++row)
           table.rows[row].cells.push_back(std::move(filled.cells[row]));
       }
-    }
     tables.push_back(std::move(table));
   }
   return tables;
 }
 
-std::vector<PaperTable> paper_tables(std::span<const Record> records, const TableChoice& choice) {
-  return paper_tables(data_json("paper_tables.json"), data_json("published.json"), records, choice);
+std::vector<PaperTable> paper_tables(std::span<const Record> records) {
+  return paper_tables(data_json("paper_tables.json"), data_json("published.json"), records);
 }
 
 }  // namespace cscd::bench

@@ -10,9 +10,9 @@
 #include "bench/record/record.h"
 #include "bench/tables/quantity.h"
 
-// The tables of the paper with published figures beside measured ones. What a column is,
+// Every figure that tables have, published figures beside measured ones. What a column is,
 // bench/tables/paper_tables.json says; what was published, bench/tables/published.json. No strategy is known
-// by name here.
+// by name here. How people read the paper's tables: bench/tables/shaped_table.h.
 namespace cscd::bench {
 
 struct Cell {
@@ -39,10 +39,11 @@ struct PaperTable {
   std::string id, title;
   std::vector<Column> columns;
   std::vector<Row> rows;
+  // How people read it (bench/tables/shaped_table.h); `shape` is null for a table that only machines and the
+  // report's page show.
+  std::string legend;
+  nlohmann::ordered_json shape;
 };
-
-// The pipeline of all columns; none if they differ, or if it is both.
-std::optional<Pipeline> only_pipeline(const PaperTable& table);
 
 // The text with every `what` replaced.
 std::string replaced(std::string text, const std::string& what, const std::string& by);
@@ -52,24 +53,17 @@ const nlohmann::ordered_json* find_published(const nlohmann::ordered_json& publi
 
 // The pipelines of the records, `published` first; `today` where there is no record.
 std::vector<Pipeline> pipelines_of(std::span<const Record> records);
+// The record of a scene in a pipeline; null where none was given.
+const Record* find_record(std::span<const Record> records, const std::string& scene, Pipeline pipeline);
 
-// What of the tables is wanted. An empty list leaves nothing out.
-struct TableChoice {
-  std::vector<std::string> scenes, strategies;
-  std::vector<std::string> columns;  // keys, or parts of keys
-
-  bool wants(const nlohmann::ordered_json& column) const;
-  bool wants_scene(const std::string& scene) const;
-};
-
-// At most one record a scene and pipeline. Rows are the scenes that the table was published for; a table
-// without published rows has those of the records. A column with `each_strategy` stands for one a strategy of
-// the records, whose name replaces {strategy}. Where there are records of both pipelines, a column stands
-// once for each, unless the figures are the same, and a pipeline in which none was measured has no column.
-std::vector<PaperTable> paper_tables(std::span<const Record> records, const TableChoice& choice = {});
+// At most one record a scene and pipeline. Rows are the scenes of the records in their order. A column with
+// `each_strategy` stands for one a strategy of the records, whose name replaces {strategy}. Where there are
+// records of both pipelines, a column stands once for each, unless the figures are the same, and a pipeline
+// in which none was measured has no column.
+std::vector<PaperTable> paper_tables(std::span<const Record> records);
 // The same from other definitions and figures.
 std::vector<PaperTable> paper_tables(const nlohmann::ordered_json& definitions,
-                                     const nlohmann::ordered_json& published, std::span<const Record> records,
-                                     const TableChoice& choice = {});
+                                     const nlohmann::ordered_json& published,
+                                     std::span<const Record> records);
 
 }  // namespace cscd::bench

@@ -177,19 +177,48 @@ std::string number_text(double value) {
   return text;
 }
 
+std::string short_text(double value) {
+  const double size = std::abs(value), least = 0.001;
+  if (size > 0 && size < least / 2) return "<0.001";
+  char text[40];
+  if (size < 0.1)
+    std::snprintf(text, sizeof text, "%.*g", size < 0.01 ? 1 : 2, std::round(value / least) * least);
+  else
+    std::snprintf(text, sizeof text, size >= 999.5 ? "%.0f" : "%.3g", value);
+  return text;
+}
+
+bool is_marked(const Record& record, const std::string& strategy) {
+  const auto row = std::ranges::find(record.verification.strategies, strategy, &VerifiedStrategy::name);
+  if (row == record.verification.strategies.end()) return false;
+  const bool needs_embedded_start = row->guarantee == kFirstContact || row->guarantee == kAllFromEmbedded;
+  return row->contacts_found < row->contacts_expected ||
+         (needs_embedded_start && !record.verification.unembedded.empty());
+}
+
 Measured measure(const ordered_json& definition, const Record& record) {
   const std::string quantity = definition.at("quantity"), strategy = definition.value("strategy", ""),
-                    statistic = definition.value("statistic", "mean");
+                    statistic = definition.value("statistic", "mean"),
+                    over = definition.value("over", strategy);
   try {
     const Amount amount = amount_of(record, quantity, strategy, statistic);
-    if (!definition.contains("over") && !definition.contains("over_quantity"))
-      return measured(amount, definition.value("scale", 1.0));
-    const std::string over = definition.value("over", strategy),
-                      over_quantity = definition.value("over_quantity", quantity);
-    return ratio(amount, amount_of(record, over_quantity, over, statistic), over + ": " + over_quantity);
+    const bool is_ratio = definition.contains("over") || definition.contains("over_quantity");
+    const std::string over_quantity = definition.value("over_quantity", quantity);
+    Measured out = is_ratio ? ratio(amount, amount_of(record, over_quantity, over, statistic),
+                                    over + ": " + over_quantity)
+                            : measured(amount, definition.value("scale", 1.0));
+    out.marked = quantity.starts_with("ms.") && (is_marked(record, strategy) || is_marked(record, over));
+    return out;
   } catch (const Missing& missing) {
     return {{}, {}, missing.reason};
   }
+}
+
+Measured median_query(const std::string& strategy, const Record& record) {
+  return measure({{"quantity", "ms.refit+rv_update+traversal+elementary"},
+                  {"strategy", strategy},
+                  {"statistic", "median"}},
+                 record);
 }
 
 Measured measure_over(const ordered_json& definition, const Record& record, const Record& divisor) {

@@ -15,7 +15,15 @@ struct Measured {
   std::optional<double> value;
   std::optional<Estimate> interval;  // 95 %; absent for what has no noise: counters and sizes
   std::string reason;                // empty when there is a value
+  bool marked = false;               // a time that stands with kMarkNote where it is printed
 };
+
+// Whether a strategy's times in a record are marked: it did not keep all contacts of the verified intervals,
+// or it promises nothing from some of their starts.
+bool is_marked(const Record& record, const std::string& strategy);
+inline constexpr char kMark = '*';
+inline constexpr char kMarkNote[] =
+    "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts";
 
 // What a definition (a column of paper_tables.json, a claim of claims.json) asks for:
 //   quantity   scene.triangles, scene.vertices, scene.bones
@@ -32,6 +40,9 @@ struct Measured {
 // Throws std::logic_error for a definition that says something else.
 Measured measure(const nlohmann::ordered_json& definition, const Record& record);
 
+// What the median interval takes a strategy, with refit, in milliseconds.
+Measured median_query(const std::string& strategy, const Record& record);
+
 // The same quantity of two records, the first divided by the second. The two were not measured in turns, so
 // there is no interval.
 Measured measure_over(const nlohmann::ordered_json& definition, const Record& record, const Record& divisor);
@@ -41,5 +52,7 @@ std::vector<std::string> split(const std::string& text, char separator);
 
 // Four significant digits, or all digits of a whole number.
 std::string number_text(double value);
+// Three significant digits, or all digits before the point; at most three digits behind it.
+std::string short_text(double value);
 
 }  // namespace cscd::bench

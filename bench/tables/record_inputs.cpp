@@ -1,23 +1,105 @@
 #include "bench/tables/record_inputs.h"
 
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "bench/output/data.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
+namespace {
 
-std::vector<Record> read_records(const std::vector<std::string>& paths) {
-  std::vector<Record> records;
-  for (const std::string& path : paths) {
+namespace fs = std::filesystem;
+
+// The schema that a file names; empty for JSON that names none. Throws InputError if it is no JSON.
+std::string schema_of(const fs::path& path) {
+  const nlohmann::json document = nlohmann::json::parse(record_text(path), nullptr, false);
+  if (document.is_discarded())
+    throw InputError("record " + path.string() + ": is no record; name what cscd run wrote");
+  const auto schema = document.is_object() ? document.value("schema", nlohmann::json()) : nlohmann::json();
+  return schema.is_string() ? schema.get<std::string>() : "";
+}
+
+std::vector<fs::path> json_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code unknown;
+    if (entry->is_regular_file(unknown) && (name.ends_with(".json") || name.ends_with(".json.gz")))
+      files.push_back(entry->path());
+  }
+  if (error) throw InputError("folder " + folder.string() + ": cannot be read (" + error.message() + ")");
+  std::ranges::sort(files);
+  return files;
+}
+
+// Where a scene stands among others: the paper's scenes, their variants with contacts, all others.
+std::size_t place_of(const std::string& scene) {
+  const nlohmann::ordered_json published = data_json("published.json");
+  std::size_t place = 0;
+  for (const auto& [name, sizes] : published.at("scenes").items()) {
+    if (scene == name) return place;
+    if (scene == name + "_contact") return place + 100;
+    ++place;
+  }
+  return 200;
+}
+
+}  // namespace
+
+RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted) {
+  RecordFiles files;
+  const auto add = [&](const fs::path& file, bool named_itself) {
+    const std::string schema = schema_of(file);
+    // An outdated record of a run is refused where it is read, and says why.
+    const bool is_wanted =
+        std::ranges::find(wanted, schema) != wanted.end() || schema.starts_with("cscd.run/");
+    if (is_wanted) {
+      files[schema.starts_with("cscd.run/") ? std::string(kRunSchema) : schema].push_back(file);
+    } else if (named_itself) {
+      if (!schema.starts_with("cscd."))
+        throw InputError("record " + file.string() + ": is no record; name what cscd run wrote");
+      std::fprintf(stderr, "left out: %s is no record of a run (%s)\n", file.c_str(), schema.c_str());
+    }
+  };
+  for (const std::string& name : named) {
+    std::error_code unknown;
+    if (!fs::is_directory(name, unknown)) {
+      add(name, true);
+      continue;
+    }
+    for (const fs::path& file : json_files(name)) add(file, false);
+  }
+  if (!files.contains(std::string(wanted.front())))
+    throw InputError((named.size() == 1 ? named.front() + " holds no" : "none of these holds a") +
+                     " record of cscd run; name what cscd run --json wrote, or a folder of it");
+  return files;
+}
+
+std::vector<Record> read_records(std::vector<fs::path>& paths) {
+  std::vector<std::pair<Record, fs::path>> read;
+  for (const fs::path& path : paths) {
     Record record = read_record(path);
     if (!record.verification.ok())
-      throw InputError("record " + path +
+      throw InputError("record " + path.string() +
                        ": its verification failed, so it holds no times; mend the strategy and "
                        "run again");
-    for (const Record& other : records)
+    for (const auto& [other, other_path] : read)
       if (other.scene.name == record.scene.name && other.pipeline == record.pipeline)
-        throw InputError("record " + path + ": a second record of scene " + record.scene.name +
+        throw InputError("record " + path.string() + ": a second record of scene " + record.scene.name +
                          " in the pipeline " + std::string(to_string(record.pipeline)) +
                          "; give one a scene and pipeline");
+    read.emplace_back(std::move(record), path);
+  }
+  std::ranges::stable_sort(read, {}, [](const auto& one) { return place_of(one.first.scene.name); });
+  std::vector<Record> records;
+  paths.clear();
+  for (auto& [record, path] : read) {
     records.push_back(std::move(record));
+    paths.push_back(std::move(path));
   }
   return records;
 }

@@ -10,17 +10,13 @@ namespace {
 
 constexpr char kReference[] = "base";
 
-nlohmann::ordered_json total_of(const std::string& strategy) {
-  return {{"quantity", "ms.refit+rv_update+traversal+elementary"},
-          {"strategy", strategy},
-          {"statistic", "median"}};
-}
-
 std::string beside_reference(const std::string& strategy, const Record& record) {
   if (strategy == kReference || record.strategy(kReference) == nullptr) return "";
-  nlohmann::ordered_json definition = total_of(kReference);
-  definition["over"] = strategy;
-  const Measured faster = measure(definition, record);
+  const Measured faster = measure({{"quantity", "ms.refit+rv_update+traversal+elementary"},
+                                   {"strategy", kReference},
+                                   {"over", strategy},
+                                   {"statistic", "median"}},
+                                  record);
   if (!faster.value || *faster.value <= 0) return "";
   const bool slower = *faster.value < 1;
   char text[64];
@@ -34,15 +30,18 @@ std::string beside_reference(const std::string& strategy, const Record& record) 
 std::string run_times_text(const Record& record) {
   std::size_t width = 0;
   std::string rows;
+  bool any_marked = false;
   for (const StrategyRecord& strategy : record.strategies) width = std::max(width, strategy.name.size());
   for (const StrategyRecord& strategy : record.strategies) {
-    const Measured total = measure(total_of(strategy.name), record);
+    const Measured total = median_query(strategy.name, record);
     if (!total.value) continue;
     char text[128];
-    std::snprintf(text, sizeof text, "  %-*s %10.4g ms", static_cast<int>(width), strategy.name.c_str(),
-                  *total.value);
+    std::snprintf(text, sizeof text, "  %-*s %10.4g ms%s", static_cast<int>(width), strategy.name.c_str(),
+                  *total.value, total.marked ? "*" : "");
+    any_marked = any_marked || total.marked;
     rows += text + beside_reference(strategy.name, record) + "\n";
   }
+  if (any_marked) rows += std::string(kMarkNote) + "\n";
   return rows.empty() ? "" : "median total of an interval, with refit:\n" + rows;
 }
 

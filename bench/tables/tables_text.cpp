@@ -1,248 +1,322 @@
 #include "bench/tables/tables_text.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cstddef>
 #include <optional>
-#include <string_view>
+#include <vector>
 
 #include "bench/output/data.h"
 #include "bench/output/markdown.h"
+#include "bench/tables/provenance.h"
 #include "core/base/joined.h"
 
 namespace cscd::bench {
 namespace {
 
-using nlohmann::ordered_json;
+constexpr std::size_t kMostLetters = 16;  // of a scene's name in a terminal
+constexpr std::size_t kLineWidth = 100;   // of a terminal
 
-std::string interval(const Measured& measured, const char* between) {
-  if (!measured.interval) return "";
-  return number_text(measured.interval->low) + between + number_text(measured.interval->high);
+bool is_first_byte(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
 }
 
-std::string number(const std::optional<double>& value) {
-  return value ? number_text(*value) : "";
+// How many columns of a terminal a text in UTF-8 takes, if every letter takes one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, is_first_byte));
 }
 
-constexpr std::size_t kScenesAcross = 6;  // more make a page too wide to read
-
-std::string title(const PaperTable& table) {
-  const std::optional<Pipeline> pipeline = only_pipeline(table);
-  return table.title + (pipeline ? " (pipeline `" + std::string(to_string(*pipeline)) + "`)" : "");
+// A long name without its middle: names of one family differ at the end.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kBeginning = 8, kEnd = kMostLetters - kBeginning - 2;
+  const std::size_t width = width_of(text);
+  if (width <= kMostLetters) return text;
+  std::string beginning, end;
+  std::size_t letter = 0;
+  for (const char c : text) {
+    letter += is_first_byte(c);
+    if (letter <= kBeginning) beginning += c;
+    if (letter > width - kEnd) end += c;
+  }
+  return beginning + ".." + end;
 }
 
-std::string title(const PaperTable& table, const Column& column) {
-  std::string out = column.unit.empty() ? column.title : column.title + " (" + column.unit + ")";
-  if (column.pipeline && !only_pipeline(table)) out += ", `" + std::string(to_string(*column.pipeline)) + "`";
-  return out;
+std::string left(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, width_of(text)), ' ');
+}
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, width_of(text)), ' ') + text;
+}
+// "--- RVBC ---" where there is room, to show which columns a title is above.
+std::string centred(const std::string& text, std::size_t width) {
+  if (text.empty() || width < width_of(text) + 4) return right(text, width);
+  const std::size_t free = width - width_of(text) - 2;
+  return std::string(free / 2, '-') + " " + text + " " + std::string(free - free / 2, '-');
 }
 
-// "4.4 [3.8, 4.5] (28.4)", or the reason why nothing was measured.
-std::string plain(const Cell& cell) {
-  std::string out = cell.measured.value ? number_text(*cell.measured.value) : cell.measured.reason;
-  if (cell.measured.interval) out += " [" + interval(cell.measured, ", ") + "]";
-  if (cell.published) out += " (" + number_text(*cell.published) + ")";
-  return out;
+void end_line(std::string& out) {
+  while (out.ends_with(' ')) out.pop_back();
+  out += '\n';
 }
 
-ordered_json number_or_null(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : nullptr;
-}
+// The columns [first, last) of a table, of whole groups.
+struct Block {
+  std::size_t first, last;
+  std::string groups;  // the line of their titles
+};
 
-ordered_json cell_json(const Column& column, const Cell& cell) {
-  ordered_json out = {{"key", column.key},
-                      {"title", column.title},
-                      {"unit", column.unit},
-                      {"pipeline", pipeline_text(column)},
-                      {"published", number_or_null(cell.published)},
-                      {"measured", number_or_null(cell.measured.value)}};
-  if (cell.measured.interval) out["interval"] = {cell.measured.interval->low, cell.measured.interval->high};
-  if (!cell.measured.reason.empty()) out["reason"] = cell.measured.reason;
-  return out;
-}
-
-std::string text(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
-std::string threads(const Record& record) {
-  int most = 1;
-  std::vector<std::string> sharing;
-  for (const StrategyRecord& strategy : record.strategies)
-    if (strategy.threads > 1) {
-      most = strategy.threads;
-      sharing.push_back(strategy.name);
+// Distributes the groups over blocks that fit a terminal beside the labels. Widens columns under long titles,
+// and the first of a group, which stands a little apart from the group before.
+std::vector<Block> blocks_of(const ShapedTable& table, std::size_t label_width,
+                             std::vector<std::size_t>& widths) {
+  std::vector<Block> blocks;
+  std::size_t first = 0, block_width = 0;
+  for (const ShapedTable::Group& group : table.groups) {
+    const std::size_t last = first + group.columns;
+    std::size_t width = 0;
+    for (std::size_t i = first; i < last; ++i) width += widths[i];
+    const std::size_t title_width = width_of(group.title) + 1;
+    if (title_width > width) {
+      widths[last - 1] += title_width - width;
+      width = title_width;
     }
-  return most == 1
-             ? "one thread"
-             : std::to_string(most) + " threads for " + joined(sharing) + ", one for every other strategy";
+    if (blocks.empty() || block_width + width + 1 > kLineWidth) {
+      blocks.push_back({first, first, std::string(label_width, ' ')});
+      block_width = label_width;
+    } else {
+      widths[first] += 1;
+      block_width += 1;
+      blocks.back().groups += ' ';
+    }
+    blocks.back().groups += " " + centred(group.title, width - 1);
+    blocks.back().last = last;
+    block_width += width;
+    first = last;
+  }
+  return blocks;
 }
 
-// How many of the timed intervals are among the given ones.
-std::size_t timed_and(const std::vector<std::size_t>& intervals, const Record& record) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      record.timed_intervals, [&](std::size_t i) { return std::ranges::binary_search(intervals, i); }));
-}
+std::string table_text(const ShapedTable& table) {
+  std::size_t scene_width = 0, label_width = 0;
+  for (const ShapedTable::Line& line : table.lines)
+    if (!line.kind.empty()) scene_width = std::max(scene_width, width_of(shortened(line.scene)) + 1);
+  const auto label = [&](const ShapedTable::Line& line) {
+    return line.kind.empty() ? line.scene : left(shortened(line.scene), scene_width) + line.kind;
+  };
+  for (const ShapedTable::Line& line : table.lines)
+    label_width = std::max(label_width, width_of(label(line)));
 
-ordered_json source_json(const Record& record) {
-  const VerificationRecord& v = record.verification;
-  return {{"scene", record.scene.name},
-          {"pipeline", to_string(record.pipeline)},
-          {"digest", record.scene.digest},
-          {"command", record.command},
-          {"environment", record.environment},
-          {"threads", threads(record)},
-          {"intervals", record.intervals},
-          {"counted_intervals", record.counted_intervals.size()},
-          {"timed_intervals", record.timed_intervals.size()},
-          {"timed_verified_intervals", timed_and(v.intervals, record)},
-          {"timed_colliding_intervals", timed_and(v.colliding, record)},
-          {"verified_intervals", v.intervals.size()},
-          {"unembedded_intervals", v.unembedded.size()},
-          {"colliding_intervals", v.colliding.size()}};
-}
-
-// A command as a shell takes it: a word that holds more than letters, digits and a few signs stands in
-// quotes.
-std::string shell_line(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) {
-    const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
-      return c >= 0x80 || std::isalnum(c) != 0 ||
-             std::string_view("_-+=:,./@%").find(static_cast<char>(c)) != std::string_view::npos;
-    });
-    out += out.empty() ? "" : " ";
-    out += plain && !word.empty() ? word : "'" + word + "'";
+  std::vector<std::size_t> widths;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    std::size_t width = std::max(width_of(shortened(table.columns[i].head)), width_of(table.columns[i].unit));
+    for (const ShapedTable::Line& line : table.lines) width = std::max(width, width_of(line.cells[i]));
+    widths.push_back(width + 1);
+  }
+  std::string out = table.title + "\n" + table.legend + "\n";
+  for (const Block& block : blocks_of(table, label_width, widths)) {
+    std::string groups = block.groups, heads(label_width, ' '), units = heads;
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      heads += right(shortened(table.columns[i].head), widths[i]);
+      units += right(table.columns[i].unit, widths[i]);
+    }
+    for (std::string* line : {&groups, &heads, &units}) {
+      end_line(*line);
+      if (*line != "\n") out += *line;
+    }
+    for (std::size_t l = 0; l < table.lines.size(); ++l) {
+      const ShapedTable::Line& line = table.lines[l];
+      if (table.begins_today(l)) out += std::string(kTodayNote) + ":\n";
+      out += left(label(line), label_width);
+      for (std::size_t i = block.first; i < block.last; ++i)
+        out += right(line.cells[i].empty() ? "-" : line.cells[i], widths[i]);
+      end_line(out);
+    }
   }
   return out;
 }
 
-std::size_t repetitions(const Record& record) {
-  return record.strategies.empty() || record.strategies.front().ms.empty()
-             ? 0
-             : record.strategies.front().ms.begin()->second.size();
+// A name, then a text in as many lines as it takes.
+std::string remark(const std::string& name, const std::string& text) {
+  constexpr std::size_t kNameWidth = 12;
+  std::string out, line = left(name, kNameWidth);
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (width_of(line) > kNameWidth && width_of(line) + width_of(word) > kLineWidth) {
+      end_line(line);
+      out += line;
+      line = std::string(kNameWidth, ' ');
+    }
+    line += word + " ";
+    at = end + 1;
+  }
+  end_line(line);
+  return out + line;
 }
 
-// Where the numbers come from and what stands behind them.
-std::string provenance(const Record& record) {
-  const ordered_json& e = record.environment;
-  const VerificationRecord& v = record.verification;
-  const auto get = [&](const char* key) { return text(e.value(key, ordered_json("unknown"))); };
-  std::string out = "**" + record.scene.name + "**, pipeline `" + std::string(to_string(record.pipeline)) +
-                    "`: " + get("cpu") + ", " + get("cores") + " cores, " + threads(record) + "; " +
-                    get("compiler") + ", " + get("build_type") +
-                    (e.contains("instruction_set") ? ", " + get("instruction_set") : "") + "; commit " +
-                    get("commit").substr(0, 12) + (e.value("dirty", false) ? " with changes" : "") + "; " +
-                    get("date") + ".\n";
-  out += "Made by `" + shell_line(record.command) + "`.\n";
-  const std::size_t timed = record.timed_intervals.size(), verified = timed_and(v.intervals, record);
-  out += std::to_string(timed) + " of " + std::to_string(record.intervals) + " intervals timed, " +
-         (verified == timed ? "all of them" : std::to_string(verified) + " of them") + " verified and " +
-         std::to_string(timed_and(v.colliding, record)) + " with contacts, " +
-         std::to_string(repetitions(record)) + " repetitions, interleaved" +
-         (record.processes > 1 ? ", by " + std::to_string(record.processes) + " processes" : "") +
-         "; counters of " +
-         (record.counted_intervals.size() == record.intervals
-              ? "all"
-              : std::to_string(record.counted_intervals.size())) +
-         ". ";
-  out += "Answers verified on " + std::to_string(v.intervals.size()) + " intervals against `" + v.reference +
-         "` with the elementary test `" + v.elementary + "`: no strategy failed its guarantee";
-  out += v.unembedded.empty() ? ", every start was embedded.\n"
-                              : "; " + std::to_string(v.unembedded.size()) +
-                                    " starts were not embedded, where `first_contact` promises nothing.\n";
-  if (!v.disagreeing.empty())
-    out += "On " + std::to_string(v.disagreeing.size()) +
-           " of the verified intervals rows had differed with the timed elementary test.\n";
-  out += v.colliding.empty() ? "None of them has a contact: here a strategy can fail by inventing one only.\n"
-                             : std::to_string(v.colliding.size()) + " of them have contacts to be lost.\n";
-  out += "The timed test `" + record.elementary + "` on " + std::to_string(v.accuracy_tests) +
-         " feature pairs of these: " + std::to_string(v.accuracy.misses) + " misses, " +
-         std::to_string(v.accuracy.false_alarms) + " false alarms, " + std::to_string(v.accuracy.undecided) +
-         " undecided.\n";
+std::string published_machine() {
+  return data_json("published.json").at("machine").get<std::string>();
+}
+
+bool is_published(const ShapedTable& table) {
+  return std::ranges::find(table.lines, "published", &ShapedTable::Line::kind) != table.lines.end();
+}
+
+bool any_marks(std::span<const ShapedTable> tables) {
+  return std::ranges::any_of(tables, [](const ShapedTable& table) { return table.has_marks(); });
+}
+
+// "1.32 to 7.88".
+std::string range_text(std::vector<double> values, const char* between = " to ") {
+  std::ranges::sort(values);
+  const std::string low = short_text(values.front()), high = short_text(values.back());
+  return low == high ? low : low + between + high;
+}
+
+std::size_t count(std::span<const ClaimResult> claims, ClaimVerdict verdict) {
+  return static_cast<std::size_t>(std::ranges::count(claims, verdict, &ClaimResult::verdict));
+}
+
+// "17 of 24 measured claims are reproduced, 5 in part"; empty where none was measured.
+std::string claims_text(std::span<const ClaimResult> claims) {
+  const std::size_t reproduced = count(claims, ClaimVerdict::reproduced),
+                    partly = count(claims, ClaimVerdict::partly),
+                    measured = claims.size() - count(claims, ClaimVerdict::not_measured);
+  if (measured == 0) return "";
+  return std::to_string(reproduced) + " of the paper's " + std::to_string(measured) +
+         " claims about these scenes are reproduced" +
+         (partly > 0 ? ", " + std::to_string(partly) + " in part" : "");
+}
+
+constexpr char kFast[] = "drvbc_fast", kPaper[] = "drvbc";
+
+std::optional<double> times_faster(const Record& record, const std::string& other) {
+  return measure(
+             {{"quantity", "ms.refit+rv_update+traversal+elementary"}, {"strategy", other}, {"over", kFast}},
+             record)
+      .value;
+}
+
+// How many times faster the fast engine is than the fastest other complete strategy.
+std::optional<double> over_best_other(const Record& record) {
+  std::optional<double> best;
+  for (const StrategyRecord& strategy : record.strategies) {
+    if (strategy.guarantee != "complete" || strategy.name.starts_with(kFast)) continue;
+    const std::optional<double> faster = times_faster(record, strategy.name);
+    if (faster && (!best || *faster < *best)) best = faster;
+  }
+  return best;
+}
+
+// What a query takes the fast engine; empty where it was not timed.
+std::string fast_text(std::span<const Record> records) {
+  std::vector<double> medians, over_best, over_paper;
+  bool marked = false;
+  for (const Record& record : records) {
+    if (record.pipeline != Pipeline::today) continue;
+    const Measured median = median_query(kFast, record);
+    if (!median.value) continue;
+    medians.push_back(*median.value);
+    marked = marked || median.marked;
+    if (const std::optional<double> faster = over_best_other(record)) over_best.push_back(*faster);
+    if (const std::optional<double> faster = times_faster(record, kPaper)) over_paper.push_back(*faster);
+  }
+  if (medians.empty()) return "";
+  std::string out = range_text(medians, "-") + " ms a query" + (marked ? std::string(1, kMark) : "");
+  if (!over_best.empty()) out += ", " + range_text(over_best, "-") + " times faster than the best baseline";
+  if (!over_paper.empty())
+    out += ", " + range_text(over_paper, "-") + (over_best.empty() ? " times faster" : "") + " than DRVBC";
   return out;
 }
 
-std::string quoted(const std::string& field) {
-  if (field.find_first_of(",\"\n") == std::string::npos) return field;
-  std::string out = "\"";
-  for (const char c : field) {
-    if (c == '"') out += '"';
-    out += c;
+std::string measured_text(std::span<const Record> records) {
+  return joined(environments(records), "; and ");
+}
+
+std::string code_around(std::span<const Record> records) {
+  return pipelines_of(records).front() == Pipeline::published
+             ? "published: the paper's code around every method"
+             : "today: this project's code around every method";
+}
+
+std::string markdown_of(const ShapedTable& table, const std::string& first_head) {
+  std::vector<std::string> head = {first_head};
+  for (std::size_t g = 0, i = 0; g < table.groups.size(); ++g)
+    for (const std::size_t end = i + table.groups[g].columns; i < end; ++i) {
+      const std::string &group = table.groups[g].title, &unit = table.columns[i].unit;
+      head.push_back((group.empty() ? "" : group + " ") + table.columns[i].head +
+                     (unit.empty() ? "" : " (" + unit + ")"));
+    }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t l = 0; l < table.lines.size(); ++l) {
+    if (table.begins_today(l)) {
+      rows.emplace_back(1, std::string("*") + kTodayNote + "*");
+      rows.back().resize(head.size());
+    }
+    const ShapedTable::Line& line = table.lines[l];
+    std::vector<std::string>& row =
+        rows.emplace_back(1, line.scene + (line.scene.empty() || line.kind.empty() ? "" : ", ") + line.kind);
+    for (const std::string& cell : line.cells) row.push_back(cell.empty() ? "–" : cell);
   }
-  return out + "\"";
+  return "\n## " + table.title + "\n\n" + table.legend + "\n\n" + markdown_table(head, rows) +
+         (table.has_marks() ? std::string("\n\\") + kMarkNote + "\n" : "");
+}
+
+std::string claims_section(std::span<const ClaimResult> claims) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> not_measured;
+  for (const ClaimResult& claim : claims) {
+    if (claim.verdict == ClaimVerdict::not_measured) {
+      not_measured.push_back(claim.id);
+      continue;
+    }
+    std::vector<double> values;
+    for (const Evidence& evidence : claim.evidence)
+      if (evidence.measured.value) values.push_back(*evidence.measured.value);
+    rows.push_back({claim.id, std::string(to_string(claim.verdict)), claim.expectation, range_text(values)});
+  }
+  if (rows.empty()) return "";
+  const std::vector<std::string> head = {"claim", "verdict", "expected", "measured"};
+  return "\n## The paper's claims\n\n" + claims_text(claims) +
+         ". Each with its quote and its evidence: " + "[claims](claims.md).\n\n" +
+         markdown_table(head, rows) +
+         (not_measured.empty() ? "" : "\nNot measured: " + joined(not_measured) + ".\n");
 }
 
 }  // namespace
 
-ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
-                         std::span<const Record> records) {
-  ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
-  for (const Record& record : records) sources.push_back(source_json(record));
-  for (const PaperTable& table : tables) {
-    ordered_json rows = ordered_json::array();
-    for (const Row& row : table.rows) {
-      ordered_json cells = ordered_json::array();
-      for (std::size_t i = 0; i < row.cells.size(); ++i)
-        cells.push_back(cell_json(table.columns[i], row.cells[i]));
-      rows.push_back({{"scene", row.scene}, {"cells", std::move(cells)}});
-    }
-    out_tables.push_back({{"id", table.id}, {"title", table.title}, {"rows", std::move(rows)}});
+std::string tables_text(std::span<const ShapedTable> tables, std::span<const ClaimResult> claims,
+                        std::span<const Record> records, const std::string& page) {
+  std::vector<ShapedTable> shown(tables.begin(), tables.end());
+  if (std::ranges::none_of(tables, is_published)) {
+    std::vector<Record> today(records.begin(), records.end());
+    std::erase_if(today, [](const Record& record) { return record.pipeline != Pipeline::today; });
+    if (!today.empty()) shown.push_back(times_of_strategies(today));
   }
-  const ordered_json published = data_json("published.json");
-  return {{"schema", kTablesSchema},
-          {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
-          {"records", std::move(sources)},
-          {"tables", std::move(out_tables)},
-          {"claims", claims_json(claims)}};
-}
-
-std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records) {
-  const ordered_json published = data_json("published.json");
   std::string out;
-  for (const Record& record : records) out += provenance(record) + "\n";
-  out += "Published: " + text(published.at("machine")) +
-         ".\n\nA cell is the measured figure, its 95 % interval in ";
-  out += "brackets where it has noise, and the published figure in parentheses where there is one.\n";
-  if (pipelines_of(records).size() == 2)
-    out +=
-        "\nA row that ends in `published` was measured with the paper's code around every method: scalar "
-        "refit "
-        "and\norientation classes, its filter alone, feature pairs one by one. A row that ends in `today` "
-        "was "
-        "measured with\nthis project's. Preparation is the same code in both and is shown from the record of "
-        "`published`. The figures of\nother rows are the same in both.\n";
-  for (const PaperTable& table : tables) {
-    if (table.rows.empty() || table.columns.empty()) continue;
-    out += "\n### " + title(table) + "\n";
-    for (std::size_t first = 0; first < table.rows.size(); first += kScenesAcross) {
-      const auto rows =
-          std::span(table.rows).subspan(first, std::min(kScenesAcross, table.rows.size() - first));
-      std::vector<std::string> head(1);
-      for (const Row& row : rows) head.push_back(row.scene);
-      std::vector<std::vector<std::string>> lines;
-      for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        std::vector<std::string>& line = lines.emplace_back(1, title(table, table.columns[i]));
-        for (const Row& row : rows) line.push_back(plain(row.cells[i]));
-      }
-      out += "\n" + markdown_table(head, lines);
-    }
-  }
+  for (const ShapedTable& table : shown) out += table_text(table) + "\n";
+  const std::string fast = fast_text(records), held = claims_text(claims);
+  if (any_marks(shown) || fast.find(kMark) != std::string::npos) out += std::string(kMarkNote) + "\n";
+  out += remark("measured", measured_text(records));
+  out += remark("pipeline", code_around(records));
+  if (std::ranges::any_of(tables, is_published)) out += remark("published", published_machine());
+  if (!held.empty()) out += remark("claims", held);
+  if (!fast.empty()) out += remark(kFast, fast);
+  if (!page.empty()) out += remark("page", page);
   return out;
 }
 
-std::string tables_csv(std::span<const PaperTable> tables) {
-  std::string out = "table,scene,key,title,unit,published,measured,low,high,reason,pipeline\n";
-  for (const PaperTable& table : tables)
-    for (const Row& row : table.rows)
-      for (std::size_t i = 0; i < row.cells.size(); ++i) {
-        const Cell& cell = row.cells[i];
-        const Column& column = table.columns[i];
-        out += table.id + "," + row.scene + "," + column.key + "," + quoted(column.title) + "," +
-               column.unit + "," + number(cell.published) + "," + number(cell.measured.value) + "," +
-               (cell.measured.interval ? interval(cell.measured, ",") : std::string(",")) + "," +
-               quoted(cell.measured.reason) + "," + std::string(pipeline_text(column)) + "\n";
-      }
-  return out;
+std::string tables_markdown(std::span<const ShapedTable> tables, const ShapedTable& strategies,
+                            std::span<const ClaimResult> claims, std::span<const Record> records) {
+  std::string out = "# Published and measured\n\nMeasured: " + measured_text(records) + "; pipeline " +
+                    code_around(records) + ".\n";
+  if (std::ranges::any_of(tables, is_published)) out += "Published: " + published_machine() + ".\n";
+  out +=
+      "\nA dash stands where there is no figure. Every figure, with its 95 % interval, is in `tables.csv` "
+      "and `tables.json`.\n";
+  for (const ShapedTable& table : tables) out += markdown_of(table, "scene");
+  if (!strategies.columns.empty()) out += markdown_of(strategies, "strategy");
+  return out + claims_section(claims) + "\n## How it was measured\n\n" + how_measured(records);
 }
 
 }  // namespace cscd::bench

@@ -1,24 +1,24 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "bench/record/record.h"
 #include "bench/tables/claims.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/shaped_table.h"
 
+// Tables for people: in a terminal, and as the page tables.md.
 namespace cscd::bench {
 
-inline constexpr std::string_view kTablesSchema = "cscd.tables/1";
+// The paper's tables in aligned columns at most 100 wide, and the times of all strategies where no scene is
+// the paper's; then one line each on where the figures come from, on the claims, on the fast engine and on
+// `page`, the place of a page with everything else (left out where it is empty).
+std::string tables_text(std::span<const ShapedTable> tables, std::span<const ClaimResult> claims,
+                        std::span<const Record> records, const std::string& page);
 
-// Everything, for machines: one object a cell, one a claim. Valid under bench/tables/tables.schema.json.
-nlohmann::ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
-                                   std::span<const Record> records);
-// For people: quantities down, scenes across; preceded by where the records come from.
-std::string tables_markdown(std::span<const PaperTable> tables, std::span<const Record> records);
-// One line a cell.
-std::string tables_csv(std::span<const PaperTable> tables);
+// The paper's tables, the times of all strategies, the claims in one line each, and how all of this was
+// measured.
+std::string tables_markdown(std::span<const ShapedTable> tables, const ShapedTable& strategies,
+                            std::span<const ClaimResult> claims, std::span<const Record> records);
 
 }  // namespace cscd::bench

@@ -3,14 +3,14 @@ import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, short } from "./cha
 import { byId, element, isDark, prefersDark, radios, setDark } from "./dom.js";
 import { BLUE, ORANGE, SKY } from "./palette.js";
 import { showAccuracy, showGrowth, showHistory } from "./studies.js";
-import { tableOf } from "./tables.js";
+import { shapedTable, tableOf } from "./tables.js";
 
 const FIRST_SHOWN = new Set(["base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast", "drvbc_fast_complete"]);
 const STAGES = [["refit", "#999999"], ["rv_update", SKY], ["traversal", ORANGE], ["elementary", BLUE]];
 const COMPLETE_BASELINES = ["base", "aabb", "mcd", "selfccd", "embree", "cgal_boxes"];
 const COUNTERS = [["bvot", "overlap tests of bounding volumes (Figure 11)"], ["pctp", "triangle pairs left by culling (Figure 12)"], ["elementary_tests", "elementary tests"], ["not_positive", "triangles that are not positive"]];
 
-const withInterval = (cell) => short(cell.measured) + (cell.interval ? ` [${short(cell.interval[0])}, ${short(cell.interval[1])}]` : "");
+const withInterval = (cell) => short(cell.measured) + (cell.marked ? "*" : "") + (cell.interval ? ` [${short(cell.interval[0])}, ${short(cell.interval[1])}]` : "");
 
 class Report {
   constructor(data) {
@@ -101,8 +101,9 @@ class Report {
         return published === null || published === undefined ? "" : `published ${short(published)}`;
       }],
     ];
-    byId("speed-table").append(tableOf(["", ...scenes], rows.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
-      const found = cell(scene), td = element("td", found ? withInterval(found) : "not in a table of these records", found ? "" : "none");
+    const measured = rows.filter(([, cell]) => scenes.some((scene) => cell(scene)));
+    byId("speed-table").append(tableOf(["", ...scenes], measured.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
+      const found = cell(scene), td = element("td", found ? withInterval(found) : "–");
       if (note && note(scene)) td.append(element("small", note(scene)));
       return td;
     })])));
@@ -245,41 +246,49 @@ class Report {
     this.source("stage-source", "Means over the timed intervals, the median over the repetitions.");
   }
 
+  // The paper's tables in the paper's shape, the times of all strategies, and folded away every figure of every table.
   tables() {
-    this.data.tables.tables.forEach((table, n) => {
-      if (table.rows.length === 0) return;
+    const list = byId("table-list"), { shaped, tables } = this.data;
+    for (const table of shaped) if (table.columns.length > 0) list.append(shapedTable(table));
+    const every = element("details");
+    every.append(element("summary", "Every figure, with its 95 % interval"));
+    for (const table of tables.tables) {
+      const titles = table.rows.flatMap((row, n) => (n ? [] : row.cells.map((cell, i) => [i, cell])));
+      const rows = titles.filter(([i]) => table.rows.some((row) => row.cells[i].measured !== null)).map(([i, { title, unit, pipeline }]) => [
+        title + (unit ? `, ${unit}` : "") + (this.bothPipelines && pipeline && pipeline !== "both" ? `, pipeline ${pipeline}` : ""),
+        ...table.rows.map((row) => {
+          const cell = row.cells[i], td = element("td", cell.measured === null ? "–" : withInterval(cell));
+          if (cell.published !== null) td.append(element("small", `published ${short(cell.published)}`));
+          return td;
+        })]);
+      if (rows.length === 0) continue;
       const details = element("details"), wide = element("div", undefined, "wide");
-      details.open = n < 3;
-      const titles = table.rows[0].cells.map((cell) => [cell, cell.title + (cell.unit ? `, ${cell.unit}` : "") + (this.bothPipelines && cell.pipeline ? `, ${cell.pipeline === "both" ? "both pipelines" : `pipeline ${cell.pipeline}`}` : "")]);
-      wide.append(tableOf(["", ...table.rows.map((row) => row.scene)], titles.map(([{ key, pipeline }, title]) => [title, ...table.rows.map((row) => {
-        const cell = row.cells.find((one) => one.key === key && one.pipeline === pipeline);
-        if (!cell) return element("td", "", "none");
-        const td = cell.measured === null ? element("td", cell.reason, "none") : element("td", withInterval(cell));
-        if (cell.published !== null) td.append(element("small", `published ${short(cell.published)}`));
-        return td;
-      })])));
+      wide.append(tableOf(["", ...table.rows.map((row) => row.scene)], rows));
       details.append(element("summary", table.title), wide);
-      byId("table-list").append(details);
-    });
+      every.append(details);
+    }
+    const marked = tables.tables.some((table) => table.rows.some((row) => row.cells.some((cell) => cell.marked)));
+    if (marked) every.append(element("p", this.data.mark_note, "hint"));
+    list.append(every);
     const { published } = this.data.tables;
     this.source("tables-source", `Published: ${published.source} (${published.machine}).`);
   }
 
   claims() {
-    const rows = this.data.tables.claims.map((claim) => {
+    const { claims } = this.data.tables, measured = claims.filter((claim) => claim.verdict !== "not_measured");
+    const rows = measured.map((claim) => {
       const quote = element("td", `“${claim.quote}” (${claim.where})`, "text");
       const verdict = element("td", claim.verdict.replaceAll("_", " "), `text verdict ${claim.verdict}`);
-      const evidence = element("td", claim.verdict === "not_measured" ? claim.why : "", "text");
-      if (claim.evidence.length > 0) {
-        const details = element("details");
-        details.append(element("summary", `${claim.evidence.filter((one) => one.holds).length} of ${claim.evidence.length} figures hold`));
-        for (const one of claim.evidence) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.measured === null || one.measured === undefined ? one.reason || "not measured" : short(one.measured)}${one.today === undefined ? "" : ` (${short(one.today)} with today's code)`}`));
-        evidence.append(details);
-      }
+      const evidence = element("td", undefined, "text"), details = element("details");
+      const figures = claim.evidence.filter((one) => one.measured !== undefined);
+      details.append(element("summary", `${figures.filter((one) => one.holds).length} of ${figures.length} figures hold`));
+      for (const one of figures) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${short(one.measured)}${one.today === undefined ? "" : ` (${short(one.today)} with this project's code)`}`));
+      evidence.append(details);
       return [quote, verdict, element("td", claim.expectation, "text"), evidence];
     });
-    byId("claim-list").append(tableOf(["claim", "verdict", "holds where", "evidence"], rows));
-    this.source("claims-source", "");
+    if (rows.length > 0) byId("claim-list").append(tableOf(["claim", "verdict", "holds where", "evidence"], rows));
+    const others = claims.filter((claim) => claim.verdict === "not_measured").map((claim) => claim.id);
+    this.source("claims-source", others.length ? `Not measured: ${others.join(", ")}.` : "");
   }
 
   records() {

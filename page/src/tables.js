@@ -12,3 +12,34 @@ export function tableOf(head, rows) {
   }
   return table;
 }
+
+// A table in the paper's shape: columns in groups, and beneath each scene's measured figures those published.
+export function shapedTable({ title, legend, note, groups, columns, lines }) {
+  const box = element("div"), wide = element("div", undefined, "wide"), table = element("table", undefined, "shaped");
+  const named = lines.some((line) => line.kind), row = (cells) => {
+    const line = element("tr");
+    line.append(...cells);
+    table.append(line);
+    return line;
+  };
+  const spanning = (tag, text, count) => {
+    const cell = element(tag, text);
+    cell.colSpan = count;
+    return cell;
+  };
+  const before = named ? 2 : 1;  // columns of names
+  if (groups.some((group) => group.title)) row([spanning("th", "", before), ...groups.map((group) => spanning("th", group.title, group.columns))]).className = "groups";
+  row([spanning("th", "", before), ...columns.map(({ head, unit }) => {
+    const cell = element("th", head);
+    if (unit) cell.append(element("small", unit));
+    return cell;
+  })]);
+  for (const line of lines) {
+    if (line.note) row([spanning("td", line.note, before + columns.length)]).className = "note";
+    row([element("td", line.scene), ...(named ? [element("td", line.kind, "text")] : []), ...line.cells.map((cell) => element("td", cell || "–"))]).className = line.kind;
+  }
+  wide.append(table);
+  box.append(element("h3", title), element("p", legend, "hint"), wide);
+  if (note) box.append(element("p", note, "hint"));
+  return box;
+}

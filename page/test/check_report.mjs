@@ -16,12 +16,16 @@ try {
   const counts = await page.evaluate(() => ({
     intervals: window.report.data.records[0].counted_intervals.length, points: window.report.plot.data[0].length,
     strategies: window.report.data.records[0].strategies.filter((row) => row.counts.pctp).length, curves: window.report.plot.series.length - 1,
-    cells: window.report.data.tables.tables.reduce((sum, table) => sum + table.rows.reduce((all, row) => all + row.cells.length, 0), 0),
-    shown: document.querySelectorAll("#table-list td:not(:first-child)").length, claims: document.querySelectorAll("#claim-list tr").length - 1,
-    expected: window.report.data.tables.claims.length, bars: document.querySelectorAll(".bar").length,
+    figures: window.report.data.tables.tables.reduce((sum, table) => sum + table.rows.reduce((all, row) => all + row.cells.filter((cell) => cell.measured !== null).length, 0), 0),
+    shown: [...document.querySelectorAll("#table-list details td:not(:first-child)")].filter((cell) => !cell.textContent.startsWith("–")).length,
+    lines: window.report.data.shaped.filter((table) => table.columns.length).reduce((sum, table) => sum + table.lines.length, 0), shownLines: document.querySelectorAll("#table-list .shaped tr:not(.note):has(td)").length,
+    claims: Math.max(0, document.querySelectorAll("#claim-list tr").length - 1),
+    expected: window.report.data.tables.claims.filter((claim) => claim.verdict !== "not_measured").length, bars: document.querySelectorAll(".bar").length,
   }));
   require(counts.points === counts.intervals && counts.curves === counts.strategies, `the chart has ${counts.points} points and ${counts.curves} curves`);
-  require(counts.shown === counts.cells, `${counts.shown} of ${counts.cells} cells of tables are shown`);
+  require(counts.shown === counts.figures, `${counts.shown} of ${counts.figures} figures of tables are shown`);
+  require(counts.shownLines === counts.lines, `${counts.shownLines} of ${counts.lines} lines of the paper's tables are shown`);
+  require(!/no record|not run in this record|does not count|not in a table/.test(await page.textContent("main")), "a cell says at length that it has no figure");
   require(counts.claims === counts.expected, "a claim is missing");
   require(counts.bars > 0, "no stage times are shown");
   const before = await page.evaluate(() => window.report.plot.data.slice(1));

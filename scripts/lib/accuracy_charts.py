@@ -38,7 +38,7 @@ def symbol(label, **look):
     return matplotlib.lines.Line2D([], [], ls="", label=label, **{"ms": 7, **look})
 
 
-def draw_pareto(record, folder):
+def draw_pareto(record, folder, pdf):
     """Wrong answers, misses and false alarms together, against mean time; an undecided answer counts as wrong."""
     styles = style_of(record)
     groups = [(g, title) for g, title in GROUPS.items() if g != "random" and sums(record, lambda w: w["group"] == g)]
@@ -68,7 +68,7 @@ def draw_pareto(record, folder):
                 symbol("small: other tolerances", marker="o", color="#666666", ms=4.5),
                 matplotlib.lines.Line2D([], [], color="#bbbbbb", lw=5, label="Pareto front")]
     key.legend(handles=handles, fontsize=9, ncol=2, loc="center")
-    save(figure, folder, "accuracy-pareto")
+    save(figure, folder, "accuracy-pareto", pdf=pdf)
     return True
 
 
@@ -86,7 +86,7 @@ def draw_shares(axes, title):
     axes.set_title(title)
 
 
-def draw_tolerance(record, folder):
+def draw_tolerance(record, folder, pdf):
     """Time, false alarms, misses and undecided answers against the tolerance, a panel each."""
     styles = style_of(record)
     tolerances = {row["name"]: row["tolerance"] for row in record["rows"] if "tolerance" in row}
@@ -120,11 +120,11 @@ def draw_tolerance(record, folder):
     figure.suptitle("hard suite and open query set; tolerance of cubic and inclusion in extents of the query,\nof additive "
                     "as a share of the starting distance", fontsize=9)
     label_panels(labelled)
-    save(figure, folder, "accuracy-tolerance")
+    save(figure, folder, "accuracy-tolerance", pdf=pdf)
     return True
 
 
-def draw_hardness(record, folder):
+def draw_hardness(record, folder, pdf):
     """Time, wrong answers and undecided answers against the hardness, a panel each."""
     styles = style_of(record)
     hardnesses = sorted({w["hardness"] for w in record["workloads"] if "hardness" in w}, reverse=True)
@@ -154,7 +154,7 @@ def draw_hardness(record, folder):
         labelled.append((axes, ends))
     cells[2].set_xlabel("hardness: off the degenerate lattice by this share of the size")
     label_panels(labelled)
-    save(figure, folder, "accuracy-hardness")
+    save(figure, folder, "accuracy-hardness", pdf=pdf)
     return True
 
 
@@ -162,7 +162,7 @@ def settings_by_knob(knobs):
     return list(dict.fromkeys(setting["knob"] for knob in knobs for setting in knob["settings"]))
 
 
-def draw_knobs(record, folder):
+def draw_knobs(record, folder, pdf):
     """Time and contacts found, knob by knob: two panels each, a curve a scene."""
     knobs = record.get("knobs", [])
     if not knobs:
@@ -208,11 +208,11 @@ def draw_knobs(record, folder):
     figure.legend(handles, labels, loc="upper center", ncol=3, fontsize=9, title_fontsize=9,
                   title="time of an interval, where the default takes 1; share of contacts found (red cross: a first one lost)")
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.75 / figure.get_size_inches()[1]))
-    save(figure, folder, "accuracy-knobs")
+    save(figure, folder, "accuracy-knobs", pdf=pdf)
     return True
 
 
-def draw_knob_front(record, folder):
+def draw_knob_front(record, folder, pdf):
     """All settings of all knobs at once: contacts that are missing against time."""
     knobs = [knob for knob in record.get("knobs", []) if knob["contacts"]]
     if not knobs:
@@ -241,12 +241,12 @@ def draw_knob_front(record, folder):
     handles.append(symbol("hollow: a first contact lost", marker="o", color="#666666", mfc="white"))
     figure.legend(handles=handles, ncol=wide, loc="upper center", fontsize=9)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.25 * lines + 0.1) / figure.get_size_inches()[1]))
-    save(figure, folder, "accuracy-knob-front")
+    save(figure, folder, "accuracy-knob-front", pdf=pdf)
     return True
 
 
-def draw_all(record, folder):
-    """Draws what the record has; returns the names of the charts that were drawn."""
+def draw_all(record, folder, pdf=False):
+    """Draws what the record has, as PDF too where that is asked for; returns the names of the charts that were drawn."""
     drawings = {"pareto": draw_pareto, "tolerance": draw_tolerance, "hardness": draw_hardness, "knobs": draw_knobs,
                 "knob-front": draw_knob_front}
-    return {name for name, draw in drawings.items() if draw(record, folder)}
+    return {name for name, draw in drawings.items() if draw(record, folder, pdf)}

@@ -35,6 +35,43 @@ def read_record(path, schema, command):
     return record
 
 
+def read_records(paths, schema, command):
+    """The records of that schema in files and folders. Other files of this project are left out; refuses a file that is none
+    of these, and paths that hold no record at all."""
+    records = []
+    for path in paths:
+        files = sorted([*path.glob("*.json"), *path.glob("*.json.gz")]) if path.is_dir() else [path]
+        for file in files:
+            try:
+                record = read_json(file)
+            except (OSError, ValueError) as error:
+                refuse(f"{file}: cannot be read ({error}); name a file that `{command}` wrote")
+            found = record.get("schema") if isinstance(record, dict) else None
+            if found == schema:
+                records.append(record)
+            elif str(found).startswith(schema.partition("/")[0] + "/") or not path.is_dir() and not str(found).startswith("cscd."):
+                refuse(f"{file}: its schema is not {schema}; write it anew with `{command}`")
+            elif not path.is_dir():
+                print(f"left out: {file} is no record of `{command}` ({found})", file=sys.stderr)
+    if not records:
+        refuse(f"{', '.join(map(str, paths))}: no record; name what `{command}` wrote, or a folder of it")
+    return records
+
+
+MARK_NOTE = "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts"
+
+
+def mark_of(record, strategy):
+    """What stands behind a strategy's times: "*" where MARK_NOTE holds of it, as in the tables (bench/tables/quantity.h)."""
+    verification = record["verification"]
+    for row in verification["strategies"]:
+        if row["name"] == strategy:
+            lost = row["contacts_found"] < row["contacts_expected"]
+            unpromised = row["guarantee"] in ("first_contact", "all_from_embedded") and verification["unembedded"]
+            return "*" if lost or unpromised else ""
+    return ""
+
+
 def plain(name):
     """A scene's name as part of a file's name. A record may call its scene anything, even by a path."""
     stem = name.rsplit("/", 1)[-1]

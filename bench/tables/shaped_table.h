@@ -1,0 +1,55 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/record/record.h"
+#include "bench/tables/paper_tables.h"
+
+// Tables as people read them: every figure is a text already, and what draws them (terminal, Markdown, LaTeX,
+// the report's page) knows nothing of what they say.
+namespace cscd::bench {
+
+struct ShapedTable {
+  struct Group {
+    std::string title;
+    std::size_t columns;
+  };
+  struct Column {
+    std::string head, unit;  // what stands beneath the head is not always a unit
+  };
+  struct Line {
+    std::string scene, kind;  // kind: "measured", "published", "low" or "high"; empty if there is one kind
+    std::vector<std::string> cells;  // one a column; empty where there is no figure
+    bool of_today = false;           // measured in the pipeline `today`
+  };
+  std::string id, title, legend;
+  std::vector<Group> groups;
+  std::vector<Column> columns;
+  std::vector<Line> lines;
+
+  // Whether line i is the first of those measured in the pipeline `today`, below lines of `published`.
+  bool begins_today(std::size_t i) const;
+  bool has_marks() const;
+};
+
+// What stands above the line that begins_today().
+inline constexpr char kTodayNote[] = "the same with this project's code around every method (pipeline today)";
+
+// The paper's Tables 1, 2 and 3 of the scenes in the records: one line a scene, and beneath it the published
+// figures. A scene with a record of the pipeline `published` is shown in that one; other scenes stand below,
+// in the pipeline `today`. With `intervals`, the ends of the 95 % intervals stand in lines of their own. A
+// table in which no strategy was measured is left out.
+std::vector<ShapedTable> shaped_tables(std::span<const PaperTable> tables, std::span<const Record> records,
+                                       bool intervals = false);
+
+// What one query takes with every strategy of the pipeline `today`: strategies down, scenes across, the
+// median interval with refit in milliseconds. No columns without such a record.
+ShapedTable times_of_strategies(std::span<const Record> records, bool intervals = false);
+
+// For the report's page.
+nlohmann::ordered_json shaped_json(std::span<const ShapedTable> tables);
+
+}  // namespace cscd::bench

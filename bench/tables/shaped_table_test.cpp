@@ -1,0 +1,161 @@
+#include "bench/tables/shaped_table.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "bench/tables/tables_text.h"
+#include "bench/tables/wide_records.h"
+
+namespace cscd::bench {
+namespace {
+
+std::vector<ShapedTable> shaped_of(const std::vector<Record>& records, bool intervals = false) {
+  return shaped_tables(paper_tables(records), records, intervals);
+}
+
+std::string text_of(const std::vector<Record>& records) {
+  return tables_text(shaped_of(records), judge_claims(records), records, "site/index.html");
+}
+
+std::size_t lines_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+}
+
+std::size_t longest_line(const std::string& text) {
+  std::size_t longest = 0, length = 0;
+  for (const char c : text) longest = std::max(longest, length = c == '\n' ? 0 : length + 1);
+  return longest;
+}
+
+// The paper's Table 2 begins: rope, 0.07, 0.16, 0.03, 0.22, 28.4, 18.9x, 6.0x. Mutation: another order of
+// columns.
+TEST(ShapedTables, HaveThePapersRowsColumnsAndOrder) {
+  const std::vector<ShapedTable> tables = shaped_of(wide_records({"rope"}));
+  ASSERT_EQ(tables.size(), 3u);
+  using Cells = std::vector<std::string>;
+  for (const ShapedTable& table : tables) {
+    ASSERT_EQ(table.lines.size(), 2u) << table.id;
+    EXPECT_EQ(table.lines[0].scene, "rope");
+    EXPECT_EQ(table.lines[0].kind, "measured");
+    EXPECT_EQ(table.lines[1].kind, "published");
+    EXPECT_TRUE(std::ranges::none_of(table.lines[0].cells, &std::string::empty)) << table.id;
+  }
+  EXPECT_EQ(tables[0].lines[1].cells, (Cells{"48440", "24222", "21.5", "30", "100", "3", "83", "6.8", "28.4",
+                                             "199", "95", "53", "38 [2, 76]"}));
+  EXPECT_EQ(tables[1].lines[1].cells, (Cells{"0.07", "0.16", "0.03", "0.22", "28.4", "18.9", "6"}));
+  EXPECT_EQ(tables[2].lines[1].cells, (Cells{"260.1", "25.4", "6.1", "11", "39", "56.1", "99.1", "13.9",
+                                             "6.8", "5.4", "16.2", "28.4", "2"}));
+}
+
+// Mutation: `today` wins where there are records of both pipelines.
+TEST(ShapedTables, ShowThePapersCodeWhereItWasMeasuredAndOthersBelow) {
+  std::vector<Record> records = wide_records({"rope"});
+  records.push_back(wide_record("rope_contact", Pipeline::today));
+  const ShapedTable times = shaped_of(records)[2];
+  ASSERT_EQ(times.lines.size(), 3u);
+  EXPECT_FALSE(times.lines[0].of_today);
+  EXPECT_TRUE(times.begins_today(2));
+  EXPECT_EQ(times.lines[2].kind, "") << "nothing was published of it";
+  const std::vector<Record> alone = {records[0]};
+  EXPECT_NE(shaped_of(alone)[2].lines[0].cells, times.lines[0].cells);
+  EXPECT_NE(text_of(records).find(kTodayNote), std::string::npos);
+}
+
+TEST(ShapedTables, LeaveOutWhatWasNotMeasured) {
+  std::vector<Record> records = wide_records({"rope"});
+  for (Record& record : records)
+    std::erase_if(record.strategies, [](const StrategyRecord& row) { return row.name == "mcd"; });
+  const ShapedTable hierarchies = shaped_of(records)[1];
+  EXPECT_EQ(hierarchies.lines[0].cells[1], "");
+  EXPECT_NE(hierarchies.lines[0].cells[0], "");
+  EXPECT_EQ(text_of(records).find("no record"), std::string::npos);
+  for (Record& record : records)
+    std::erase_if(record.strategies, [](const StrategyRecord& row) { return row.name != "base"; });
+  EXPECT_TRUE(shaped_of(records).empty());
+}
+
+TEST(ShapedTables, HaveIntervalsOnRequestAlone) {
+  const ShapedTable times = shaped_of(wide_records({"rope"}), true)[2];
+  ASSERT_EQ(times.lines.size(), 4u);
+  EXPECT_EQ(times.lines[1].kind, "low");
+  EXPECT_EQ(times.lines[2].kind, "high");
+  EXPECT_EQ(times.lines[1].cells[0], "") << "counters have no interval";
+  EXPECT_LT(std::stod(times.lines[1].cells[2]), std::stod(times.lines[2].cells[2]));
+}
+
+// A time of a strategy that lost a contact carries its mark wherever it is printed, and ratios with it do.
+// Mutation: the divisor's mark is forgotten.
+TEST(ShapedTables, MarkTimesOfStrategiesThatLostContacts) {
+  std::vector<Record> records = wide_records({"rope"});
+  EXPECT_EQ(text_of(records).find(kMark), std::string::npos);
+  for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
+  const std::vector<ShapedTable> tables = shaped_of(records);
+  EXPECT_FALSE(tables[0].has_marks()) << "preparation and counters are no times of queries";
+  EXPECT_FALSE(tables[1].lines[0].cells[0].ends_with(kMark));
+  for (const std::size_t i : {4, 5, 6}) EXPECT_TRUE(tables[1].lines[0].cells[i].ends_with(kMark)) << i;
+  EXPECT_FALSE(tables[2].lines[0].cells[5].ends_with(kMark)) << "rvbc";
+  EXPECT_TRUE(tables[2].lines[0].cells[11].ends_with(kMark)) << "drvbc";
+  EXPECT_TRUE(times_of_strategies(records).has_marks());
+  const std::string text = text_of(records);
+  EXPECT_EQ(text.find(kMarkNote), text.rfind(kMarkNote)) << "one footnote";
+  EXPECT_NE(text.find(kMarkNote), std::string::npos);
+}
+
+TEST(ShapedTables, MarkTimesWhereAPromiseDoesNotHold) {
+  Record record = wide_record("rope", Pipeline::today);
+  record.verification.strategies = {{"base", "complete", 0, 0, 0, {}},
+                                    {"drvbc", "first_contact", 0, 0, 0, {}}};
+  EXPECT_FALSE(is_marked(record, "drvbc"));
+  record.verification.unembedded = {0};
+  EXPECT_TRUE(is_marked(record, "drvbc"));
+  EXPECT_FALSE(is_marked(record, "base"));
+}
+
+// Mutation: a column that no figure needs so wide.
+TEST(TablesText, FitATerminalOfAHundredColumns) {
+  for (const std::vector<std::string>& scenes : {std::vector<std::string>{"rope"},
+                                                 {"rope", "hand", "octopus", "man", "box", "urchin"},
+                                                 {"rope", "octopus", "octopus_contact"}}) {
+    const std::string text = text_of(wide_records(scenes));
+    EXPECT_LE(longest_line(text), 100u) << text;
+    EXPECT_LE(lines_of(text), scenes.size() == 1 ? 45u : 80u) << text;
+    for (const char* line : {"\nmeasured ", "\npublished ", "\nclaims ", "\ndrvbc_fast ", "\npage "})
+      EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  }
+}
+
+// Mutation: one block of all scenes.
+TEST(TablesText, FoldTablesThatAreTooWide) {
+  std::vector<Record> records;
+  for (int i = 0; i < 12; ++i)
+    records.push_back(wide_record("a_scene_with_a_long_name_" + std::to_string(i), Pipeline::today));
+  const std::string text = text_of(records);
+  EXPECT_LE(longest_line(text), 100u) << text;
+  std::size_t rows = 0;
+  for (std::size_t at = 0; (at = text.find("\ndrvbc_fast_swept_bounds ", at)) != std::string::npos; ++at)
+    ++rows;
+  EXPECT_GT(rows, 1u) << text;
+}
+
+TEST(ShortText, HasThreeDigitsAndNoMoreDecimals) {
+  const std::pair<double, const char*> texts[] = {
+      {0, "0"},        {0.0001, "<0.001"}, {0.0006, "0.001"}, {0.00924, "0.009"}, {0.0201, "0.02"},
+      {0.0995, "0.1"}, {0.1234, "0.123"},  {5.678, "5.68"},   {99.96, "100"},     {999.4, "999"},
+      {999.6, "1000"}, {48440, "48440"},   {-5.678, "-5.68"}};
+  for (const auto& [value, text] : texts) EXPECT_EQ(short_text(value), text);
+}
+
+TEST(TablesMarkdown, OfAFullRecordIsShort) {
+  std::vector<std::string> scenes = {"rope", "hand", "octopus", "man", "box", "urchin"};
+  for (std::size_t i = 0; i < 6; ++i) scenes.push_back(scenes[i] + "_contact");
+  const std::vector<Record> records = wide_records(scenes);
+  const std::string page =
+      tables_markdown(shaped_of(records), times_of_strategies(records), judge_claims(records), records);
+  EXPECT_LE(lines_of(page), 250u);
+  for (const char* part : {"\n## Table 1. ", "\n## Table 2. ", "\n## Table 3. ", "\n| drvbc_fast | ",
+                           "\n| rope, published | ", "\n| speedup-base | ", "\n| rope_contact, today | "})
+    EXPECT_NE(page.find(part), std::string::npos) << part << page;
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "bench/record/record.h"
+#include "bench/tables/claims.h"
+#include "bench/tables/paper_tables.h"
+
+namespace cscd::bench {
+
+inline constexpr std::string_view kTablesSchema = "cscd.tables/1";
+
+// Everything, for machines: one object a cell, one a claim. Valid under bench/tables/tables.schema.json.
+nlohmann::ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+                                   std::span<const Record> records);
+// The same cells for spreadsheets, one line a cell.
+std::string tables_csv(std::span<const PaperTable> tables);
+
+}  // namespace cscd::bench
