@@ -94,7 +94,9 @@ std::vector<Record> read_records(std::vector<fs::path>& paths) {
                          "; give one a scene and pipeline");
     read.emplace_back(std::move(record), path);
   }
-  std::ranges::stable_sort(read, {}, [](const auto& one) { return place_of(one.first.scene.name); });
+  std::ranges::stable_sort(read, {}, [](const auto& one) {
+    return std::pair(place_of(one.first.scene.name), one.first.pipeline == Pipeline::published);
+  });
   std::vector<Record> records;
   paths.clear();
   for (auto& [record, path] : read) {

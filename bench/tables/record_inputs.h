@@ -22,9 +22,9 @@ using RecordFiles = std::map<std::string, std::vector<std::filesystem::path>>;
 RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted);
 
 // Reads records of different scenes whose verifications passed: those of the paper's scenes in the paper's
-// order, those of their variants with contacts, then others in the given order. Leaves
-// the paths in the order of the records. Throws InputError for a failed verification, and for two records of
-// a scene in one pipeline.
+// order, those of their variants with contacts, then others in the given order, each in the pipeline `today`
+// first. Leaves the paths in the order of the records. Throws InputError for a failed verification, and for
+// two records of a scene in one pipeline.
 std::vector<Record> read_records(std::vector<std::filesystem::path>& paths);
 
 }  // namespace cscd::bench
