@@ -1,6 +1,6 @@
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by the other scripts: what they need from Debian, in one place, and how they build.
-# Each package has its line of reason in README.md.
+# Each package has its line of reason in scripts/README.md.
 
 packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
                 libgmp-dev libtbb-dev libassimp-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev
