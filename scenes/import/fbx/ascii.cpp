@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "scenes/import/fbx/document.h"
 
@@ -5,6 +7,22 @@ namespace cscd::scenes::fbx {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
+// The version stands in the first of these bytes.
+constexpr std::size_t kHead = 8192;
+
+// Files of old versions have forms of elements that this parser would take for damage, so their version is
+// looked for first.
+void require_new_head(std::string_view text) {
+  const std::string_view head = text.substr(0, kHead);
+  constexpr std::string_view kName = "FBXVersion:";
+  const std::size_t at = head.find(kName);
+  if (at == head.npos) return;
+  const std::size_t digits = head.find_first_not_of(" \t", at + kName.size());
+  const std::size_t end = std::min(head.find_first_of(" \t\r\n;", digits), head.size());
+  WrittenNumber version{};
+  if (digits < end && read_number(head.substr(digits, end - digits), version) && version.is_integer)
+    require_new(version.integer, false);
+}
 
 // Parses text files. Their form is `Name: value, value { children }`, with comments from ';' to the end of
 // the line and arrays such as `*3 { a: 1,2,3 }`.
@@ -136,6 +154,7 @@ class TextParser {
 }  // namespace
 
 Document parse_text(std::string_view bytes) {
+  require_new_head(bytes);
   return TextParser(bytes).parse();
 }
 

@@ -171,12 +171,17 @@ bool read_number(std::string_view word, WrittenNumber& number) {
   return true;
 }
 
+void require_new(std::int64_t version, bool binary) {
+  if (version >= 7100) return;
+  throw InputError("is FBX " + std::to_string(version / 1000) + "." + std::to_string(version / 100 % 10) +
+                   (binary ? " binary" : " text") +
+                   ", which is too old: FBX 7.1 (2011) and later are read; export it as FBX 7.4 binary");
+}
+
 Document parse(std::string_view bytes) {
   constexpr std::string_view kBinary = "Kaydara FBX Binary";
   Document document = bytes.starts_with(kBinary) ? parse_binary(bytes) : parse_text(bytes);
-  if (document.version < 7100)
-    throw InputError("is FBX of version " + std::to_string(document.version) +
-                     "; versions 7100 (FBX 2011) and later are read; export it as FBX 2013 or later");
+  require_new(document.version, document.binary);
   return document;
 }
 

@@ -50,6 +50,9 @@ struct Document {
   Element root;
 };
 
+// Throws InputError for a version that no function here reads.
+void require_new(std::int64_t version, bool binary);
+
 // Parses a whole file. The document points into `bytes`, which must outlive it. Throws InputError for a
 // file that is no FBX file, for versions before 7100, and for damage.
 Document parse(std::string_view bytes);
