@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/base/closest_name.h"
@@ -53,6 +54,10 @@ class Reader {
   std::string where_;
 };
 
+// What stands for a value that no parameter can have. Every kind of parameter refuses it, so a misspelt name
+// is told before its value.
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
 Parameters::Value to_value(const Json& json, const std::string& where);
 
 // Returns all entries of an object except the entry `but`.
@@ -63,35 +68,25 @@ Parameters to_parameters(const Json& json, const std::string& where, std::string
   return {where, std::move(values)};
 }
 
+bool holds(const Json& list, bool (Json::*kind)() const noexcept) {
+  return std::all_of(list.begin(), list.end(), [kind](const Json& item) { return (item.*kind)(); });
+}
+
 Parameters::Value to_value(const Json& json, const std::string& where) {
-  const auto numbers = [&](const Json& list) {
-    std::vector<double> values;
-    for (const Json& item : list) {
-      if (!item.is_number()) throw InputError(where + " must hold numbers only");
-      values.push_back(item.get<double>());
-    }
-    return values;
-  };
   if (json.is_number()) return json.get<double>();
   if (json.is_string()) return json.get<std::string>();
-  if (!json.is_array())
-    throw InputError(where + " must be a number, a text, or a list of numbers, of such lists or of objects");
-  if (!json.empty() && json.front().is_object()) {
+  if (!json.is_array()) return kNoValue;
+  if (holds(json, &Json::is_number)) return json.get<std::vector<double>>();
+  if (holds(json, &Json::is_object)) {
     std::vector<Parameters> objects;
-    for (const Json& item : json) {
-      const std::string number = where + " number " + std::to_string(objects.size() + 1);
-      if (!item.is_object()) throw InputError(number + " must be an object");
-      objects.push_back(to_parameters(item, number));
-    }
+    for (const Json& item : json)
+      objects.push_back(to_parameters(item, where + " number " + std::to_string(objects.size() + 1)));
     return objects;
   }
-  if (json.empty() || !json.front().is_array()) return numbers(json);
-  Parameters::Table table;
-  for (const Json& row : json) {
-    if (!row.is_array()) throw InputError(where + " must be a list of lists throughout");
-    table.push_back(numbers(row));
-  }
-  return table;
+  if (!holds(json, &Json::is_array)) return kNoValue;
+  for (const Json& row : json)
+    if (!holds(row, &Json::is_number)) return kNoValue;
+  return json.get<Parameters::Table>();
 }
 
 std::string read_text(const fs::path& file) {

@@ -155,7 +155,13 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
       throw InputError(file.parent_path().string() + ": cannot be made: " + error.message() +
                        "; let CSCD_CACHE name a folder that can");
     const CacheLock lock(file);
-    if (!is_whole(scene)) generate_to_cache(scene, progress);  // unless another process has meanwhile
+    try {
+      if (!is_whole(scene)) generate_to_cache(scene, progress);  // unless another process has meanwhile
+    } catch (const OutputError& refused) {
+      throw OutputError(
+          std::string(refused.what()) + "; or let CSCD_CACHE name a folder that can be written to",
+          refused.reason);
+    }
   }
   return std::make_unique<PointCacheReader>(file);
 }

@@ -62,8 +62,10 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
   EXPECT_EQ(refusal("\"rings\"", "\"rigns\"").substr(0, 61),
             "small.json, shape tube: parameter rigns is unknown; known are");
   EXPECT_EQ(refusal("\"rings\": 10", "\"rings\": true"),
-            "small.json, shape tube: parameter rings must be a number, a text, or a list of numbers, of "
-            "such lists or of objects");
+            "small.json, shape tube: parameter rings must be a finite number");
+  EXPECT_EQ(refusal("\"rings\": 10", "\"rings\": true, \"zings\": null").substr(0, 61),
+            "small.json, shape tube: parameter zings is unknown; known are")
+      << "a misspelt name before any value";
   EXPECT_EQ(refusal("skinning_linear", "skinning").substr(0, 49),
             "small.json, effect skinning: unknown effect; know");
   EXPECT_EQ(refusal("\"drag\": 0.5, ", ""),
@@ -72,7 +74,7 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
             "it to the scene file");
   EXPECT_EQ(refusal("\"vertices\": 82", "\"vertices\": 83"),
             "scene small: the shape has 82 vertices, the scene file expects 83; correct one of them");
-  EXPECT_NE(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]").find("parameter first_end must hold numbers only"),
+  EXPECT_NE(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]").find("parameter first_end must be a list of lists"),
             std::string::npos);
 }
 
@@ -384,9 +386,12 @@ TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
 }
 
 TEST_F(Catalogue, SaysWhereItCannotCache) {
-  setenv("CSCD_CACHE", "/proc/no/such", 1);
-  EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
-            std::string::npos);
+  for (const char* folder : {"/proc/no/such", "/proc"}) {  // cannot be made; holds no file of ours
+    setenv("CSCD_CACHE", folder, 1);
+    EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
+              std::string::npos)
+        << folder;
+  }
 }
 
 }  // namespace

@@ -24,6 +24,14 @@ std::string shown(double value) {
   return text.str();
 }
 
+// Returns the row of a name, or else the row of all names, or null.
+const ParameterRow* row_of(std::string_view name, std::span<const ParameterRow> rows) {
+  const ParameterRow* known = nullptr;
+  for (const ParameterRow& row : rows)
+    if (row.name == name || (row.name == "*" && !known)) known = &row;
+  return known;
+}
+
 void check_value(const Parameters& parameters, std::string_view name, const ParameterRow& row) {
   switch (row.kind) {
     case ParameterKind::integer:
@@ -120,13 +128,10 @@ const std::vector<Parameters>& Parameters::objects(std::string_view name) const 
 }
 
 void check(const Parameters& parameters, std::span<const ParameterRow> rows) {
-  for (const auto& [name, value] : parameters.values()) {
-    const ParameterRow* known = nullptr;
-    for (const ParameterRow& row : rows)
-      if (row.name == name || (row.name == "*" && !known)) known = &row;
-    if (!known) refuse(parameters, name, "is unknown; known are: " + names(rows));
-    check_value(parameters, name, *known);
-  }
+  // All names are looked at before any value: a misspelt name is the likelier mistake, and explains others.
+  for (const auto& [name, value] : parameters.values())
+    if (row_of(name, rows) == nullptr) refuse(parameters, name, "is unknown; known are: " + names(rows));
+  for (const auto& [name, value] : parameters.values()) check_value(parameters, name, *row_of(name, rows));
   for (const ParameterRow& row : rows)
     if (row.required && !parameters.has(row.name))
       refuse(parameters, row.name, "is missing (" + std::string(row.meaning) + "); add it to the scene file");

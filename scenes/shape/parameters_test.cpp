@@ -45,6 +45,11 @@ TEST(Parameters, NameWhatIsWrong) {
   EXPECT_EQ(refusal({{"count", 3.0}}), "");
   EXPECT_EQ(refusal({{"count", 3.0}, {"colour", 1.0}}),
             "scene s, effect e: parameter colour is unknown; known are: count, size, place, label, path");
+  EXPECT_EQ(refusal({{"colour", 1.0}, {"count", 11.0}, {"zise", 1.0}}).substr(0, 42),
+            "scene s, effect e: parameter colour is unk")
+      << "names before values";
+  EXPECT_EQ(refusal({{"count", 11.0}, {"zise", 1.0}}).substr(0, 40),
+            "scene s, effect e: parameter zise is unk");
   EXPECT_EQ(refusal({}),
             "scene s, effect e: parameter count is missing (how many); add it to the scene file");
   EXPECT_EQ(refusal({{"count", 2.5}}), "scene s, effect e: parameter count must be a whole number");
