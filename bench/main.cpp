@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "bench/command_line/help_format.h"
+#include "bench/command_line/plain_numbers.h"
 #include "bench/command_line/standard_streams.h"
 #include "bench/command_line/usage.h"
 #include "bench/command_line/version.h"
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
   cscd::bench::add_convert(app);
   cscd::bench::add_scene(app);
   cscd::bench::add_help(app);
+  cscd::bench::require_plain_numbers(app);
 
   try {
     run_for_this_machine(argv);

@@ -40,6 +40,18 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
       {"", "subcommand is required"},
       {"query small --json - --threads many", "--threads"},
       {"query small --json - --threads 0", "--threads"},
+      {"query small --interval-seconds nan", "--interval-seconds: nan is no finite number"},
+      {"query small --interval-seconds inf", "--interval-seconds"},
+      {"query small --interval-seconds -1", "--interval-seconds"},
+      {"query x.glb --fps nan", "--fps: nan is no finite number"},
+      {"query x.glb --weld nan", "--weld: nan is no finite number"},
+      {"query x.glb --import-seconds nan", "--import-seconds: nan is no finite number"},
+      {"query x.glb --memory 1e3", "--memory"},
+      {"verify --intervals 99999999999999999999999", "--intervals: 99999999999999999999999 is beyond all"},
+      {"verify --seed -1", "--seed: -1 is no whole number of 0 or more"},
+      {"scale --steps 1,nan", "--steps: nan is no finite number"},
+      {"hardcases --out . --hardness nan", "--hardness: nan is no finite number"},
+      {"run --plan p --into i --cell-seconds nan", "--cell-seconds: nan is no finite number"},
       {"list --names --json", "--names"},
   };
   for (const auto& one : kCases) {
