@@ -104,7 +104,7 @@ std::optional<double> second_of(const Input& input, const ClipMoment& moment) {
 
 double frame_of(const Input& input, const ClipMoment& moment) {
   const std::optional<double> seconds = second_of(input, moment);
-  return seconds ? *seconds * input.import->fps : static_cast<double>(moment.interval) + moment.time;
+  return seconds ? frame_at(*input.import, *seconds) : static_cast<double>(moment.interval) + moment.time;
 }
 
 json moment_json(const Input& input, const ClipMoment& moment) {

@@ -15,8 +15,8 @@ struct ClipMoment {
   std::size_t interval = 0;
   double time = 0;
 };
-// In frames, and in seconds where the input tells its rate: of a model file both count from the clip's start,
-// of other inputs frames count from frame 0.
+// In frames, and in seconds where the input tells its rate. Of a model file frames are those of the file's
+// time line (frame_at), and seconds count from the clip's start; of other inputs frames count from frame 0.
 double frame_of(const Input& input, const ClipMoment& moment);
 std::optional<double> second_of(const Input& input, const ClipMoment& moment);
 nlohmann::json moment_json(const Input& input, const ClipMoment& moment);

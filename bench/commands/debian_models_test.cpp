@@ -68,9 +68,9 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
   EXPECT_EQ((*chosen)["bones"], known.bones);
   EXPECT_EQ((*chosen)["closed"], known.closed);
 
-  ASSERT_EQ(
-      refusal({"query", file, "--component", "auto", "--strategy", "base", "--json", scratch / "base.json"}),
-      "");
+  ASSERT_EQ(refusal({"query", file, "--clip", "0", "--fps", "30", "--component", "auto", "--strategy", "base",
+                     "--json", scratch / "base.json"}),
+            "");
   const auto base = nlohmann::json::parse(read(scratch / "base.json"))["intervals"];
   EXPECT_EQ(base.size(), known.frames - 1);
   EXPECT_EQ(std::any_of(base.begin(), base.end(),
@@ -78,8 +78,8 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
             known.collides);
   // A strategy that needs a closed surface refuses an open one; where it answers, it answers as the others
   // do.
-  const std::string fast =
-      refusal({"query", file, "--strategy", "drvbc_fast", "--json", scratch / "fast.json"});
+  const std::string fast = refusal({"query", file, "--clip", "0", "--fps", "30", "--strategy", "drvbc_fast",
+                                    "--json", scratch / "fast.json"});
   if (!known.closed) {
     EXPECT_NE(fast.find("boundary edges"), std::string::npos) << fast;
     return;

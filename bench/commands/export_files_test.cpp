@@ -53,7 +53,7 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
   EXPECT_EQ(verdicts(answer("exact.0000.obj")), expected);
   EXPECT_EQ(verdicts(answer("exact.0007.ply")), expected);
   const Ran fps = run("cscd query exact.0000.obj --fps 60 --frames 0:1 -- 2>&1");
-  EXPECT_NE(fps.out.find("60 a second"), std::string::npos) << fps.out;
+  EXPECT_NE(fps.out.find("60 frames a second, as asked"), std::string::npos) << fps.out;
   for (const char* input : {"near.pc2", "near.mdd", "baked.glb"}) {
     const auto found = verdicts(answer(input));
     ASSERT_EQ(found.size(), expected.size()) << input;

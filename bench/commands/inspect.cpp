@@ -180,11 +180,10 @@ std::string strategies_text(const json& strategies) {
 
 void print(const json& document) {
   for (const json& clip : document["clips"])
-    std::printf("  clip '%s': %s s, %s frames, %s bones driven, %s ticks a second%s\n",
+    std::printf("  clip '%s': %s s, %s frames from frame %s, %s bones driven\n",
                 clip["name"].get<std::string>().c_str(), number(clip["seconds"]).c_str(),
-                number(clip["frames"]).c_str(), number(clip["bones_driven"]).c_str(),
-                number(clip["ticks_per_second"]).c_str(),
-                clip["ticks_per_second"] == 0 ? " (the file does not say; 25 assumed)" : "");
+                number(clip["frames"]).c_str(), number(clip["first_frame"]).c_str(),
+                number(clip["bones_driven"]).c_str());
   for (const json& c : document["components"]) {
     std::string shape = c["closed"].get<bool>() ? "closed" : "open";
     shape += c["manifold"].get<bool>() ? ", manifold" : ", not manifold";

@@ -110,9 +110,20 @@ TEST_P(Characters, AreInspectedAndQueried) {
   nlohmann::json answer[2];
   const char* strategy[] = {"base", "drvbc"};
   for (std::size_t s = 0; s < 2; ++s) {
-    const Outcome asked =
-        cscd({"query", file, "--from-bind-pose", "--component", "auto", "--frames", "0:12", "--strategy",
-              strategy[s], "--json", scratch / (strategy[s] + std::string(".json"))});
+    std::vector<std::string> words{"query",
+                                   file,
+                                   "--from-bind-pose",
+                                   "--component",
+                                   "auto",
+                                   "--fps",
+                                   "30",
+                                   "--frames=-15:-3",
+                                   "--strategy",
+                                   strategy[s],
+                                   "--json",
+                                   scratch / (strategy[s] + std::string(".json"))};
+    if (!facts["clips"].empty()) words.insert(words.end(), {"--clip", "0"});
+    const Outcome asked = cscd(words);
     ASSERT_EQ(asked.code, 0) << asked.errors;
     answer[s] = nlohmann::json::parse(read(scratch / (strategy[s] + std::string(".json"))));
   }

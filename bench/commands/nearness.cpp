@@ -39,7 +39,7 @@ void nearness(const NearnessOptions& options) {
   if (!options.output.empty()) output.emplace(options.output, options.force);
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
-  const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
+  const IntervalRange range = parse_frames(options.frames, input);
   const std::vector<std::size_t> chosen = every_kth(range, options.every);
 
   EmbeddingTest embedding(input.mesh, input.reference);

@@ -37,22 +37,21 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(Query, AloneAnswersAPerson) {
-  // Standard output is a file here, as a terminal would be: no program reads it.
-  const Ran ran = run("cscd query small");
-  EXPECT_EQ(ran.status, 0) << ran.errors;
-  EXPECT_TRUE(has(ran.out, "small\n  does not touch itself\n")) << ran.out;
-  EXPECT_TRUE(has(ran.out, " clear, 0 touch, 0 intersect at their start")) << ran.out;
-  EXPECT_TRUE(has(ran.out, "every answer proven")) << ran.out;
-}
-
-TEST_F(Query, ProgramsGetJsonAndPeopleStandardError) {
-  for (const char* script : {"cscd query small --json -", "cscd query small | cat"}) {
+TEST_F(Query, AnswersAPersonWhoeverReads) {
+  for (const char* script : {"cscd query small", "cscd query small | cat"}) {
     const Ran ran = run(script);
     EXPECT_EQ(ran.status, 0) << ran.errors;
-    EXPECT_EQ(json::parse(ran.out)["schema"], "cscd.query/2") << script;
-    EXPECT_TRUE(has(ran.errors, "does not touch itself")) << ran.errors;
+    EXPECT_EQ(ran.out.find("small does not touch itself in frames 0 to 5.\n  5 intervals: "), 0u) << ran.out;
+    EXPECT_TRUE(has(ran.out, " clear, 0 touch, 0 cross at their start")) << ran.out;
+    EXPECT_TRUE(has(ran.out, "every answer proven")) << ran.out;
   }
+}
+
+TEST_F(Query, GivesJsonWhereThatIsAskedAndTextBesideIt) {
+  const Ran ran = run("cscd query small --json - | cat");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_EQ(json::parse(ran.out)["schema"], "cscd.query/3");
+  EXPECT_TRUE(has(ran.errors, "does not touch itself")) << ran.errors;
   const Ran both = run("cscd query small --json answer.json");
   EXPECT_TRUE(has(both.out, "does not touch itself")) << "a file beside it leaves the text where it is";
   EXPECT_EQ(json::parse(text("answer.json"))["input"], "small");
@@ -67,7 +66,11 @@ TEST_F(Query, FailsOnContactWhereThatIsAsked) {
 TEST_F(Query, SpeaksOfACharacterInItsOwnNamesAndTimes) {
   const Ran ran = run("cscd query figure.glb --clip HUG");
   ASSERT_EQ(ran.status, 0) << ran.errors;
-  EXPECT_TRUE(has(ran.out, "'hug' of 2")) << ran.out;
+  EXPECT_TRUE(has(ran.out,
+                  "1 s as 31 frames, from frame 0 to 30, 30 frames a second, because the file does "
+                  "not say (--fps); drives 4 of "))
+      << ran.out;
+  EXPECT_TRUE(has(ran.out, "\nfigure.glb, clip 'hug' (2nd of 2 clips), ")) << ran.out;
   EXPECT_TRUE(has(ran.out, "all 4 components")) << ran.out;
   EXPECT_TRUE(has(ran.out, "first at frame ")) << ran.out;
   EXPECT_TRUE(has(ran.out, "right_eye in skin: ") && has(ran.out, "left_eye in skin: ")) << ran.out;
@@ -127,8 +130,82 @@ TEST_F(Query, AnswersAllClipsInOneRun) {
     EXPECT_EQ(same, one);
     EXPECT_EQ(all["clips"][c]["import"]["clip"], c);
   }
+  EXPECT_EQ(all["import"]["clip"], nullptr);
   EXPECT_EQ(run("cscd query figure.glb --clip all --fail-on-contact").status, 3);
-  expect_refused(run("cscd inspect figure.glb --clip all"), "only query answers all clips");
+  expect_refused(run("cscd inspect figure.glb --clip all"), "only query and view take all clips");
+}
+
+// Mutation: without a name, the first clip alone.
+TEST_F(Query, AnswersAllClipsUnlessOneIsNamed) {
+  const json named = answer("figure.glb --clip all"), unnamed = answer("figure.glb");
+  EXPECT_EQ(unnamed["summary"], named["summary"]);
+  ASSERT_EQ(unnamed["clips"].size(), 2u);
+  const Ran ran = run("cscd query figure.glb");
+  const char* const kNamed[] = {"figure.glb, clip 'walk' (1st of 2 clips), ",
+                                "figure.glb, clip 'hug' (2nd of 2 clips), "};
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < 2; ++c) {
+    const std::string sentence = unnamed["clips"][c]["summary"]["sentence"];
+    EXPECT_EQ(sentence.find(kNamed[c]), 0u) << sentence;
+    at = ran.out.find("\n" + sentence + "\n", at);
+    EXPECT_NE(at, std::string::npos) << "no '" << sentence << "' in " << ran.out;
+  }
+  EXPECT_NE(ran.out.find("\n" + unnamed["summary"]["sentence"].get<std::string>() + "\n", at),
+            std::string::npos);
+  EXPECT_TRUE(has(unnamed["summary"]["sentence"], "figure.glb, 2 clips in all: ")) << unnamed["summary"];
+  EXPECT_TRUE(has(unnamed["summary"]["sentence"], "('hug')")) << unnamed["summary"];
+  expect_refused(run("cscd query figure.glb --frames 0:1"), "has 2; name one with --clip");
+
+  // A clip that moves nothing is not said to be clear alone.
+  scenes::Character still = scenes::walking_figure();
+  for (scenes::Channel& channel : still.animations[1].channels)
+    for (auto& key : channel.rotations) key.value = channel.rotations.front().value;
+  put("still.glb", scenes::to_glb(still));
+  EXPECT_TRUE(has(run("cscd query still.glb --clip hug").out,
+                  "clip 'hug' (2nd of 2 clips), does not move in frames 0 to 30, "));
+
+  // A file of one clip is answered by itself.
+  scenes::Character one = scenes::walking_figure();
+  one.animations.resize(1);
+  put("one.glb", scenes::to_glb(one));
+  EXPECT_EQ(answer("one.glb")["summary"]["sentence"].get<std::string>().find(
+                "one.glb, clip 'walk' (the only one), does not touch itself in frames 0 to 30, apart from "),
+            0u);
+  EXPECT_EQ(answer("one.glb --clip all")["clips"].size(), 1u);
+}
+
+// The arms of the figure hug from frame 900 of 24 a second on.
+TEST_F(Query, CountsFramesAsTheTimeLineOfTheFile) {
+  scenes::Character late = scenes::walking_figure();
+  late.animations.erase(late.animations.begin());
+  scenes::Animation& hug = late.animations[0];
+  for (scenes::Channel& channel : hug.channels)
+    for (auto& key : channel.rotations) key.time += 37.5;
+  auto& turns = hug.channels[0].rotations;
+  const auto first = turns.front();
+  turns.insert(turns.begin() + 1, 23, first);
+  for (std::size_t i = 1; i < 24; ++i) turns[i].time += static_cast<double>(i) / 24;
+  put("late.glb", scenes::to_glb(late));
+  const json whole = answer("late.glb --from-bind-pose");
+  EXPECT_EQ(whole["import"]["fps"], 24);
+  EXPECT_EQ(whole["import"]["fps_from"], "keys");
+  EXPECT_EQ(whole["import"]["clips"][0]["first_frame"], 900);
+  EXPECT_EQ(whole["import"]["lead_in_frames"], 12);
+  EXPECT_EQ(whole["intervals"][0]["frame"], -12);
+  EXPECT_EQ(whole["intervals"][12]["frame"], 900);
+  EXPECT_EQ(whole["intervals"][12]["seconds"], 0);
+  const json part = answer("late.glb --frames 910:915");
+  ASSERT_EQ(part["intervals"].size(), 5u);
+  EXPECT_EQ(part["intervals"][0]["index"], 10);
+  EXPECT_EQ(part["intervals"][0]["frame"], 910);
+  expect_refused(run("cscd query late.glb --frames 10:15"), "not inside the clip's frames 900 to 924");
+  const Ran text = run("cscd query late.glb");
+  EXPECT_TRUE(has(text.out, "from frame 900 to 924, 24 frames a second, as the keys of the file are spaced"))
+      << text.out;
+  EXPECT_TRUE(has(text.out, " s into the clip): ")) << text.out;
+  const json asked = answer("late.glb --fps 30");
+  EXPECT_EQ(asked["import"]["fps_from"], "asked");
+  EXPECT_EQ(asked["intervals"][0]["frame"], 1125);
 }
 
 // Mutations: the file is written and never read; a strategy without a preparation takes the option.

@@ -73,24 +73,19 @@ struct Contestant {
 
 }  // namespace
 
-std::string view_page(const ViewRequest& options) {
-  require_viewer();
-  require_sound(options);
-  for (const std::string& name : options.strategies) strategy_named(name);
-  if (options.strategies.size() > kMostStrategies)
-    throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
-                     " strategies; name fewer");
+namespace {
 
-  Input input = open_input(options.input, options.model);
+// Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it. Says on
+// standard output what was answered.
+json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   input.threads = options.threads;
   input.use_bones = !options.strategies.empty();  // as for a query
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
   if (options.strategies.empty() && strategies[0]->needs.bones) input.use_bones = true;
-  const IntervalRange range = parse_frames(options.frames, input.clip->frame_count());
+  const IntervalRange range = parse_frames(options.frames, input);
   const SurfaceNames names(input);
   TextTable texts;
-  Sections sections;
   const std::vector<std::uint16_t> places = places_of_triangles(input.mesh, names, texts, false);
   const std::vector<std::uint16_t> parts = places_of_triangles(input.mesh, names, texts, true);
   sections.add("place", std::span<const std::uint16_t>(places));
@@ -124,7 +119,6 @@ std::string view_page(const ViewRequest& options) {
   watchdog.restart();
 
   const bool left_out = !options.answers.keep_rest_crossings;
-  say_what_was_read(input, stdout);
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s) {
     Contestant& contestant = *contestants[s];
@@ -133,19 +127,72 @@ std::string view_page(const ViewRequest& options) {
                                               contestant.answerer.rest_crossings(), left_out));
   }
   const Contestant& first = *contestants.front();
-  std::printf("%s\n%s", options.input.c_str(), rows[0]["text"].get<std::string>().c_str());
-  json header = {{"schema", "cscd.view/1"},
-                 {"name", std::filesystem::path(options.input).filename().string()},
-                 {"kind", input.import                    ? "model"
-                          : is_point_cache(options.input) ? "cache"
-                                                          : "scene"},
-                 {"version", version_number()},
-                 {"elementary", elementary.name},
-                 {"clip", clip.write(sections)},
+  std::printf("%s", rows[0]["text"].get<std::string>().c_str());
+  json header = {{"clip", clip.write(sections)},
                  {"texts", texts.texts()},
                  {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
+  return header;
+}
+
+// Adds every clip of a model file that is longer than one pose.
+void record_all_clips(const ViewRequest& options, json& header, Sections& sections) {
+  if (!options.frames.empty())
+    throw InputError("--frames " + options.frames + ": is for one clip; name one with --clip");
+  ViewRequest one = options;
+  one.model.import.clip.clear();
+  one.model.import.survey = true;
+  const Input survey = open_input(options.input, one.model);
+  one.model.import.survey = false;
+  say_what_was_read(survey, stdout);
+  const std::vector<scenes::ImportReport::Clip>& clips = survey.import->clips;
+  std::size_t frames = 0;
+  for (const scenes::ImportReport::Clip& clip : clips) frames += clip.frames;
+  require_page_room(frames, survey.mesh.vertex_count(),
+                    options.input + ": a page of all " + std::to_string(clips.size()) + " clips,",
+                    "by naming one clip with --clip");
+  header["clips"] = json::array();
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    if (clips[c].frames < 2 && !one.model.import.from_bind_pose) {
+      std::printf("clip '%s' is one pose; passed over\n", clips[c].name.c_str());
+      continue;
+    }
+    one.model.import.clip_number = c;
+    sections.set_prefix("c" + std::to_string(header["clips"].size()) + ".");
+    json recorded = record_clip(one, open_input(options.input, one.model), sections);
+    recorded["title"] = clips[c].name.empty() ? "clip " + std::to_string(c) : clips[c].name;
+    header["clips"].push_back(std::move(recorded));
+  }
+  if (header["clips"].empty())
+    throw InputError(options.input + ": has no clip of more than one pose, so nothing moves");
+}
+
+}  // namespace
+
+std::string view_page(const ViewRequest& options) {
+  require_viewer();
+  require_sound(options);
+  for (const std::string& name : options.strategies) strategy_named(name);
+  if (options.strategies.size() > kMostStrategies)
+    throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
+                     " strategies; name fewer");
+  const bool model = is_model_file(options.input);
+  json header = {{"schema", "cscd.view/1"},
+                 {"name", std::filesystem::path(options.input).filename().string()},
+                 {"kind", model                           ? "model"
+                          : is_point_cache(options.input) ? "cache"
+                                                          : "scene"},
+                 {"version", version_number()},
+                 {"elementary", elementary_test_named(options.elementary).name}};
+  Sections sections;
+  if (model && options.model.import.clip == kAllClips) {
+    record_all_clips(options, header, sections);
+  } else {
+    Input input = open_input(options.input, options.model);
+    say_what_was_read(input, stdout);
+    header.update(record_clip(options, std::move(input), sections));
+  }
   if (header["kind"] == "scene")
     if (const auto up = up_of(scenes::load_scene(options.input))) header["up"] = *up;
   return viewer_with(header, sections);
@@ -169,7 +216,8 @@ void add_view(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "view",
       "Write one HTML file that shows the surface in motion, and where and when it touches itself.\n\n"
-      "  cscd view character.glb\n"
+      "  cscd view character.glb                    its first clip that moves\n"
+      "  cscd view character.glb --clip all         every clip in one page, with a list to choose from\n"
       "  cscd view octopus --strategy drvbc --strategy drvbc_fast -o octopus.html\n\n"
       "The page needs no network and no server: open it in a browser. It begins at the first contact.\n"
       "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across "

@@ -109,7 +109,7 @@ TEST_F(View, RefusesWhatItCannotShow) {
   expect_refused(run("cscd view small --strategy drvbc-fast"), "did you mean drvbc_fast?");
   expect_refused(run("cscd view small -o page.txt"), "page.txt");
   expect_refused(run("cscd view small --first --elementary newton"), "--first");
-  expect_refused(run("cscd view figure.glb --clip all"), "only query answers all clips");
+  expect_refused(run("cscd view figure.glb --clip all --frames 0:1"), "is for one clip");
   std::string many = "cscd view small";
   for (int i = 0; i < 7; ++i) many += " --strategy base";
   expect_refused(run(many), "up to 6");
@@ -124,8 +124,27 @@ TEST_F(View, ABrowserShowsTheFirstContactAndHostileNamesAsText) {
   ASSERT_EQ(ran.status, 0) << ran.errors;
   const std::string page = text("page.html");
   EXPECT_EQ(page.find("<img"), std::string::npos);
-  use_in_browser("page.html",
-                 "hostile.glb touches itself, first at frame 25.75 (0.858 s): <img src=x onerror=alert(1)>");
+  use_in_browser("page.html", "first at frame 25.75 (0.8585 s): <img src=x onerror=alert(1)>");
+}
+
+TEST_F(View, HoldsOneClipOrAll) {
+  const Ran first = run("cscd view figure.glb -o one.html");
+  ASSERT_EQ(first.status, 0) << first.errors;
+  EXPECT_NE(first.out.find("it is the first clip that moves the surface"), std::string::npos) << first.out;
+  const json one = header_of(text("one.html"))["strategies"][0];
+  EXPECT_NE(one["details"].get<std::string>().find("the first clip that moves"), std::string::npos);
+
+  ASSERT_EQ(run("cscd view figure.glb --clip all -o all.html").status, 0);
+  const json header = header_of(text("all.html")),
+             query = json::parse(run("cscd query figure.glb --json -").out);
+  ASSERT_EQ(header["clips"].size(), 2u);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const json& row = header["clips"][c]["strategies"][0];
+    EXPECT_EQ(row["summary"]["sentence"], query["clips"][c]["summary"]["sentence"]);
+    EXPECT_EQ(row["details"].get<std::string>().find("the first clip that moves"), std::string::npos);
+  }
+  EXPECT_EQ(one["summary"]["sentence"], query["clips"][0]["summary"]["sentence"]);
+  use_in_browser("all.html", "clip 'hug' (2nd of 2 clips)");
 }
 
 TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {

@@ -107,6 +107,22 @@ std::string number(double value) {
   return digits;
 }
 
+// "1st", "2nd", "11th".
+std::string ordinal(std::size_t n) {
+  const bool teens = n / 10 % 10 == 1;
+  const char* const ending = teens         ? "th"
+                             : n % 10 == 1 ? "st"
+                             : n % 10 == 2 ? "nd"
+                             : n % 10 == 3 ? "rd"
+                                           : "th";
+  return std::to_string(n) + ending;
+}
+
+const ImportReport::Clip* chosen_clip(const ImportReport& report) {
+  const auto chosen = static_cast<std::size_t>(report.chosen_clip);
+  return report.chosen_clip >= 0 && chosen < report.clips.size() ? &report.clips[chosen] : nullptr;
+}
+
 std::string listed(const std::vector<std::size_t>& numbers) {
   std::string out;
   for (const std::size_t n : numbers) out += (out.empty() ? "" : ", ") + std::to_string(n);
@@ -119,7 +135,7 @@ ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
   require_model_file(path);
   if (options.import.clip == kAllClips)
     throw InputError(std::string("--clip ") + kAllClips +
-                     ": only query answers all clips in one run; name one, or give its number");
+                     ": only query and view take all clips in one run; name one, or give its number");
   const TemporaryFolder folder;
   const fs::path cache = folder.path() / "frames.h5", report = folder.path() / "report",
                  sources = folder.path() / "sources";
@@ -158,33 +174,61 @@ ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
 
 double second_of_frame(const ImportReport& report, std::size_t frame, std::size_t frames) {
   const double lead_in = static_cast<double>(report.lead_in);
-  const auto chosen = static_cast<std::size_t>(report.chosen_clip);
-  const double length =
-      report.chosen_clip >= 0 && chosen < report.clips.size() ? report.clips[chosen].seconds : 0;
+  const ImportReport::Clip* clip = chosen_clip(report);
+  const double length = clip != nullptr ? clip->seconds : 0;
   return frame + 1 == frames ? length : (static_cast<double>(frame) - lead_in) / report.fps;
 }
 
-std::string import_text(const ImportReport& r) {
+std::string rate_text(const ImportReport& report) {
+  const std::string rate = number(report.fps) + " frames a second, ";
+  if (report.fps_from == scenes::kAsked) return rate + "as asked (--fps)";
+  if (report.fps_from == scenes::kStated) return rate + "as the file says";
+  if (report.fps_from == scenes::kSpaced) return rate + "as the keys of the file are spaced";
+  return rate + "because the file does not say (--fps)";
+}
+
+double frame_at(const ImportReport& report, double seconds) {
+  const ImportReport::Clip* clip = chosen_clip(report);
+  return seconds * report.fps + (clip != nullptr && seconds >= 0 ? clip->first_frame : 0);
+}
+
+std::string clip_title(const ImportReport& r) {
+  const ImportReport::Clip* clip = chosen_clip(r);
+  if (clip == nullptr || r.joints == 0) return {};  // a moving surface alone has no clips
+  const std::string name = clip->name.empty() ? "clip" : "clip '" + clip->name + "'";
+  if (r.clips.size() == 1) return clip->name.empty() ? "its only clip" : name + " (the only one)";
+  return name + " (" + ordinal(static_cast<std::size_t>(r.chosen_clip) + 1) + " of " +
+         std::to_string(r.clips.size()) + " clips)";
+}
+
+std::string clip_text(const ImportReport& r) {
   std::string out;
   const auto line = [&](const std::string& text) { out += "  " + text + "\n"; };
-  if (r.chosen_clip >= 0 && static_cast<std::size_t>(r.chosen_clip) < r.clips.size()) {
-    const ImportReport::Clip& clip = r.clips[static_cast<std::size_t>(r.chosen_clip)];
-    std::string text = "clip " + std::to_string(r.chosen_clip) + " '" + clip.name + "' of " +
-                       std::to_string(r.clips.size()) + ": " + number(clip.seconds) + " s as " +
-                       std::to_string(clip.frames) + " frames, " + number(r.fps) +
-                       " a second and its last moment; drives " + std::to_string(clip.driven) + " of " +
-                       std::to_string(r.joints) + " bones";
-    if (clip.ticks_per_second == 0 && r.format != "glTF 2")
+  if (const ImportReport::Clip* clip = chosen_clip(r)) {
+    const std::string title = clip_title(r);
+    std::string text = (title.empty() ? "" : title + ": ") + number(clip->seconds) + " s as " +
+                       std::to_string(clip->frames) + " frames, from frame " + number(clip->first_frame) +
+                       " to " + number(frame_at(r, clip->seconds)) + ", " + rate_text(r);
+    if (r.joints > 0)
+      text += "; drives " + std::to_string(clip->driven) + " of " + std::to_string(r.joints) + " bones";
+    if (clip->ticks_per_second == 0 && r.joints > 0 && r.format != "glTF 2")
       text += "; the file gives no ticks a second, 25 assumed";
-    if (r.joints == 0)  // a moving surface alone
-      text = std::to_string(clip.frames) + " frames, taken as " + number(r.fps) +
-             " a second (--fps): " + number(clip.seconds) + " s";
     line(text);
   }
+  if (chosen_clip(r) == nullptr && !r.clips.empty())  // a survey
+    line(std::to_string(r.clips.size()) + (r.clips.size() == 1 ? " clip, " : " clips, ") + rate_text(r));
   if (r.lead_in > 0)
     line("begins with " + std::to_string(r.lead_in) + " frames (" +
          number(static_cast<double>(r.lead_in) / r.fps) +
-         " s) from the bind pose to the first pose, which are no part of the clip: their times are negative");
+         " s) from the bind pose to the first pose, which are no part of the clip: their times and numbers "
+         "are "
+         "negative");
+  return out;
+}
+
+std::string surface_text(const ImportReport& r) {
+  std::string out;
+  const auto line = [&](const std::string& text) { out += "  " + text + "\n"; };
   if (r.components > 0) {
     std::string which = (r.chosen_components.size() == 1 ? "component " : "components ") +
                         listed(r.chosen_components) + " of " + std::to_string(r.components);
@@ -213,6 +257,7 @@ nlohmann::json import_json(const ImportReport& r) {
                      {"seconds", clip.seconds},
                      {"ticks_per_second", clip.ticks_per_second},
                      {"frames", clip.frames},
+                     {"first_frame", clip.first_frame},
                      {"bones_driven", clip.driven}});
   nlohmann::json parts = nlohmann::json::array();
   const auto count = [](std::int32_t n) { return n < 0 ? nlohmann::json() : nlohmann::json(n); };
@@ -237,6 +282,7 @@ nlohmann::json import_json(const ImportReport& r) {
       {"clips", clips},
       {"clip", chosen},
       {"fps", r.fps},
+      {"fps_from", r.fps_from},
       {"lead_in_frames", r.lead_in},
       {"weld", {{"tolerance", r.weld_tolerance}, {"spread", r.weld_spread}, {"vertices", r.welded_vertices}}},
       {"collapsed_triangles", r.collapsed_triangles},

@@ -40,8 +40,18 @@ ImportedModel import_model(const std::filesystem::path& path, const ModelOptions
 // `frames` is the number of all frames.
 double second_of_frame(const scenes::ImportReport& report, std::size_t frame, std::size_t frames);
 
-// Tells in a few lines what was read from the file and what was done to it.
-std::string import_text(const scenes::ImportReport& report);
+// The number, on the time line of the file, of the frame that is shown so many seconds after the start of the
+// clip. A clip may start at any number. The lead-in is no part of that time line, and its numbers are
+// negative.
+double frame_at(const scenes::ImportReport& report, double seconds);
+
+// Tells in a few lines which clip was read, and what was done to the surface.
+std::string clip_text(const scenes::ImportReport& report);
+std::string surface_text(const scenes::ImportReport& report);
+// "24 frames a second, as the file says".
+std::string rate_text(const scenes::ImportReport& report);
+// "clip 'walk' (3rd of 14 clips)"; empty where the file has no clips.
+std::string clip_title(const scenes::ImportReport& report);
 nlohmann::json import_json(const scenes::ImportReport& report);
 
 }  // namespace cscd::bench

@@ -1,6 +1,7 @@
 #include "bench/input/input.h"
 
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -27,11 +28,19 @@ std::unique_ptr<scenes::ClipSource> clip_of(const scenes::Scene& scene, const st
   });
 }
 
-std::size_t parse_frame(std::string_view digits, std::size_t otherwise, const std::string& whole) {
+// Frames whose numbers differ by less are one: numbers are seconds times a rate.
+constexpr double kSameFrame = 1e-3;
+
+std::string shown(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+double parse_frame(std::string_view digits, double otherwise, const std::string& whole) {
   if (digits.empty()) return otherwise;
-  std::size_t frame = 0;
+  double frame = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), frame);
-  if (error != std::errc{} || end != digits.data() + digits.size())
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(frame))
     throw InputError("--frames " + whole + ": '" + std::string(digits) +
                      "' is not a frame number; write A:B, as in 0:10");
   return frame;
@@ -82,29 +91,47 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   Input input{name,           std::move(clip),   std::move(mesh),   std::move(reference),
               std::move(rig), std::move(import), std::move(sources)};
   input.bone_names = std::move(bone_names);
+  const bool named = !options.import.clip.empty() || options.import.clip_number;
+  input.clip_was_named = named || options.import.survey || !input.import || input.import->clips.size() < 2;
   return input;
 }
 
 void say_what_was_read(const Input& input, std::FILE* to) {
-  if (input.import)
-    std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
-                 import_text(*input.import).c_str());
+  if (!input.import) return;
+  std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
+               clip_text(*input.import).c_str());
+  if (!input.clip_was_named)
+    std::fprintf(to, "  it is the first clip that moves the surface; --clip names another\n");
+  std::fprintf(to, "%s", surface_text(*input.import).c_str());
 }
 
-IntervalRange parse_frames(const std::string& text, std::size_t frame_count) {
-  if (text.empty()) return {0, frame_count - 1};
+double frame_number(const Input& input, std::size_t frame) {
+  if (!input.import) return static_cast<double>(frame);
+  return frame_at(*input.import, second_of_frame(*input.import, frame, input.clip->frame_count()));
+}
+
+std::string frames_text(const IntervalRange& range, const Input& input) {
+  return shown(frame_number(input, range.first)) + ":" + shown(frame_number(input, range.last));
+}
+
+IntervalRange parse_frames(const std::string& text, const Input& input) {
+  const std::size_t end = input.clip->frame_count() - 1;
+  if (text.empty()) return {0, end};
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos)
     throw InputError("--frames " + text +
                      ": has no colon; write A:B for the intervals between frames A and B");
   const std::string_view view(text);
-  const std::size_t first = parse_frame(view.substr(0, colon), 0, text);
-  const std::size_t last = parse_frame(view.substr(colon + 1), frame_count - 1, text);
-  if (first >= last || last >= frame_count)
-    throw InputError("--frames " + text + ": not inside the clip's frames 0 to " +
-                     std::to_string(frame_count - 1) +
-                     ", or empty; choose 0 <= A < B <= " + std::to_string(frame_count - 1));
-  return {first, last};
+  const double least = frame_number(input, 0), most = frame_number(input, end);
+  const double from = parse_frame(view.substr(0, colon), least, text);
+  const double to = parse_frame(view.substr(colon + 1), most, text);
+  IntervalRange range{0, end};
+  while (range.first < end && frame_number(input, range.first) < from - kSameFrame) ++range.first;
+  while (range.last > 0 && frame_number(input, range.last) > to + kSameFrame) --range.last;
+  if (from < least - kSameFrame || to > most + kSameFrame || range.first >= range.last)
+    throw InputError("--frames " + text + ": not inside the clip's frames " + shown(least) + " to " +
+                     shown(most) + ", or empty; choose " + shown(least) + " <= A < B <= " + shown(most));
+  return range;
 }
 
 bool allows(const Input& input, const Strategy& strategy) {

@@ -25,6 +25,7 @@ struct Input {
   std::optional<Rig> rig;
   std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
+  bool clip_was_named = true;                                 // else it is the first clip that moves
   int threads = 1;                                            // for whatever can use them
   bool use_bones = true;                                      // for strategies that can do without
   std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
@@ -48,7 +49,7 @@ struct Input {
 // files only.
 Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
 
-// Says what was made of a model file, a few lines; nothing of other inputs.
+// Says what was made of a model file, a few lines, and which of its clips this is; nothing of other inputs.
 void say_what_was_read(const Input& input, std::FILE* to);
 
 // Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
@@ -59,8 +60,14 @@ bool is_point_cache(const std::filesystem::path& path);
 struct IntervalRange {
   std::size_t first, last;
 };
-// "A:B" stands for the intervals between frames A and B; either may be left out. Throws InputError.
-IntervalRange parse_frames(const std::string& text, std::size_t frame_count);
+// "A:B" stands for the intervals between frames A and B, by the numbers that frame_number() gives; either may
+// be left out. Throws InputError.
+IntervalRange parse_frames(const std::string& text, const Input& input);
+// Returns the text that parse_frames() reads back as the range.
+std::string frames_text(const IntervalRange& range, const Input& input);
+// Returns the number by which people know a frame: of a model file, that of the file's own time line (see
+// frame_at); of other inputs, the index.
+double frame_number(const Input& input, std::size_t frame);
 
 // Whether the input has what a strategy needs.
 bool allows(const Input& input, const Strategy& strategy);

@@ -27,8 +27,7 @@ constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 4;
 
 // Returns the command line with every default spelt out, and without the place of the result.
-std::vector<std::string> command_line(const ReplayRequest& options, const IntervalRange& range,
-                                      bool is_model) {
+std::vector<std::string> command_line(const ReplayRequest& options, bool is_model) {
   std::vector<std::string> words = {"cscd",
                                     "run",
                                     "--scene",
@@ -40,7 +39,7 @@ std::vector<std::string> command_line(const ReplayRequest& options, const Interv
                                     "--pipeline",
                                     options.pipeline,
                                     "--frames",
-                                    std::to_string(range.first) + ":" + std::to_string(range.last),
+                                    options.frames,
                                     "--repetitions",
                                     std::to_string(options.repetitions),
                                     "--count-every",
@@ -157,7 +156,7 @@ void require_sound(const ReplayRequest& request) {
 Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
   Replay replay{kind, asked, {}, {}};
   ReplayRequest& request = replay.request;
-  IntervalRange range = parse_frames(request.frames, input.clip->frame_count());
+  IntervalRange range = parse_frames(request.frames, input);
   if (request.smoke) {
     if (range.last - range.first > kSmokeIntervals)  // those in the middle, where more happens
       range.first += (range.last - range.first - kSmokeIntervals) / 2;
@@ -167,7 +166,9 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
     request.time_contacts = std::min<std::size_t>(request.time_contacts, 1);
     request.smoke = false;
   }
-  request.frames = std::to_string(range.first) + ":" + std::to_string(range.last);
+  request.frames = frames_text(range, input);
+  if (!input.clip_was_named)  // so that the record says which clip it is of
+    request.model.import.clip = std::to_string(input.import->chosen_clip);
   request.strategies.clear();
   for (const Strategy* strategy :
        chosen_strategies(input, asked.strategies, pipeline_named(request.pipeline)))
@@ -175,7 +176,7 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
   if (request.strategies.empty())
     throw InputError("--strategy: " + request.scene +
                      " allows none of these; name others (cscd list strategies)");
-  replay.command = command_line(request, range, input.import.has_value());
+  replay.command = command_line(request, input.import.has_value());
 
   ChosenIntervals& intervals = replay.intervals;
   intervals.range = range;

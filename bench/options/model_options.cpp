@@ -9,10 +9,13 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   scenes::ImportOptions& import = options.import;
   command
       .add_option("--clip", import.clip,
-                  "the clip, by name or number, or all of them (query alone); default the first that moves "
-                  "the surface")
+                  "the clip, by name or number, or all (query and view); default all for query, and else the "
+                  "first\nthat moves the surface")
       ->group(kGroup);
-  command.add_option("--fps", import.fps, "frames a second")->capture_default_str()->group(kGroup);
+  command
+      .add_option("--fps", import.fps,
+                  "frames a second; default the file's own rate, or 30 where the file does not say")
+      ->group(kGroup);
   command
       .add_flag("--from-bind-pose", import.from_bind_pose, "begin half a second earlier, in the bind pose")
       ->group(kGroup);

@@ -15,19 +15,20 @@ using nlohmann::json;
 constexpr std::size_t kMostBytes = std::size_t{700} << 20;
 constexpr double kScenesFps = 30;  // at which clips that tell no rate are played
 
-std::size_t bytes_of_frame(const Input& input) {
-  return 6 * input.mesh.vertex_count();
-}
-
 }  // namespace
 
-ClipRecording::ClipRecording(Input& input, const IntervalRange& range) : input_(input), range_(range) {
-  const std::size_t frames = range.last - range.first + 1, most = kMostBytes / bytes_of_frame(input);
+void require_page_room(std::size_t frames, std::size_t vertices, const std::string& what,
+                       const std::string& remedy) {
+  const std::size_t most = kMostBytes / (6 * vertices);
   if (frames > most)
-    throw InputError(input.name + ": a page of " + std::to_string(frames) + " frames of " +
-                     std::to_string(input.mesh.vertex_count()) +
+    throw InputError(what + " of " + std::to_string(frames) + " frames of " + std::to_string(vertices) +
                      " vertices is more than a browser opens; choose up to " + std::to_string(most) +
-                     " frames with --frames A:B");
+                     " frames " + remedy);
+}
+
+ClipRecording::ClipRecording(Input& input, const IntervalRange& range) : input_(input), range_(range) {
+  require_page_room(range.last - range.first + 1, input.mesh.vertex_count(), input.name + ": a page",
+                    "with --frames A:B");
   for (std::size_t f = range.first; f <= range.last; ++f) {
     grid_.include(input.clip->load_frame(f).positions);
     if (input.clip->header().predicted && f < range.last) grid_.include(input.clip->load(f).motion.end());
@@ -73,6 +74,7 @@ json ClipRecording::write(Sections& sections) const {
           {"triangles", mesh.triangle_count()},
           {"bones", input_.clip->header().bone_parent.size()},
           {"fps", input_.import ? input_.import->fps : kScenesFps},
+          {"first_frame", input_.import ? frame_at(*input_.import, 0) : 0},
           {"frame_number", std::move(numbers)},
           {"seconds", input_.import ? std::move(seconds) : json()},
           {"grid", {{"origin", {origin.x(), origin.y(), origin.z()}}, {"step", grid_.step()}}}};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "bench/input/input.h"
@@ -9,6 +10,11 @@
 #include "bench/view/sections.h"
 
 namespace cscd::bench {
+
+// Throws InputError if a page of so many frames would be too large for a browser. `what` begins the error,
+// and `remedy` ends it.
+void require_page_room(std::size_t frames, std::size_t vertices, const std::string& what,
+                       const std::string& remedy);
 
 // Collects the moving surface for a page: positions on a grid, bones, and the ends of intervals that lead to
 // a prediction instead of the next frame.

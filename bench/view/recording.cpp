@@ -80,7 +80,7 @@ StrategyRecording::StrategyRecording(const Input& input, const SurfaceNames& nam
 
 void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInterval& interval,
                             TextTable& places) {
-  summary_.add(answer, names_);
+  summary_.add(answer, interval.motion, names_);
   const std::string by(answer.strategy->name);
   auto known = std::find(answered_by_.begin(), answered_by_.end(), by);
   if (known == answered_by_.end()) known = answered_by_.insert(known, by);
@@ -213,6 +213,7 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
           {"covers", observers_.size()},
           {"has_patches", !patch_.empty()},
           {"summary", summary_json(input_, summary_)},
+          {"details", details_text(summary_sentences(input_, names_, summary_, rest, left_out))},
           {"text", summary_text(input_, names_, summary_, rest, left_out)}};
 }
 

@@ -9,7 +9,7 @@ namespace cscd::bench {
 
 void Sections::add_bytes(const std::string& name, const std::string& type, std::string_view raw) {
   const std::string packed = deflated(raw);
-  table_.push_back({{"name", name},
+  table_.push_back({{"name", prefix_ + name},
                     {"type", type},
                     {"raw", raw.size()},
                     {"offset", bytes_.size()},

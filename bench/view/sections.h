@@ -21,6 +21,9 @@ class Sections {
               {reinterpret_cast<const char*>(values.data()), values.size_bytes()});
   }
 
+  // Begins the names of all arrays that are added from here on: the arrays of one clip of several.
+  void set_prefix(std::string prefix) { prefix_ = std::move(prefix); }
+
   // [{name, type, raw, offset, bytes}]: bytes before and after compression, and where the array begins.
   const nlohmann::json& table() const { return table_; }
   const std::string& bytes() const { return bytes_; }
@@ -29,7 +32,7 @@ class Sections {
   void add_bytes(const std::string& name, const std::string& type, std::string_view raw);
 
   nlohmann::json table_ = nlohmann::json::array();
-  std::string bytes_;
+  std::string bytes_, prefix_;
 };
 
 // Writes bytes as base64 (RFC 4648).

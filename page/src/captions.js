@@ -1,26 +1,19 @@
 // What the page says in words beside the list: the verdict, the legend, the numbers of the interval, the names of the panes.
 import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
-import { momentsOf, namesOf, timeOf } from "./moments.js";
 import { coverOf } from "./painter.js";
 import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, YELLOW } from "./palette.js";
-import { detailSentence, many, VERDICTS, verdictSentence } from "./words.js";
+import { many, markOf, VERDICTS } from "./words.js";
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
 
-  sayVerdict(strategy) {
-    const first = momentsOf(strategy)[0], { undecided } = strategy.summary;
-    let described = null;
-    if (first) {
-      const [a, b] = namesOf(this.recording, strategy, first);
-      described = { position: first.interval + timeOf(strategy, first), crossing: first.pair !== undefined, a, b };
-    }
-    const verdict = byId("verdict");
-    verdict.className = first ? "bad" : undecided > 0 ? "" : "good";
-    verdict.replaceChildren(element("span", first ? "\u2716 " : undecided > 0 ? "? " : "\u2714 ", "mark"),
-      document.createTextNode(verdictSentence(this.recording, strategy, described)));
-    byId("details").textContent = detailSentence(this.recording, strategy);
+  // The sentences are made where the answers are (bench/answer/answer_summary.h).
+  sayVerdict({ summary, details }) {
+    const bad = summary.touches + summary.intersects_at_start > 0, verdict = byId("verdict");
+    verdict.className = bad ? "bad" : summary.undecided > 0 ? "" : "good";
+    verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(summary.sentence));
+    byId("details").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
   }
 

@@ -1,5 +1,7 @@
 // Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one.
 
+import { chosenClip } from "./clips.js";
+
 const TYPES = {
   u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array, f32: Float32Array,
 };
@@ -76,16 +78,18 @@ export async function loadRecording() {
   const text = document.getElementById("header");
   const packed = document.getElementById("arrays");
   if (!text || !packed) throw new Error("this page holds no recording; write one with: cscd view INPUT");
-  const header = JSON.parse(text.textContent);
+  const whole = JSON.parse(text.textContent), clip_number = whole.clips ? chosenClip(whole) : 0;
+  const header = whole.clips ? { ...whole, ...whole.clips[clip_number] } : whole;
   if (header.schema !== "cscd.view/1") throw new Error(`this page cannot show a recording of the form ${header.schema}`);
   const bytes = fromBase64(packed.textContent);
   packed.remove();
   const arrays = {};
-  await Promise.all(header.sections.map(async (section) => {
+  const prefix = whole.clips ? `c${clip_number}.` : "";
+  await Promise.all(header.sections.filter(({ name }) => name.startsWith(prefix)).map(async (section) => {
     const raw = await inflate(bytes.subarray(section.offset, section.offset + section.bytes))
       .catch(() => new ArrayBuffer(0));
     if (raw.byteLength !== section.raw) throw new Error(`The page is damaged: its array ${section.name} is not whole. Write it again with cscd view.`);
-    arrays[section.name] = new TYPES[section.type](raw);
+    arrays[section.name.slice(prefix.length)] = new TYPES[section.type](raw);
   }));
 
   const { clip } = header;

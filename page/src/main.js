@@ -1,6 +1,7 @@
 // The viewer: what is shown, and when. Its parts: data (what the page holds), stage and surface (drawing), painter (colours),
 // marker (points and lines), framing (camera), list and timeline, captions (words), controls (buttons and keys).
 import { Captions } from "./captions.js";
+import { offerClips } from "./clips.js";
 import { makeControls } from "./controls.js";
 import { loadRecording } from "./data.js";
 import { byId, prefersDark, setDark } from "./dom.js";
@@ -73,7 +74,7 @@ class Viewer {
 
   // Opens at the interval that the address names, as in hand.html#interval=37. Returns whether it names one.
   openLinked() {
-    const interval = Number(/^#interval=(\d+)$/.exec(window.location.hash)?.[1] ?? NaN) - this.recording.clip.first_interval;
+    const interval = Number(/[#&]interval=(\d+)/.exec(window.location.hash)?.[1] ?? NaN) - this.recording.clip.first_interval;
     if (!(interval >= 0 && interval < this.recording.intervals)) return false;
     this.showInterval(interval);
     return true;
@@ -272,6 +273,7 @@ async function begin() {
   if (!canvas.getContext("webgl2")) throw new Error("This browser has no WebGL 2, which draws the surface; switch it on, or use another browser.");
   if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot unpack the recording; use one from 2023 or later.");
   window.cscd = new Viewer(await loadRecording());
+  offerClips(window.cscd.recording.header);
 }
 
 begin().catch(fail);

@@ -165,6 +165,15 @@ try {
 
   require(complaints.length === 0, `the browser complains: ${complaints[0]}`);
   require(requests.length === 1, `the page asks for ${requests[1]}`);
+  // A page of several clips shows another one by its name.
+  const clips = page.locator("#clips option");
+  if ((await clips.count()) > 1) {
+    const other = (await page.locator("#clips").inputValue()) === "0" ? 1 : 0, title = (await clips.nth(other).textContent()).slice(2);
+    await page.selectOption("#clips", String(other));
+    await page.waitForFunction((name) => window.cscd && document.getElementById("verdict").textContent.includes(`clip '${name}'`), title)
+      .catch(() => { throw new Error(`the clip ${title} is not shown`); });
+    await picture("other-clip");
+  }
   console.log(JSON.stringify({
     page: basename(file), opened_ms: openedIn, moments, frame_ms: gaps[Math.floor(gaps.length / 2)],
     script_ms: scripts[Math.floor(scripts.length / 2)], frames: times.length,

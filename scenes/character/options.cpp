@@ -23,8 +23,8 @@ Number number(const std::string& option, const std::string& digits) {
 }
 
 void check(const ImportOptions& options) {
-  if (!(options.fps > 0) || options.fps > 10'000)
-    throw InputError("--fps " + text(options.fps) + ": give a number above 0 and up to 10000");
+  if (options.fps && !(*options.fps > 0 && *options.fps <= 10'000))
+    throw InputError("--fps " + text(*options.fps) + ": give a number above 0 and up to 10000");
   if (options.weld && !(*options.weld >= 0 && *options.weld <= 0.01))
     throw InputError("--weld " + text(*options.weld) + ": give a share of the diagonal from 0 to 0.01");
 }
@@ -32,11 +32,12 @@ void check(const ImportOptions& options) {
 }  // namespace
 
 std::vector<std::string> to_arguments(const ImportOptions& options) {
-  std::vector<std::string> words{"--fps", text(options.fps), "--component", options.component};
+  std::vector<std::string> words{"--component", options.component};
   const auto add = [&](const std::string& name, const std::string& value) {
     words.push_back(name);
     words.push_back(value);
   };
+  if (options.fps) add("--fps", text(*options.fps));
   if (!options.clip.empty()) add("--clip", options.clip);
   if (options.clip_number) add("--clip-number", std::to_string(*options.clip_number));
   if (options.fill_holes > 0) add("--fill-holes", std::to_string(options.fill_holes));

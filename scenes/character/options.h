@@ -11,7 +11,7 @@ namespace cscd::scenes {
 struct ImportOptions {
   std::string clip;  // a name, else a number; empty: the first clip that moves the surface
   std::optional<std::size_t> clip_number;  // instead of `clip`, where a number might be a name
-  double fps = 30;                         // frames a second
+  std::optional<double> fps;               // frames a second; nothing: see frame_rate (frame_rate.h)
   bool from_bind_pose = false;             // put half a second from the bind pose before the clip
   std::string component = "all";           // see choose_pieces (pieces.h)
   std::size_t fill_holes = 0;              // holes of up to so many edges are filled; 0 fills none
@@ -24,6 +24,8 @@ struct ImportOptions {
   bool operator==(const ImportOptions&) const = default;
 };
 
+// The rate of a file that does not say its own.
+inline constexpr double kAssumedFps = 30;
 // Default of `ImportOptions::weld`, and the length of the lead-in in seconds.
 inline constexpr double kDefaultWeld = 1e-6;
 inline constexpr double kLeadInSeconds = 0.5;

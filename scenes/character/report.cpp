@@ -12,7 +12,7 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr char kSchema[] = "cscd.import/2";
+constexpr char kSchema[] = "cscd.import/3";
 
 std::string shown(double value) {
   char digits[32];
@@ -55,6 +55,7 @@ void visit_values(Report& r, Visit&& visit) {
   visit("most_influences", r.most_influences);
   visit("chosen_clip", r.chosen_clip);
   visit("fps", r.fps);
+  visit("fps_from", r.fps_from);
   visit("lead_in", r.lead_in);
   visit("weld_tolerance", r.weld_tolerance);
   visit("weld_spread", r.weld_spread);
@@ -120,7 +121,8 @@ std::string to_text(const ImportReport& report) {
   });
   for (const ImportReport::Clip& clip : report.clips)
     out += "clip\t" + shown(clip.name) + "\t" + shown(clip.start) + "\t" + shown(clip.seconds) + "\t" +
-           shown(clip.ticks_per_second) + "\t" + shown(clip.frames) + "\t" + shown(clip.driven) + "\n";
+           shown(clip.ticks_per_second) + "\t" + shown(clip.frames) + "\t" + shown(clip.driven) + "\t" +
+           shown(clip.first_frame) + "\n";
   for (const ImportReport::Part& part : report.parts)
     out += "part\t" + shown(part.name) + "\t" + shown(part.node) + "\t" + shown(part.mesh) + "\t" +
            shown(part.primitive) + "\n";
@@ -147,7 +149,7 @@ ImportReport parse_report(const std::string& text) {
         throw InputError("import report: '" + printable(lines[i]) + "' is cut short");
     };
     if (words[0] == "clip") {
-      need(7);
+      need(8);
       ImportReport::Clip& clip = report.clips.emplace_back();
       read(words[1], clip.name);
       read(words[2], clip.start);
@@ -155,6 +157,7 @@ ImportReport parse_report(const std::string& text) {
       read(words[4], clip.ticks_per_second);
       read(words[5], clip.frames);
       read(words[6], clip.driven);
+      read(words[7], clip.first_frame);
     } else if (words[0] == "part") {
       need(5);
       ImportReport::Part& part = report.parts.emplace_back();

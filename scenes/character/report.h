@@ -7,6 +7,10 @@
 
 namespace cscd::scenes {
 
+// Whence a frame rate is: the user gave it; the file says it; the keys of the file's clips are spaced by it;
+// or none of these, and it is assumed.
+inline constexpr char kAsked[] = "asked", kStated[] = "file", kSpaced[] = "keys", kAssumed[] = "assumed";
+
 // Describes a model file and the surface that the import made from it. The report crosses from the import
 // process as lines of text.
 struct ImportReport {
@@ -22,6 +26,7 @@ struct ImportReport {
     double seconds = 0, ticks_per_second = 0;  // ticks: 0 where the file does not say
     std::size_t frames = 0;                    // at the chosen frame rate
     std::size_t driven = 0;                    // number of joints that the clip moves
+    double first_frame = 0;                    // number of its first frame on the file's own time line
     bool operator==(const Clip&) const = default;
   };
   std::vector<Clip> clips;
@@ -36,6 +41,7 @@ struct ImportReport {
   std::vector<std::string> bones;  // names of the bones in the imported frames, in their order
   long chosen_clip = -1;           // -1: none
   double fps = 0;
+  std::string fps_from;     // whence `fps` is: one of the words above
   std::size_t lead_in = 0;  // frames from the bind pose before the clip
 
   double weld_tolerance = 0;  // the tolerance that was used, as a share of the diagonal

@@ -15,8 +15,9 @@ ImportReport some_report() {
   report.vertices = 12345678901;
   report.chosen_clip = 1;
   report.fps = 1.0 / 3;
+  report.fps_from = "asked";
   report.weld_spread = 1e-17;
-  report.clips = {{"walk", 0.5, 1.5, 24, 46, 3}, {"", 0, 0, 0, 1, 0}};
+  report.clips = {{"walk", 0.5, 1.5, 24, 46, 3, 12}, {"", 0, 0, 0, 1, 0}};
   report.parts = {{"body", "Body node", 3, 1}, {"", "eye", -1, -1}};
   report.bones = {"hip", "\xe6\x89\x8b", "hip"};
   report.chosen_components = {0, 7};

@@ -45,7 +45,7 @@ inline Character bending_tube() {
   character.parts.push_back(part);
   const double half = std::sqrt(0.5);
   character.animations = {
-      {"bend", 0, 1, 24, {{4, {}, {{0, Quaternion{}}, {1, Quaternion{half, 0, 0, half}}}, {}}}}};
+      {"bend", 0, 1, 0, {{4, {}, {{0, Quaternion{}}, {1, Quaternion{half, 0, 0, half}}}, {}}}}};
   character.format = "test";
   return character;
 }

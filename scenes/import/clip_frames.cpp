@@ -73,7 +73,7 @@ std::size_t clip_named(const Character& character, const std::string& wanted) {
 }
 
 std::size_t choose_clip(const Character& character, const std::vector<bool>& used, double diagonal,
-                        const ImportOptions& options) {
+                        double fps, const ImportOptions& options) {
   const auto& all = character.animations;
   if (all.empty())
     throw InputError(
@@ -87,7 +87,7 @@ std::size_t choose_clip(const Character& character, const std::vector<bool>& use
   }
   if (!options.clip.empty()) return clip_named(character, options.clip);
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (moves_surface(character, all[i], used, diagonal, options.fps)) return i;
+    if (moves_surface(character, all[i], used, diagonal, fps)) return i;
   if (options.from_bind_pose) return 0;
   throw InputError(
       "none of its clips moves the surface: " + listed_clips(character) +
@@ -114,23 +114,29 @@ double second_of_frame(std::size_t frame, double seconds, double fps) {
   return frame + 1 >= frames_of(seconds, fps) ? seconds : static_cast<double>(frame) / fps;
 }
 
+double frame_number(double seconds, double fps) {
+  const double number = seconds * fps, whole = std::round(number);
+  return std::abs(number - whole) <= kNearFrame ? whole : number;
+}
+
 Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,
                    double diagonal, const ImportOptions& options, ImportReport& report) {
   if (options.survey) return survey(character, bound);
   const bool to_rest = character.animations.empty() && options.from_bind_pose;
   if (to_rest) report.notes.push_back("has no clip; moves from the bind pose to the pose at rest");
-  const long chosen = to_rest ? -1 : static_cast<long>(choose_clip(character, used, diagonal, options));
+  const long chosen =
+      to_rest ? -1 : static_cast<long>(choose_clip(character, used, diagonal, report.fps, options));
   const Animation animation = to_rest ? Animation{} : character.animations[static_cast<std::size_t>(chosen)];
-  const std::size_t frames = frames_of(animation.seconds, options.fps);
+  const std::size_t frames = frames_of(animation.seconds, report.fps);
   const std::size_t lead_in =
       options.from_bind_pose
-          ? std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kLeadInSeconds * options.fps)))
+          ? std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kLeadInSeconds * report.fps)))
           : 0;
   report.chosen_clip = chosen;
   report.lead_in = lead_in;
   if (frames + lead_in < 2)
     throw InputError("--clip " + options.clip + ": is one pose; pass --from-bind-pose to move to it");
-  const auto moment = [&character, &bound, animation, fps = options.fps, lead_in](std::size_t frame) {
+  const auto moment = [&character, &bound, animation, fps = report.fps, lead_in](std::size_t frame) {
     if (frame >= lead_in)
       return moment_at(character, animation, second_of_frame(frame - lead_in, animation.seconds, fps));
     const Moment start = moment_at(character, animation, 0);

@@ -23,6 +23,8 @@ struct Moment {
 std::size_t frames_of(double seconds, double fps);
 // Returns when a frame of such a clip is shown, in seconds after the clip's start.
 double second_of_frame(std::size_t frame, double seconds, double fps);
+// Returns the number of the frame at a moment of the file's time line, whose frame 0 is at 0 seconds.
+double frame_number(double seconds, double fps);
 
 // The moments that the import writes, one after the other.
 struct Frames {
@@ -30,7 +32,8 @@ struct Frames {
   std::function<Moment(std::size_t)> moment;
 };
 
-// Chooses the clip that the options name and plans its frames; records the choice in the report. A name is
+// Chooses the clip that the options name and plans its frames at the report's rate; records the choice in the
+// report. A name is
 // looked for exactly first, then as the number of a clip, then without regard to case. Without a name, the
 // first clip is chosen that moves one of the vertices in use (`used`, [raw vertices]) by more than
 // rounding, measured by `diagonal`. A survey gets the bind pose `bound` and the start of every clip

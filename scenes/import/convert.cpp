@@ -8,6 +8,7 @@
 #include "scenes/character/skeleton.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/import/clip_frames.h"
+#include "scenes/import/frame_rate.h"
 #include "scenes/import/surface.h"
 
 namespace cscd::scenes {
@@ -40,7 +41,9 @@ void describe(const Character& character, const ImportOptions& options, ImportRe
   report.notes = character.notes;
   report.nodes = character.nodes.size();
   report.meshes = character.parts.size();
-  report.fps = options.fps;
+  const FrameRate rate = frame_rate(character, options.fps);
+  report.fps = rate.fps;
+  report.fps_from = rate.from;
   for (const Part& part : character.parts) {
     report.parts.push_back(
         {part.name, character.nodes[static_cast<std::size_t>(part.node)].name, part.mesh, part.primitive});
@@ -53,8 +56,9 @@ void describe(const Character& character, const ImportOptions& options, ImportRe
   report.joints = moving.size();
   for (const Animation& animation : character.animations) {
     report.clips.push_back({animation.name, animation.start, animation.seconds, animation.ticks_per_second,
-                            frames_of(animation.seconds, options.fps),
-                            driven_bones(character, animation, moving)});
+                            frames_of(animation.seconds, rate.fps),
+                            driven_bones(character, animation, moving),
+                            frame_number(animation.start, rate.fps)});
   }
 }
 

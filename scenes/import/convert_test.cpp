@@ -101,6 +101,22 @@ TEST_F(Convert, WritesFramesAtTheRateWithBones) {
   EXPECT_EQ(report.welded_vertices, 0u);
 }
 
+// Mutation: the rate of 30 where the file says another.
+TEST_F(Convert, TakesTheFilesOwnRateAndTimeLine) {
+  Character tube = bending_tube();
+  tube.animations[0].ticks_per_second = 24;
+  tube.animations[0].start = 37.5;
+  for (Key<Quaternion>& key : tube.animations[0].channels[0].rotations) key.time += 37.5;
+  EXPECT_EQ(converted(tube).frame_count(), 25u);
+  EXPECT_EQ(report.fps, 24);
+  EXPECT_EQ(report.fps_from, kStated);
+  EXPECT_EQ(report.clips[0].frames, 25u);
+  EXPECT_EQ(report.clips[0].first_frame, 900);
+  tube.animations[0].start += 1e-5;  // single precision
+  converted(tube);
+  EXPECT_EQ(report.clips[0].first_frame, 900);
+}
+
 TEST_F(Convert, ClipsBlendMorphTargets) {
   Character tube = bending_tube();
   Part& part = tube.parts[0];
@@ -194,7 +210,7 @@ TEST_F(Convert, BeginsInTheBindPose) {
 TEST_F(Convert, ChoosesClipsByNameNumberOrLength) {
   Character tube = bending_tube();
   const Animation bend = tube.animations[0];
-  tube.animations = {{"pose", 0, 0, 24, bend.channels}, bend, {"", 3, 2, 0, bend.channels}};
+  tube.animations = {{"pose", 0, 0, 0, bend.channels}, bend, {"", 3, 2, 0, bend.channels}};
   converted(tube);
   EXPECT_EQ(report.chosen_clip, 1);
   ImportOptions options;

@@ -7,6 +7,7 @@
 #include "scenes/character/source_map.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/exchange/mesh_sequence.h"
+#include "scenes/import/frame_rate.h"
 
 namespace cscd::scenes {
 namespace {
@@ -77,10 +78,11 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   report.meshes = report.nodes = 1;
   report.vertices = sequence->vertex_count();
   report.triangles = sequence->triangles().size();
-  report.clips.push_back({"", 0, static_cast<double>(frames - 1) / options.fps, 0, frames, 0});
+  report.fps = options.fps.value_or(kAssumedFps);
+  report.fps_from = options.fps ? kAsked : kAssumed;
+  report.clips.push_back({"", 0, static_cast<double>(frames - 1) / report.fps, 0, frames, 0});
   report.parts.push_back({model.stem().string(), "the surface", -1, -1});
   report.chosen_clip = options.survey ? -1 : 0;
-  report.fps = options.fps;
   report.collapsed_triangles = surface.collapsed;
   report.components = static_cast<std::size_t>(mesh.component_count());
   for (std::size_t c = 0; c < report.components; ++c) report.chosen_components.push_back(c);

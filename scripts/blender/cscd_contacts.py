@@ -146,8 +146,8 @@ def main():
         if not path.exists():
             refuse(f"{path}: no such file; check the name")
     answer = json.loads(chosen.answer.read_text())
-    if answer.get("schema") != "cscd.query/2" or "intervals" not in answer:
-        refuse(f"{chosen.answer}: is no answer about one clip; write it with cscd query INPUT --json FILE")
+    if answer.get("schema") != "cscd.query/3" or "intervals" not in answer:
+        refuse(f"{chosen.answer}: is no answer about one clip; write it with cscd query INPUT --clip NAME --json FILE")
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     surface = read_mesh(chosen.mesh)

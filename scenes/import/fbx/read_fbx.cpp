@@ -21,13 +21,15 @@ using namespace fbx;
 
 // Returns the frame rate that the number of a TimeMode stands for.
 double frames_per_second(const Objects& objects) {
-  constexpr double kRates[] = {
-      0, 120, 100, 60, 50, 48, 30, 30, 30000.0 / 1001, 30000.0 / 1001, 25, 24, 1000, 24000.0 / 1001};
+  constexpr double kTelevision = 30000.0 / 1001, kFilm = 24000.0 / 1001, kFine = 60000.0 / 1001;
+  constexpr double kRates[] = {0,  120, 100,  60,    50, 48, 30, 30,    kTelevision, kTelevision,
+                               25, 24,  1000, kFilm, 0,  96, 72, kFine, 2 * kFine};
   constexpr double kCustom = 14;
   const double mode = objects.setting("TimeMode").value_or(0);
   double rate = 0;
-  if (mode == kCustom) rate = objects.setting("CustomFrameRate").value_or(0);
-  if (mode >= 0 && mode < static_cast<double>(std::size(kRates)))
+  if (mode == kCustom)
+    rate = objects.setting("CustomFrameRate").value_or(0);
+  else if (mode >= 0 && mode < static_cast<double>(std::size(kRates)))
     rate = kRates[static_cast<std::size_t>(mode)];
   // Without a rate, ticks serve as frames: the file's times are in FBX's own ticks in any case.
   return std::isfinite(rate) && rate > 0 ? rate : objects.ticks_per_second();
