@@ -285,15 +285,12 @@ class SelfCollision::Engine {
   bool excludes(const CrossingPair& pair) const {
     return exclusions_.excludes(mesh_, TrianglePair{pair.first, pair.second});
   }
-  // Drops what is excluded from the answer, and returns the number of contacts dropped. A feature pair is
-  // excluded by its vertices, or because every pair of triangles that carries it is excluded.
+  // Drops what is excluded from the answer, and returns the number of contacts dropped.
   std::size_t leave_out() {
     answer_.start.total -=
         std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) { return excludes(pair); });
     return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
-      return exclusions_.excludes(mesh_, contact.pair) ||
-             std::ranges::all_of(carriers(mesh_, contact.pair),
-                                 [&](const CrossingPair& pair) { return excludes(pair); });
+      return exclusions_.excludes(mesh_, contact.pair);
     });
   }
 

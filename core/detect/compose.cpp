@@ -76,7 +76,10 @@ class PairTester : public TrianglePairSink {
   void take(const std::vector<TrianglePair>& whole) override {
     if (start_ != nullptr) test_start(whole);
     clock_.enter(Stage::elementary);
-    const std::vector<TrianglePair>& block = exclusions_ != nullptr ? without_excluded(whole) : whole;
+    // A feature pair is assigned to one of the triangle pairs that carry it. An excluded triangle pair may
+    // have to be tested for a feature pair that others carry too, so only feature pairs are dropped then.
+    const bool drop = exclusions_ != nullptr && !options_.assignment;
+    const std::vector<TrianglePair>& block = drop ? without_excluded(whole) : whole;
     if (options_.assignment) {
       assigned_.clear();
       options_.assignment->append(block, assigned_);

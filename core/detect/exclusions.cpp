@@ -1,6 +1,7 @@
 #include "core/detect/exclusions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -28,10 +29,10 @@ bool has(const std::vector<std::uint64_t>& keys, std::uint64_t wanted) {
   return std::binary_search(keys.begin(), keys.end(), wanted);
 }
 
-void require_one_a_vertex(const TriangleMesh& mesh, std::size_t size, const std::string& what) {
-  if (size != mesh.vertex_count())
-    throw InputError(what + ": " + std::to_string(size) + " entries for " +
-                     std::to_string(mesh.vertex_count()) + " vertices; give one a vertex");
+void require_one_each(std::size_t count, std::size_t size, const std::string& what, const std::string& each) {
+  if (size != count)
+    throw InputError(what + ": " + std::to_string(size) + " entries for " + std::to_string(count) + " " +
+                     each + "; give one for each");
 }
 
 template <class Id>
@@ -58,38 +59,50 @@ bool excludes_all(const Exclusions& exclusions, const First& first, const Second
 }  // namespace
 
 bool Exclusions::empty() const {
-  return obstacle_.empty() && group_.empty() && vertex_pairs_.empty() && triangle_pairs_.empty() &&
-         !(near_ > 0);
+  return obstacle_.empty() && vertex_groups_.of.empty() && triangle_groups_.of.empty() &&
+         vertex_pairs_.empty() && triangle_pairs_.empty() && !(near_ > 0);
 }
 
 void Exclusions::set_obstacles(const TriangleMesh& mesh, std::vector<bool> obstacle) {
-  require_one_a_vertex(mesh, obstacle.size(), "obstacles");
+  require_one_each(mesh.vertex_count(), obstacle.size(), "obstacles", "vertices");
   obstacle_ = std::move(obstacle);
   if (std::ranges::find(obstacle_, true) == obstacle_.end()) obstacle_.clear();
 }
 
-void Exclusions::set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
-                            std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
-  require_one_a_vertex(mesh, group.size(), "groups");
+Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::string_view what,
+                                         std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
   if (const auto least = std::ranges::min_element(group); least != group.end() && *least < 0)
-    throw InputError("groups: vertex " + std::to_string(least - group.begin()) + " has group " +
-                     std::to_string(*least) + "; number groups from 0");
+    throw InputError("groups: " + std::string(what) + " " + std::to_string(least - group.begin()) +
+                     " has group " + std::to_string(*least) + "; number groups from 0");
   const std::int32_t last = group.empty() ? -1 : *std::ranges::max_element(group);
   if (last >= kMostGroups)
     throw InputError("groups: group " + std::to_string(last) + "; number groups from 0 to " +
                      std::to_string(kMostGroups - 1));
-  groups_ = last + 1;
-  const auto count = static_cast<std::size_t>(groups_);
-  ignores_.assign(count * count, false);
+  Groups out;
+  out.count = static_cast<std::size_t>(last + 1);
+  out.ignoring.assign(out.count * out.count, false);
   for (const auto& [a, b] : ignoring) {
     for (const std::int32_t g : {a, b})
-      if (g < 0 || g >= groups_)
-        throw InputError("groups: no vertex has group " + std::to_string(g) + ", which a pair names");
-    ignores_[static_cast<std::size_t>(a) * count + static_cast<std::size_t>(b)] = true;
-    ignores_[static_cast<std::size_t>(b) * count + static_cast<std::size_t>(a)] = true;
+      if (g < 0 || g > last)
+        throw InputError("groups: no " + std::string(what) + " has group " + std::to_string(g) +
+                         ", which a pair names");
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    out.ignoring[i * out.count + j] = out.ignoring[j * out.count + i] = true;
   }
-  group_ = std::move(group);
-  if (ignoring.empty()) group_.clear();
+  if (!ignoring.empty()) out.of = std::move(group);
+  return out;
+}
+
+void Exclusions::set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
+                            std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
+  require_one_each(mesh.vertex_count(), group.size(), "groups", "vertices");
+  vertex_groups_ = groups_of(std::move(group), "vertex", ignoring);
+}
+
+void Exclusions::set_triangle_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
+                                     std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
+  require_one_each(mesh.triangle_count(), group.size(), "groups", "triangles");
+  triangle_groups_ = groups_of(std::move(group), "triangle", ignoring);
 }
 
 void Exclusions::exclude(const TriangleMesh& mesh, std::span<const std::pair<VertexId, VertexId>> pairs) {
@@ -134,22 +147,32 @@ void Exclusions::exclude_near(std::span<const Vec3> reference, double distance) 
 
 bool Exclusions::excludes(VertexId u, VertexId v) const {
   if (!obstacle_.empty() && obstacle_[+u] && obstacle_[+v]) return true;
-  if (!group_.empty() && ignores_[static_cast<std::size_t>(group_[+u]) * static_cast<std::size_t>(groups_) +
-                                  static_cast<std::size_t>(group_[+v])])
-    return true;
+  if (vertex_groups_.ignore(+u, +v)) return true;
   if (near_ > 0 && ((reference_[+u] - reference_[+v]) * scale_).squaredNorm() < near_ * near_) return true;
   return !vertex_pairs_.empty() && has(vertex_pairs_, key(u, v));
 }
 
 bool Exclusions::excludes(const TriangleMesh& mesh, const TrianglePair& pair) const {
+  if (triangle_groups_.ignore(+pair.a, +pair.b)) return true;
   if (!triangle_pairs_.empty() && has(triangle_pairs_, key(pair.a, pair.b))) return true;
   return excludes_all(*this, mesh.corners(pair.a), mesh.corners(pair.b));
 }
 
 bool Exclusions::excludes(const TriangleMesh& mesh, const FeaturePair& pair) const {
-  if (pair.kind == FeaturePair::Kind::vertex_face)
-    return excludes_all(*this, std::array{VertexId{pair.a}}, mesh.corners(TriangleId{pair.b}));
-  return excludes_all(*this, mesh.ends(EdgeId{pair.a}), mesh.ends(EdgeId{pair.b}));
+  const bool face = pair.kind == FeaturePair::Kind::vertex_face;
+  if (face ? excludes_all(*this, std::array{VertexId{pair.a}}, mesh.corners(TriangleId{pair.b}))
+           : excludes_all(*this, mesh.ends(EdgeId{pair.a}), mesh.ends(EdgeId{pair.b})))
+    return true;
+  if (triangle_groups_.of.empty() && triangle_pairs_.empty()) return false;
+  const TriangleId itself{pair.b};
+  const std::span<const TriangleId> first =
+      face ? mesh.triangles_at(VertexId{pair.a}) : mesh.triangles_at(EdgeId{pair.a});
+  const std::span<const TriangleId> second = face ? std::span(&itself, 1) : mesh.triangles_at(EdgeId{pair.b});
+  return std::ranges::all_of(first, [&](TriangleId s) {
+    return std::ranges::all_of(second, [&](TriangleId t) {
+      return s == t || excludes(mesh, TrianglePair{s, t});
+    });
+  });
 }
 
 }  // namespace cscd

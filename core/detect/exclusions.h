@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace cscd {
 //
 // Two features may collide if *some* vertex of one may collide with *some* vertex of the other. So a feature
 // pair is excluded only if all its pairs of vertices are, and so is a pair of triangles. A pair of triangles
-// can also be excluded by itself; its feature pairs are then excluded unless other triangles carry them too.
+// can also be excluded by itself, or because the groups of its triangles ignore each other. A feature pair is
+// then excluded if every pair of triangles that carries it is.
 class Exclusions {
  public:
   // Whether nothing is excluded.
@@ -28,6 +30,9 @@ class Exclusions {
   // holds numbers from 0. Throws InputError for a wrong size, and for a pair with a group that no vertex has.
   void set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
                   std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
+  // Does for triangles, whose groups `group`, [triangles], holds, what set_groups() does for vertices.
+  void set_triangle_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
+                           std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
   // Excludes pairs of vertices, and pairs of triangles. Throws InputError for an index out of range.
   void exclude(const TriangleMesh& mesh, std::span<const std::pair<VertexId, VertexId>> pairs);
   void exclude(const TriangleMesh& mesh, std::span<const std::pair<TriangleId, TriangleId>> pairs);
@@ -38,14 +43,25 @@ class Exclusions {
 
   bool excludes(VertexId u, VertexId v) const;
   bool excludes(const TriangleMesh& mesh, const TrianglePair& pair) const;
-  // Looks at pairs of vertices alone.
   bool excludes(const TriangleMesh& mesh, const FeaturePair& pair) const;
 
  private:
+  // Which group each vertex, or each triangle, belongs to, and which groups ignore each other.
+  struct Groups {
+    std::vector<std::int32_t> of;  // empty where no groups ignore each other
+    std::size_t count = 0;
+    std::vector<bool> ignoring;  // [count][count]
+
+    bool ignore(std::size_t i, std::size_t j) const {
+      return !of.empty() &&
+             ignoring[static_cast<std::size_t>(of[i]) * count + static_cast<std::size_t>(of[j])];
+    }
+  };
+  static Groups groups_of(std::vector<std::int32_t> group, std::string_view what,
+                          std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
+
   std::vector<bool> obstacle_;
-  std::vector<std::int32_t> group_;
-  std::int32_t groups_ = 0;
-  std::vector<bool> ignores_;                  // [groups][groups]
+  Groups vertex_groups_, triangle_groups_;
   std::vector<std::uint64_t> vertex_pairs_;    // sorted; the smaller index in the upper half
   std::vector<std::uint64_t> triangle_pairs_;  // sorted; the smaller index in the upper half
   std::vector<Vec3> reference_;

@@ -155,10 +155,17 @@ void Session::know_end(const Motion& motion, const Rig::Interval* bones, const R
   }
 }
 
-std::size_t Session::leave_out(ContactSet& found) const {
-  if (left_out_.empty()) return 0;
-  return std::erase_if(found.contacts,
-                       [&](const Contact& contact) { return left_out_.explains(contact.pair); });
+void Session::leave_out(StepAnswer& out) const {
+  out.ignored.clear();
+  out.rest_contacts = 0;
+  if (options_.ignored == nullptr && left_out_.empty()) return;
+  std::erase_if(out.found.contacts, [&](const Contact& contact) {
+    const bool ignored = options_.ignored != nullptr && options_.ignored->excludes(setup_.mesh, contact.pair);
+    if (ignored) out.ignored.contacts.push_back(contact);
+    const bool explained = !ignored && left_out_.explains(contact.pair);
+    out.rest_contacts += explained;
+    return ignored || explained;
+  });
 }
 
 // Asks a row, which finds what crosses at the start where that is not known.
@@ -185,7 +192,7 @@ void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, St
     say_start(out);
     know_end(motion, bones, row, out.found);
   }
-  out.rest_contacts = leave_out(out.found);
+  leave_out(out);
 }
 
 void Session::say_start(StepAnswer& out) const {
@@ -195,9 +202,16 @@ void Session::say_start(StepAnswer& out) const {
     out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
       return setup_.exclusions->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
     });
-  out.rest_pairs =
-      std::erase_if(out.start.pairs, [&](const CrossingPair& pair) { return left_out_.explains(pair); });
-  out.start.total -= out.rest_pairs;
+  out.ignored_pairs.clear();
+  out.rest_pairs = 0;
+  out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
+    const bool ignored = options_.ignored != nullptr &&
+                         options_.ignored->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
+    if (ignored) out.ignored_pairs.push_back(pair);
+    const bool explained = !ignored && left_out_.explains(pair);
+    out.rest_pairs += explained;
+    return ignored || explained;
+  });
 }
 
 void Session::move_on(const Motion& motion) {
@@ -217,9 +231,13 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
     out.embedding_ms = whole.milliseconds();
     ask(row, motion, bones, out);
     // A row that promises the first contact may miss those after it. If that first one is left out as a
-    // crossing at rest, the answer has to come from a complete row.
+    // crossing at rest, the answer has to come from a complete row. So it has to where something touches and
+    // the caller ignores pairs, because the caller is told how many contacts are ignored.
+    const bool later_missing =
+        out.rest_contacts > 0 ||
+        (options_.ignored != nullptr && out.found.contacts.size() + out.ignored.contacts.size() > 0);
     if (row.strategy->guarantee == Guarantee::first_contact && needs_start() && &row == &main_ &&
-        out.rest_contacts > 0)
+        later_missing)
       ask(stand_in(), motion, bones, out);
   } catch (...) {  // nothing is known of the end then
     if (moved_on_) poses_.go_back(motion.start());
@@ -227,11 +245,13 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   }
 
   out.found.sort();
+  out.ignored.sort();
   if (options_.first) keep_first(out.found);
   const Guarantee guarantee = out.strategy->guarantee;
-  out.proven = setup_.elementary.apart_is_proof &&
-               (promises_all(guarantee, out.starts_embedded) ||
-                (guarantee == Guarantee::first_contact && out.starts_embedded && out.rest_contacts == 0));
+  out.proven =
+      setup_.elementary.apart_is_proof && (promises_all(guarantee, out.starts_embedded) ||
+                                           (guarantee == Guarantee::first_contact && out.starts_embedded &&
+                                            out.rest_contacts == 0 && out.ignored.contacts.empty()));
   out.wall_ms = whole.milliseconds();
 }
 

@@ -15,15 +15,18 @@
 
 namespace cscd {
 
-// The answer to one step. Contacts and crossings that crossings at rest explain (see RestCrossings) are left
-// out of everything but the two counts that say so.
+// The answer to one step. Contacts and crossings that the caller ignores stand in lists of their own, and
+// those that crossings at rest explain (see RestCrossings) are left out of everything but the two counts that
+// say so.
 struct StepAnswer {
-  ContactSet found;                    // sorted
-  Crossings start;                     // pairs of triangles that cross at the start
-  std::size_t rest_pairs = 0;          // of the pairs that cross at rest, how many cross at this start
-  std::size_t rest_contacts = 0;       // contacts left out, as a pair that crosses at rest carries them
-  bool starts_embedded = true;         // nothing crosses at the start, pairs that cross at rest included
-  const Strategy* strategy = nullptr;  // that answered
+  ContactSet found;                         // sorted
+  Crossings start;                          // pairs of triangles that cross at the start
+  std::size_t rest_pairs = 0;               // of the pairs that cross at rest, how many cross at this start
+  std::size_t rest_contacts = 0;            // contacts left out, as a pair that crosses at rest carries them
+  std::vector<CrossingPair> ignored_pairs;  // sorted; those that cross at the start (SessionOptions::ignored)
+  ContactSet ignored;                       // sorted; contacts, likewise
+  bool starts_embedded = true;              // nothing at all crosses at the start, whether left out or not
+  const Strategy* strategy = nullptr;       // that answered
   bool proven = false;  // contacts and time are right by the strategy's guarantee and the elementary test
   Report report;
   double embedding_ms = 0;  // what it took to know which triangles cross at the start
@@ -36,6 +39,10 @@ struct SessionOptions {
   bool first = false;                // only the contacts of the earliest time
   bool unproven = false;             // no stand-in where the strategy's guarantee is void
   bool keep_rest_crossings = false;  // nothing is left out
+  // Pairs of triangles, and the feature pairs that they alone carry, that are no part of answers; null for
+  // none. Strategies know nothing of them, so that what a step proves still says how the next one starts.
+  // Where anything touches, a strategy that promises all contacts answers. Must outlive the session.
+  const Exclusions* ignored = nullptr;
   // Says nothing of crossings at starts: `start` stays empty and `starts_embedded` true. For complete
   // strategies, whose contacts are right from any start.
   bool ignore_starts = false;
@@ -83,7 +90,7 @@ class Session {
   void find_rest_crossings(const std::string& name, std::span<const Vec3> rest);
   Row& stand_in();
   // Whether only the contacts of the earliest time are asked of strategies.
-  bool first_only() const { return options_.first && left_out_.empty(); }
+  bool first_only() const { return options_.first && left_out_.empty() && options_.ignored == nullptr; }
   // Whether the contacts of a step say what crosses at its end.
   bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
   // Whether the answers of a row hold all contacts of a motion from the pose that poses_ knows.
@@ -104,7 +111,7 @@ class Session {
   void know_end(const Motion& motion, const Rig::Interval* bones, const Row& row, const ContactSet& found);
   void ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
   void say_start(StepAnswer& out) const;
-  std::size_t leave_out(ContactSet& found) const;
+  void leave_out(StepAnswer& out) const;
 
   Setup setup_;
   const Strategy& stand_in_strategy_;
