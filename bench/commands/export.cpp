@@ -51,7 +51,9 @@ void export_frames(const ExportOptions& options) {
     export_files(input, options.output, format, options.force);
     return;
   }
-  scenes::PointCacheWriter writer(options.output, input.clip->header(), options.force);
+  scenes::ClipHeader header = input.clip->header();
+  if (!input.up.because.empty()) header.up = input.up.axis;
+  scenes::PointCacheWriter writer(options.output, std::move(header), options.force);
   scenes::copy_frames(*input.clip, writer);
   writer.finish();
   std::printf("%s: %zu frames of %zu vertices and %zu triangles\n", options.output.c_str(),

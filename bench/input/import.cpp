@@ -266,11 +266,13 @@ nlohmann::json import_json(const ImportReport& r) {
                      {"node", part.node},
                      {"mesh", count(part.mesh)},
                      {"primitive", count(part.primitive)}});
-  nlohmann::json unit, chosen;
+  nlohmann::json unit, chosen, up;
+  if (!r.up.empty()) up = r.up;
   if (r.centimetres_per_unit > 0) unit = r.centimetres_per_unit;
   if (r.chosen_clip >= 0) chosen = r.chosen_clip;
   return {
       {"format", r.format},
+      {"up", up},
       {"centimetres_per_unit", unit},
       {"nodes", r.nodes},
       {"meshes", r.meshes},

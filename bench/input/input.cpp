@@ -69,19 +69,23 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::optional<scenes::ImportReport> import;
   std::optional<scenes::SourceMap> sources;
   std::vector<std::string> bone_names;
+  Up up;
   if (model) {
     ImportedModel imported = import_model(name, options);
     scenes::limit_memory(options.answer_memory_mib << 20);
     clip = std::move(imported.clip);
     import = std::move(imported.report);
     bone_names = import->bones;
+    up = up_of(*import);
     sources = std::move(imported.sources);
   } else if (is_point_cache(name)) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
+    up = up_of(clip->header());
   } else {
     const scenes::Scene scene = scenes::load_scene(name);
     clip = clip_of(scene, name);
     bone_names = scenes::bone_names(scene);
+    up = up_of(scene);
   }
   const scenes::ClipHeader& header = clip->header();
   TriangleMesh mesh(header.triangles, header.vertex_count, name);
@@ -93,6 +97,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   input.bone_names = std::move(bone_names);
   const bool named = !options.import.clip.empty() || options.import.clip_number;
   input.clip_was_named = named || options.import.survey || !input.import || input.import->clips.size() < 2;
+  input.up = std::move(up);
   return input;
 }
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/input/ignored.h"
 #include "bench/input/import.h"
+#include "bench/input/up.h"
 #include "core/detect/strategy.h"
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
@@ -30,6 +32,8 @@ struct Input {
   bool use_bones = true;                                      // for strategies that can do without
   std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
+  Up up = {};
+  std::shared_ptr<const Ignored> ignored = nullptr;  // null where nothing is
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
   std::span<const Vec3> rest() const {

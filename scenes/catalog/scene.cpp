@@ -10,6 +10,7 @@
 #include "core/base/closest_name.h"
 #include "core/base/error.h"
 #include "scenes/catalog/plain_name.h"
+#include "scenes/clip/up_axis.h"
 
 namespace cscd::scenes {
 namespace {
@@ -207,7 +208,7 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
                   const fs::path& folder) {
   Json json = with_base(parse_json(text, where), where, folder);
   const Reader reader(json, where);
-  reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "expected"});
+  reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "up", "expected"});
   if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");
 
   Scene scene;
@@ -227,10 +228,13 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
         {effect_name, to_parameters(effect.json(), where + ", effect " + effect_name, "name")});
   }
 
+  if (json.contains("up")) {
+    scene.up = reader.text("up");
+    if (!is_up_axis(scene.up)) throw InputError(where + ": up must be one of x, y, z, -x, -y, -z");
+  }
   if (json.contains("expected")) scene.expected = read_expected(json["expected"], where + ", expected");
 
-  json.erase("story");
-  json.erase("expected");
+  for (const char* without_effect : {"story", "up", "expected"}) json.erase(without_effect);
   scene.recipe = json.dump();
   return scene;
 }

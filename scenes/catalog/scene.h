@@ -30,6 +30,8 @@ struct Scene {
   std::vector<EffectCall> effects;  // in the order in which they run
   std::size_t frames = 0;
   int substeps = 1;
+  std::string
+      up;  // the axis that points up, where the file has a member `up` (up_axis.h); no frame depends on it
   Expected expected;
   std::string recipe;  // everything that the frames depend on, in canonical text
 };

@@ -49,7 +49,21 @@ TEST(SceneFile, SaysWhatTheSceneIs) {
   EXPECT_EQ(scene.expected.vertices, 82u);
 }
 
+// Nothing that is computed depends on it, so a cache stays valid.
+TEST(SceneFile, MaySayWhichAxisPointsUp) {
+  std::string text = kSmallScene;
+  text.insert(text.find("\"frames\""), "\"up\": \"-y\", ");
+  const Scene turned = parse_scene("small", text, "small.json"),
+              plain = parse_scene("small", kSmallScene, "small.json");
+  EXPECT_EQ(turned.up, "-y");
+  EXPECT_EQ(plain.up, "");
+  EXPECT_EQ(turned.recipe, plain.recipe);
+}
+
 TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
+  EXPECT_EQ(refusal("\"frames\"", "\"up\": \"w\", \"frames\""),
+            "small.json: up must be one of x, y, z, -x, -y, -z");
+  EXPECT_EQ(refusal("\"frames\"", "\"up\": 2, \"frames\""), "small.json: up must be a text");
   EXPECT_NE(refusal("{", "").find("small.json: is not JSON"), std::string::npos);
   EXPECT_EQ(refusal("cscd.scene/1", "cscd.scene/9"), "small.json: schema must be cscd.scene/1");
   EXPECT_EQ(refusal("\"story\"", "\"tale\""), "small.json: tale is unknown; remove it");

@@ -223,6 +223,7 @@ struct Character {
   std::vector<Part> parts;
   std::vector<Animation> animations;
   std::string format;
+  std::string up;                   // the axis that points up (scenes/clip/up_axis.h); empty if nothing says
   double centimetres_per_unit = 0;  // 0 where the file does not say
   std::vector<std::string> notes;   // messages about what was left out of the file
 };

@@ -46,6 +46,7 @@ void read(const std::string& word, Number& value) {
 template <class Report, class Visit>
 void visit_values(Report& r, Visit&& visit) {
   visit("format", r.format);
+  visit("up", r.up);
   visit("centimetres_per_unit", r.centimetres_per_unit);
   visit("nodes", r.nodes);
   visit("meshes", r.meshes);

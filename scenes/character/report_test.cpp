@@ -11,6 +11,7 @@ namespace {
 ImportReport some_report() {
   ImportReport report;
   report.format = "FBX";
+  report.up = "-z";
   report.centimetres_per_unit = 2.54;
   report.vertices = 12345678901;
   report.chosen_clip = 1;

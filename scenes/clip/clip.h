@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/vec3.h"
@@ -22,6 +23,7 @@ struct ClipHeader {
   // [vertices]: the positions in the pose at rest. Triangles that cross in that pose cross because the
   // surface is made so, and are no collision. Empty if the pose at rest is frame 0.
   std::vector<Vec3> rest = {};
+  std::string up = {};  // the axis that points up, for whoever looks at it (up_axis.h); empty if nothing says
 };
 
 // One frame: positions [vertices] and bones [bones].

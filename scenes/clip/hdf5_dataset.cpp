@@ -1,5 +1,7 @@
 #include "scenes/clip/hdf5_dataset.h"
 
+#include <cstring>
+
 #include "core/base/error.h"
 
 namespace cscd::scenes {
@@ -86,6 +88,31 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset) {
       H5Dread(dataset.id.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw InputError(dataset.where + ": cannot be read; the file may be damaged, write it again");
   return values;
+}
+
+std::optional<std::string> read_text_attribute(hid_t file, const char* name) {
+  constexpr std::size_t kMostBytes = 1000;
+  const Hdf5Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) return std::nullopt;
+  const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose),
+      space(H5Aget_space(attribute.get()), H5Sclose);
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1)
+    return std::nullopt;
+  const Hdf5Handle memory(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_cset(memory.get(), H5Tget_cset(type.get()));
+  if (H5Tis_variable_str(type.get()) > 0) {
+    H5Tset_size(memory.get(), H5T_VARIABLE);
+    char* text = nullptr;
+    if (H5Aread(attribute.get(), memory.get(), &text) < 0 || text == nullptr) return std::nullopt;
+    std::string out(text, strnlen(text, kMostBytes));
+    H5free_memory(text);
+    return out;
+  }
+  if (H5Tget_size(type.get()) > kMostBytes) return std::nullopt;
+  char text[kMostBytes + 1] = {};
+  H5Tset_size(memory.get(), sizeof text);
+  if (H5Aread(attribute.get(), memory.get(), text) < 0) return std::nullopt;
+  return std::string(text);
 }
 
 }  // namespace cscd::scenes

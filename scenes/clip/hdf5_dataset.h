@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,5 +38,8 @@ void require_stored(const Dataset& dataset, hsize_t elements);
 
 // Returns all elements. Throws InputError if they cannot be read.
 std::vector<std::int64_t> read_integers(const Dataset& dataset);
+
+// Returns the text of an attribute of the file's root; nothing if it is no single text of up to 1000 bytes.
+std::optional<std::string> read_text_attribute(hid_t file, const char* name);
 
 }  // namespace cscd::scenes

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "scenes/clip/hdf5_dataset.h"
 #include "scenes/clip/point_cache.h"
+#include "scenes/clip/up_axis.h"
 
 namespace cscd::scenes {
 namespace {
@@ -70,6 +71,7 @@ struct PointCacheReader::File {
     if (has_object(file.get(), "/bones")) open_bones();
     if (has_object(file.get(), "/predicted")) open_predictions();
     if (has_object(file.get(), "/rest")) read_rest();
+    if (H5Aexists(file.get(), "up") > 0) read_up();
     if (!header.bone_parent.empty()) check_rig();
   }
 
@@ -159,6 +161,13 @@ struct PointCacheReader::File {
     if (H5Dread(rest.id.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
       throw InputError(rest.where + ": cannot be read; the file may be damaged, write it again");
     require_finite(header.rest, rest.where);
+  }
+
+  void read_up() {
+    const std::optional<std::string> text = read_text_attribute(file.get(), "up");
+    if (!text || !is_up_axis(*text))
+      throw InputError(path + ", attribute up: is no axis; write one of the texts x, y, z, -x, -y, -z");
+    header.up = *text;
   }
 
   void check_rig() {

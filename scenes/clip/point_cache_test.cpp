@@ -111,6 +111,50 @@ const SmallClip kKinds[] = {{.frames = 5},
                             {.frames = 5, .predicted = true},
                             {.frames = 5, .bones = 3, .predicted = true}};
 
+TEST_F(PointCache, KeepsWhichAxisPointsUp) {
+  write({});
+  EXPECT_EQ(PointCacheReader(file).header().up, "");
+  ClipHeader header = small_clip({}).header();
+  header.up = "-z";
+  Clip clip(header);
+  Clip frames = small_clip({});
+  copy_frames(frames, clip);
+  write(clip, file);
+  EXPECT_EQ(PointCacheReader(file).header().up, "-z");
+}
+
+// Python's h5py writes texts of any length. What is no axis is refused.
+TEST_F(PointCache, TakesTheAxisAsATextOfAnyKind) {
+  const auto put = [&](const char* text, std::size_t size) {
+    write({});
+    const Hdf5Handle h5 = edit();
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+    H5Tset_size(type.get(), size);
+    H5Tset_cset(type.get(), H5T_CSET_UTF8);
+    const Hdf5Handle attribute(H5Acreate2(h5.get(), "up", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose);
+    ASSERT_GE(
+        H5Awrite(attribute.get(), type.get(), size == H5T_VARIABLE ? static_cast<const void*>(&text) : text),
+        0);
+  };
+  put("x", H5T_VARIABLE);
+  EXPECT_EQ(PointCacheReader(file).header().up, "x");
+  put("-y", 2);
+  EXPECT_EQ(PointCacheReader(file).header().up, "-y");
+  const std::string refused = "clip.h5, attribute up: is no axis; write one of the texts x, y, z, -x, -y, -z";
+  put("up", H5T_VARIABLE);
+  EXPECT_EQ(refusal(), refused);
+  put(std::string(3000, 'x').c_str(), 3000);
+  EXPECT_EQ(refusal(), refused);
+  write({});
+  {
+    const Hdf5Handle h5 = edit();
+    const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    Hdf5Handle(H5Acreate2(h5.get(), "up", H5T_NATIVE_INT, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  }
+  EXPECT_EQ(refusal(), refused);
+}
+
 TEST_F(PointCache, GivesBackEveryBit) {
   for (const SmallClip& kind : kKinds) {
     Clip clip = small_clip(kind);

@@ -43,6 +43,7 @@ struct PointCacheWriter::File : NewHdf5File {
     write_integers("/triangles", {header.triangles.size(), 3}, corners);
     positions = create_growing("/positions", header.vertex_count);
     if (!header.rest.empty()) write_rest();
+    if (!header.up.empty()) write_up();
     if (header.predicted) predicted = create_growing("/predicted", header.vertex_count);
     if (header.bone_parent.empty()) return;
     const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
@@ -91,6 +92,15 @@ struct PointCacheWriter::File : NewHdf5File {
                              H5Dclose);
     if (H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
       fail("HDF5 did not take /rest (is the disk full?)");
+  }
+
+  void write_up() {
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+    H5Tset_size(type.get(), header.up.size() + 1);
+    const Hdf5Handle attribute(
+        H5Acreate2(file.get(), "up", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (H5Awrite(attribute.get(), type.get(), header.up.c_str()) < 0)
+      fail("HDF5 did not take the attribute up (is the disk full?)");
   }
 
   Growing create_growing(const char* name, std::size_t points) {

@@ -37,6 +37,7 @@ std::size_t driven_bones(const Character& character, const Animation& animation,
 
 void describe(const Character& character, const ImportOptions& options, ImportReport& report) {
   report.format = character.format;
+  report.up = character.up;
   report.centimetres_per_unit = character.centimetres_per_unit;
   report.notes = character.notes;
   report.nodes = character.nodes.size();

@@ -300,6 +300,7 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
                      " importer refuses it: " + std::string(error) + "; export it again");
   Character character = Reader(*scene, limits).read();
   character.format = format.name;
+  if (format.name == "Collada") character.up = "y";  // to which assimp turns what the file calls up
   if (format.name == "Collada")
     for (std::string& note : notes_on_collada(bytes_of(path, limits)))
       character.notes.push_back(std::move(note));

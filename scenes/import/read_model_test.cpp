@@ -221,6 +221,21 @@ Connections:  {
 }
 )";
 
+TEST_F(Model, FbxFilesSayWhichAxisPointsUp) {
+  const auto up_of = [&](const std::string& settings) {
+    std::string text = kFbxFile;
+    text.insert(text.find("\t\tP: \"UnitScaleFactor\""), settings);
+    return read_model(write("flag.fbx", text), {}).up;
+  };
+  const std::string axis = "P: \"UpAxis\", \"int\", \"Integer\", \"\",",
+                    sign = "P: \"UpAxisSign\", \"int\", \"Integer\", \"\",";
+  EXPECT_EQ(up_of(""), "");
+  EXPECT_EQ(up_of(axis + "2\n"), "z");
+  EXPECT_EQ(up_of(axis + "1\n" + sign + "1\n"), "y");
+  EXPECT_EQ(up_of(axis + "0\n" + sign + "-1\n"), "-x");
+  EXPECT_EQ(up_of(axis + "7\n"), "");
+}
+
 TEST_F(Model, HelperNodesOfFbxMoveBonesAndAreNone) {
   const Character flag = read_model(write("flag.fbx", kFbxFile), {});
   std::size_t helpers = 0;

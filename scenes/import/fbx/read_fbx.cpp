@@ -55,11 +55,20 @@ class Builder {
     const double unit = objects_.setting("UnitScaleFactor").value_or(1);
     character_.centimetres_per_unit = std::isfinite(unit) && unit > 0 ? unit : 0;
     character_.format = "FBX";
+    character_.up = up_axis();
     add_notes();
     return std::move(character_);
   }
 
  private:
+  // Files say by a number which axis points up, and by a sign which of its ends. Empty where they do not.
+  std::string up_axis() const {
+    const double axis = objects_.setting("UpAxis").value_or(-1);
+    if (axis != 0 && axis != 1 && axis != 2) return {};
+    const bool down = objects_.setting("UpAxisSign").value_or(1) < 0;
+    return std::string(down ? "-" : "") + "xyz"[static_cast<int>(axis)];
+  }
+
   void note_animated(const Clip& clip) {
     for (const auto& [model, motion] : clip.models) {
       Animated& animated = animated_[model];

@@ -28,6 +28,7 @@ Character read_gltf(const std::filesystem::path& path, const CharacterLimits& li
 
   Character character;
   character.format = "glTF 2";
+  character.up = "y";
   const gltf::Tree tree = gltf::make_tree(document.model, limits.nodes);
   character.nodes = tree.nodes;
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
