@@ -39,7 +39,7 @@ async function pageOf(name, entry, library, frames = "") {
   const part = (file) => readFileSync(join(here, "src", file), "utf8");
   return part(`${name}.html`)
     .replace("{{head}}", () => part("head.html").trim())
-    .replace("{{name}}", () => name)
+    .replaceAll("{{name}}", () => name)
     .replace("{{policy}}", () => policy)
     .replace("{{licences}}", () => licence(library))
     .replace("{{style}}", () => style)

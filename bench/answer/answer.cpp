@@ -13,6 +13,11 @@ IntervalVerdict verdict_of(const StepAnswer& answer) {
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
 }
 
+AnswerOptions with_ignored(AnswerOptions options, const Input& input) {
+  options.ignored = input.ignored ? &input.ignored->triangles : nullptr;
+  return options;
+}
+
 }  // namespace
 
 std::string_view to_string(IntervalVerdict verdict) {
@@ -32,7 +37,8 @@ std::string_view to_string(IntervalVerdict verdict) {
 Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                    const AnswerOptions& options)
     : input_(input),
-      session_(input.name, input.setup(elementary), strategy, complete_stand_in(), input.rest(), options) {}
+      session_(input.name, input.setup(elementary), strategy, complete_stand_in(), input.rest(),
+               with_ignored(options, input)) {}
 
 IntervalAnswer Answerer::answer(std::size_t index) {
   IntervalAnswer answer;

@@ -27,8 +27,9 @@ using AnswerOptions = SessionOptions;
 // Answers the intervals of an input, best in growing order (see Session).
 class Answerer {
  public:
-  // Prepares the strategy. Throws InputError where the input lacks what the strategy needs, where options do
-  // not go together, and where too many triangles cross at rest. `input` must outlive it.
+  // Prepares the strategy. What the input says is ignored is no part of answers. Throws InputError where the
+  // input lacks what the strategy needs, where options do not go together, and where too many triangles cross
+  // at rest. `input` must outlive it.
   Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
            const AnswerOptions& options);
 

@@ -133,6 +133,8 @@ json interval_json(const Input& input, const SurfaceNames& names, const Interval
               {"start_pairs", std::move(start_pairs)},
               {"start_pairs_total", answer.start.total},
               {"left_out", {{"start_pairs", answer.rest_pairs}, {"contacts", answer.rest_contacts}}},
+              {"ignored",
+               {{"start_pairs", answer.ignored_pairs.size()}, {"contacts", answer.ignored.contacts.size()}}},
               {"contacts", std::move(contacts)},
               {"undecided", std::move(undecided)},
               {"strategy", answer.strategy->name},
@@ -153,6 +155,14 @@ json rest_json(const Input& input, const SurfaceNames& names, const Crossings& r
   for (const auto& [pair, count] : pairs_by_part(names, input.mesh, rest))
     parts.push_back({{"first", pair.first}, {"second", pair.second}, {"pairs", count}});
   return {{"pairs", rest.total}, {"left_out", left_out}, {"parts", std::move(parts)}};
+}
+
+json ignored_json(const Input& input) {
+  if (!input.ignored) return nullptr;
+  json pairs = json::array(), neighbours;
+  for (const auto& [first, second] : input.ignored->names) pairs.push_back({first, second});
+  if (input.ignored->neighbours) neighbours = *input.ignored->neighbours;
+  return {{"pairs", std::move(pairs)}, {"neighbours", std::move(neighbours)}};
 }
 
 }  // namespace cscd::bench

@@ -28,4 +28,7 @@ nlohmann::json interval_json(const Input& input, const SurfaceNames& names, cons
 // Lists the triangles that cross at rest by the parts of the surface that they belong to.
 nlohmann::json rest_json(const Input& input, const SurfaceNames& names, const Crossings& rest, bool left_out);
 
+// What was asked to be ignored; null for nothing.
+nlohmann::json ignored_json(const Input& input);
+
 }  // namespace cscd::bench

@@ -67,6 +67,35 @@ std::string listed(const std::map<Names, std::size_t>& counts, const Text& text)
   return out;
 }
 
+Names in_order(std::string a, std::string b) {
+  if (b < a) std::swap(a, b);
+  return {std::move(a), std::move(b)};
+}
+
+// "LeftLeg and LeftUpLeg (24 intervals)".
+std::string met_text(const Names& both, std::size_t intervals) {
+  return both.first + " and " + (both.first == both.second ? "itself" : both.second) + " (" +
+         many(intervals, "interval") + ")";
+}
+
+std::string ignored_text(const Input& input, const AnswerSummary& s) {
+  std::string asked;
+  for (const Names& both : input.ignored->names) asked += " --ignore " + both.first + ":" + both.second;
+  if (input.ignored->neighbours)
+    asked += " --ignore-neighbours " + std::to_string(*input.ignored->neighbours);
+  if (s.with_ignored == 0) return "ignored: nothing that touches (" + asked.substr(1) + ")";
+  std::map<Names, std::size_t> intervals;
+  std::size_t contacts = 0, pairs = 0;
+  for (const auto& [both, here] : s.ignored) {
+    intervals[both] = here.intervals;
+    contacts += here.contacts;
+    pairs += here.start_pairs;
+  }
+  return "ignored: " + listed(intervals, met_text) + "; " + many(contacts, "contact") + " and " +
+         many(pairs, "crossing pair") + " of triangles in " + many(s.with_ignored, "interval") + " (" +
+         asked.substr(1) + ")";
+}
+
 // "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
 std::string subject_of(const Input& input) {
   const std::string name = std::filesystem::path(input.name).filename().string();
@@ -104,7 +133,10 @@ std::string verdict_predicate(const Input& input, const AnswerSummary& s) {
   if (!s.collides()) {
     const std::string frames = " in frames " + frame_text(frame_of(input, {s.first_index, 0})) + " to " +
                                frame_text(frame_of(input, {s.last_index, 1}));
-    const std::string apart = s.with_left_out > 0 ? ", apart from what crosses at rest" : "";
+    const std::string rest = s.with_left_out > 0 ? "what crosses at rest" : "";
+    const std::string ignored = s.with_ignored > 0 ? "what is ignored" : "";
+    const std::string both = rest + (rest.empty() || ignored.empty() ? "" : " and ") + ignored;
+    const std::string apart = both.empty() ? "" : ", apart from " + both;
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
@@ -135,6 +167,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   ++strategies[std::string(answer.strategy->name)];
   proven += answer.proven;
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
+  add_ignored(answer, names);
   embedding_ms += answer.embedding_ms;
   query_ms += answer.report.ms.total();
   load_ms += answer.load_ms;
@@ -153,8 +186,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   const auto meet = [&](TriangleId a, TriangleId b) {
     std::string x = names.place_of(a), y = names.place_of(b);
     if (!first) first = Meeting{moment, crosses, {x, y}};
-    if (y < x) std::swap(x, y);
-    here.emplace(std::move(x), std::move(y));
+    here.insert(in_order(std::move(x), std::move(y)));
   };
   for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second);
   for (const Contact& contact : answer.found.contacts)
@@ -164,11 +196,32 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   for (const Names& both : here) ++met[both];
 }
 
+void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames& names) {
+  std::set<Names> here;
+  const auto meet = [&](TriangleId a, TriangleId b) -> IgnoredHere& {
+    const auto [one, added] = here.insert(in_order(names.place_of(a), names.place_of(b)));
+    IgnoredHere& entry = ignored[*one];
+    entry.intervals += added;
+    return entry;
+  };
+  for (const CrossingPair& pair : answer.ignored_pairs) ++meet(pair.first, pair.second).start_pairs;
+  for (const Contact& contact : answer.ignored.contacts)
+    if (contact.verdict == Verdict::contact)
+      ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true)).contacts;
+  with_ignored += !here.empty();
+}
+
 json summary_json(const Input& input, const AnswerSummary& s) {
-  json strategies = json::array(), met = json::array(), first, worst;
+  json strategies = json::array(), met = json::array(), ignored = json::array(), first, worst;
   for (const auto& [name, count] : s.strategies) strategies.push_back({{"name", name}, {"intervals", count}});
   for (const auto& [names, count] : most_first(s.met))
     met.push_back({{"first", names.first}, {"second", names.second}, {"intervals", count}});
+  for (const auto& [names, here] : s.ignored)
+    ignored.push_back({{"first", names.first},
+                       {"second", names.second},
+                       {"intervals", here.intervals},
+                       {"start_pairs", here.start_pairs},
+                       {"contacts", here.contacts}});
   if (s.first) first = moment_json(input, s.first->moment);
   if (s.worst) {
     worst = moment_json(input, s.worst->moment);
@@ -193,7 +246,9 @@ json summary_json(const Input& input, const AnswerSummary& s) {
           {"strategies", std::move(strategies)},
           {"first", std::move(first)},
           {"worst", std::move(worst)},
-          {"met", std::move(met)}};
+          {"met", std::move(met)},
+          {"with_ignored", s.with_ignored},
+          {"ignored", std::move(ignored)}};
 }
 
 std::string verdict_sentence(const Input& input, const AnswerSummary& s) {
@@ -222,11 +277,8 @@ SummarySentences summary_sentences(const Input& input, const SurfaceNames& names
       out.worst += many(s.worst->start_pairs, "pair") + " of triangles cross at its start, and ";
     out.worst += many(s.worst->contacts, "contact");
   }
-  if (!s.met.empty())
-    out.met = "met: " + listed(s.met, [](const Names& both, std::size_t count) {
-                return both.first + " and " + (both.first == both.second ? "itself" : both.second) + " (" +
-                       many(count, "interval") + ")";
-              });
+  if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
+  if (input.ignored) out.ignored = ignored_text(input, s);
   if (rest.total > 0) {
     out.rest = "crosses at rest: " +
                listed(pairs_by_part(names, input.mesh, rest), [](const Names& both, std::size_t count) {
@@ -257,7 +309,8 @@ std::string summary_text(const Input& input, const SurfaceNames& names, const An
                          const Crossings& rest, bool left_out) {
   const SummarySentences said = summary_sentences(input, names, s, rest, left_out);
   std::string out = verdict_sentence(input, s) + "\n";
-  for (const std::string* line : {&said.counts, &said.worst, &said.met, &said.rest, &said.proven})
+  for (const std::string* line :
+       {&said.counts, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
          number(s.embedding_ms) + " to know what crosses at the starts; " + number(s.preparation_ms) +
@@ -267,7 +320,7 @@ std::string summary_text(const Input& input, const SurfaceNames& names, const An
 std::string details_text(const SummarySentences& said) {
   std::string out;
   for (const std::string* sentence :
-       {&said.counts, &said.worst, &said.rest, &said.proven, &said.rate, &said.choice}) {
+       {&said.counts, &said.worst, &said.ignored, &said.rest, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

@@ -37,6 +37,12 @@ struct AnswerSummary {
   std::optional<Worst> worst;
   // Bones, or else parts, that met: in how many intervals.
   std::map<std::pair<std::string, std::string>, std::size_t> met;
+  // What is ignored, by bones or else parts.
+  struct IgnoredHere {
+    std::size_t intervals = 0, start_pairs = 0, contacts = 0;
+  };
+  std::map<std::pair<std::string, std::string>, IgnoredHere> ignored;
+  std::size_t with_ignored = 0;  // intervals in which something is
   double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0;
   double preparation_ms = 0;  // set by the caller
 
@@ -49,6 +55,9 @@ struct AnswerSummary {
   IntervalVerdict verdict() const;
   // `motion` is that of the interval.
   void add(const IntervalAnswer& answer, const Motion& motion, const SurfaceNames& names);
+
+ private:
+  void add_ignored(const IntervalAnswer& answer, const SurfaceNames& names);
 };
 
 // One sentence that says what was asked about, does it touch or cross itself, how often, and when first.
@@ -57,7 +66,7 @@ std::string verdict_sentence(const Input& input, const AnswerSummary& summary);
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct SummarySentences {
-  std::string counts, worst, met, rest, proven, rate, choice;
+  std::string counts, worst, met, ignored, rest, proven, rate, choice;
 };
 SummarySentences summary_sentences(const Input& input, const SurfaceNames& names,
                                    const AnswerSummary& summary, const Crossings& rest, bool left_out);

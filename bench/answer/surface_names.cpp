@@ -77,26 +77,42 @@ SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
     bone_ = nearest_bones(*input.rig, input.reference);
 }
 
-std::string SurfaceNames::bone_of(VertexId vertex) const {
-  if (bone_.empty() || bone_[+vertex] < 0) return {};
-  const auto bone = static_cast<std::size_t>(bone_[+vertex]);
-  if (bone < input_.bone_names.size() && !input_.bone_names[bone].empty()) return input_.bone_names[bone];
+std::string SurfaceNames::name_of_bone(std::int32_t bone) const {
+  const auto i = static_cast<std::size_t>(bone);
+  if (i < input_.bone_names.size() && !input_.bone_names[i].empty()) return input_.bone_names[i];
   return "bone " + std::to_string(bone);
 }
 
-std::string SurfaceNames::place_of(TriangleId triangle) const {
+std::string SurfaceNames::bone_of(VertexId vertex) const {
+  if (bone_.empty() || bone_[+vertex] < 0) return {};
+  return name_of_bone(bone_[+vertex]);
+}
+
+std::int32_t SurfaceNames::bone_of(TriangleId triangle) const {
+  if (bone_.empty()) return -1;
   const Triangle& c = input_.mesh.corners(triangle);
-  if (bone_.empty()) return part_of(triangle);
   const bool last_two = bone_[+c[1]] == bone_[+c[2]];
-  const std::string bone = bone_of(last_two ? c[1] : c[0]);
-  return bone.empty() ? part_of(triangle) : bone;
+  return bone_[+(last_two ? c[1] : c[0])];
+}
+
+std::string SurfaceNames::place_of(TriangleId triangle) const {
+  const std::int32_t bone = bone_of(triangle);
+  return bone < 0 ? part_of(triangle) : name_of_bone(bone);
 }
 
 TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const {
   const TriangleMesh& mesh = input_.mesh;
-  if (pair.kind == FeaturePair::Kind::vertex_face)
-    return second ? TriangleId{pair.b} : mesh.triangles_at(VertexId{pair.a}).front();
-  return mesh.triangles_at(EdgeId{second ? pair.b : pair.a}).front();
+  const TriangleId face{pair.b};
+  const bool is_face = pair.kind == FeaturePair::Kind::vertex_face;
+  const std::span<const TriangleId> firsts =
+      is_face ? mesh.triangles_at(VertexId{pair.a}) : mesh.triangles_at(EdgeId{pair.a});
+  const std::span<const TriangleId> seconds =
+      is_face ? std::span(&face, 1) : mesh.triangles_at(EdgeId{pair.b});
+  if (input_.ignored)
+    for (const TriangleId s : firsts)
+      for (const TriangleId t : seconds)
+        if (s != t && !input_.ignored->triangles.excludes(mesh, TrianglePair{s, t})) return second ? t : s;
+  return second ? seconds.front() : firsts.front();
 }
 
 std::map<std::pair<std::string, std::string>, std::size_t> pairs_by_part(const SurfaceNames& names,

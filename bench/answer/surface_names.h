@@ -21,9 +21,14 @@ class SurfaceNames {
   const std::string& part_of(TriangleId triangle) const { return label_[label_of_triangle_[+triangle]]; }
   // The bone that moves a vertex most; by number where bones have no names, empty without bones.
   std::string bone_of(VertexId vertex) const;
+  // The number of the bone that moves most of a triangle's corners; negative for none.
+  std::int32_t bone_of(TriangleId triangle) const;
+  // The name of a bone, or its number where bones have no names.
+  std::string name_of_bone(std::int32_t bone) const;
   // Where a triangle is for an animator: the bone that moves most of its corners, or else its part.
   std::string place_of(TriangleId triangle) const;
-  // A triangle that has the first, or the second, feature of a pair.
+  // A triangle that has the first, or the second, feature of a pair. Both belong to one pair of triangles
+  // that is not ignored, where there is one.
   TriangleId triangle_of(const FeaturePair& pair, bool second) const;
 
  private:

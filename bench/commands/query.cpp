@@ -71,6 +71,7 @@ struct ClipAnswer {
 ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json) {
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   input.threads = options.threads;
+  ignore(input, options.ignored);
   const Strategy& strategy =
       options.strategy.empty() ? default_strategy(input) : strategy_named(options.strategy);
   // Bones spare the default strategy a little work in every interval, and preparing for them takes longer
@@ -115,6 +116,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
                      {"threads", answerer.threads()},
                      {"first_only", options.answers.first},
                      {"rest_crossings", rest_json(input, names, answerer.rest_crossings(), left_out)},
+                     {"ignore", ignored_json(input)},
                      {"summary", summary_json(input, summary)},
                      {"intervals", std::move(intervals)}};
   if (input.import) result.document["import"] = import_json(*input.import);

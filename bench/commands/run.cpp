@@ -6,14 +6,18 @@
 #include <new>
 #include <sys/mman.h>
 
+#include "bench/answer/ignore.h"
 #include "bench/commands/command.h"
 #include "bench/input/input.h"
+#include "bench/measure/contestant.h"
 #include "bench/measure/replay.h"
+#include "bench/options/answer_options.h"
 #include "bench/options/cell_limits.h"
 #include "bench/options/replay_options.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/record/record.h"
+#include "bench/rows/catalogue.h"
 #include "bench/shards/cell_run.h"
 #include "bench/shards/code_version.h"
 #include "bench/shards/shard.h"
@@ -29,6 +33,7 @@ namespace {
 constexpr char kAllScenes[] = "all";
 struct RunOptions {
   ReplayRequest request;
+  IgnoreRequest ignored;
   std::string output;
   bool force = false;
   // Instead of a request: cells of a plan.
@@ -60,11 +65,23 @@ void print(const VerificationRecord& v, const std::string& timed) {
       static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
+// Names the strategies that would have run if nothing were ignored.
+void say_who_cannot_ignore(const Input& input, const ReplayRequest& request) {
+  const std::vector<std::string> groups =
+      request.strategies.empty() ? std::vector<std::string>{""} : request.strategies;
+  for (const std::string& group : groups)
+    for (const Strategy* strategy : strategies_in(group))
+      if (const auto reason = why_not_ignoring(input, *strategy); reason && allows(input, *strategy))
+        std::printf("without %s: %s\n", std::string(strategy->name).c_str(), reason->c_str());
+}
+
 // Whether every strategy kept its promise.
-bool run_one(const ReplayRequest& request, OutputFile& output) {
+bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile& output) {
   Input input = open_input(request.scene, request.model);
   say_what_was_read(input, stdout);
   input.threads = request.threads;
+  ignore(input, options.ignored);
+  say_who_cannot_ignore(input, request);
   const Record record = execute(input, resolve(input, request, ReplayKind::timings));
   print(record.verification, request.elementary);
   output.commit(json_text(to_json(record)));
@@ -98,7 +115,7 @@ bool run_all(const RunOptions& options) {
   bool ok = true;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
-    ok = run_one(runs[i], outputs[i]) && ok;
+    ok = run_one(options, runs[i], outputs[i]) && ok;
     std::printf("record: %s\n", (folder / (runs[i].scene + ".json")).c_str());
   }
   return ok;
@@ -176,7 +193,7 @@ void run(const RunOptions& options) {
     return;
   }
   OutputFile output(options.output, options.force);
-  const bool ok = run_one(options.request, output);
+  const bool ok = run_one(options, options.request, output);
   std::printf("record: %s\n", options.output.c_str());
   if (!ok) throw kVerificationFailed;
 }
@@ -202,6 +219,7 @@ void add_run(CLI::App& app) {
       "pairs of\n"
       "triangles, a thousand million of them on the rope at every interval, and the ablation.");
   add_replay_options(*command, options->request);
+  add_ignore_options(*command, options->ignored);
   command->add_option(
       "--json", options->output,
       "where the record goes, - is standard output; with --scene all, the folder of the records");

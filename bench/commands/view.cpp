@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,7 @@
 #include "bench/view/html.h"
 #include "bench/view/recording.h"
 #include "core/base/error.h"
-#include "scenes/catalog/scene.h"
+#include "scenes/clip/up_axis.h"
 
 namespace cscd::bench {
 namespace {
@@ -54,18 +53,6 @@ std::vector<std::uint16_t> places_of_triangles(const TriangleMesh& mesh, const S
   return places;
 }
 
-// The axis against which things fall, such as "z" or "-y"; none where no effect of the scene has gravity.
-std::optional<std::string> up_of(const scenes::Scene& scene) {
-  for (const scenes::EffectCall& effect : scene.effects) {
-    if (!effect.parameters.has("gravity")) continue;
-    const Vec3 gravity = effect.parameters.vector("gravity");
-    int axis = 0;
-    if (gravity.cwiseAbs().maxCoeff(&axis) == 0) continue;
-    return std::string(gravity[axis] < 0 ? "" : "-") + "xyz"[axis];
-  }
-  return std::nullopt;
-}
-
 struct Contestant {
   Answerer answerer;
   StrategyRecording recording;
@@ -79,6 +66,7 @@ namespace {
 // standard output what was answered.
 json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   input.threads = options.threads;
+  ignore(input, options.ignored);
   input.use_bones = !options.strategies.empty();  // as for a query
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
@@ -118,6 +106,7 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   }
   watchdog.restart();
 
+  const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
   const bool left_out = !options.answers.keep_rest_crossings;
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s) {
@@ -128,7 +117,9 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   }
   const Contestant& first = *contestants.front();
   std::printf("%s", rows[0]["text"].get<std::string>().c_str());
-  json header = {{"clip", clip.write(sections)},
+  json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
+                 {"engine_colours", !options.strategies.empty()},
+                 {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
                  {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
                  {"strategies", std::move(rows)}};
@@ -193,15 +184,13 @@ std::string view_page(const ViewRequest& options) {
     say_what_was_read(input, stdout);
     header.update(record_clip(options, std::move(input), sections));
   }
-  if (header["kind"] == "scene")
-    if (const auto up = up_of(scenes::load_scene(options.input))) header["up"] = *up;
   return viewer_with(header, sections);
 }
 
 namespace {
 
 void view(const ViewOptions& options) {
-  OutputFile output(options.output, options.force, ".html");
+  OutputFile output(options.output, options.force || is_page_of_viewer(options.output), ".html");
   const std::string page = view_page(options);
   output.commit(page);
   if (!is_standard_output(options.output))
@@ -227,9 +216,14 @@ void add_view(CLI::App& app) {
   command->add_option("--strategy", options->strategies,
                       "culling strategy (cscd list); several, each with its own --strategy, stand side by "
                       "side;\nwithout it, the best that the input allows");
+  command
+      ->add_option("--up", options->up,
+                   "the axis that points up, where the input does not say it or says it wrongly")
+      ->check(CLI::IsMember(std::vector<std::string>(scenes::kUpAxes.begin(), scenes::kUpAxes.end())));
   command->add_option("-o,--out", options->output,
                       "the .html file to write; default the input's name with that extension, here");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->add_flag("--force", options->force,
+                    "replace the output even if it is no page that cscd view wrote");
   command->callback([options] {
     if (options->output.empty())
       options->output = std::filesystem::path(options->input).stem().string() + ".html";

@@ -52,7 +52,15 @@ TEST_F(View, WritesThePageBesideTheInputsName) {
   ASSERT_EQ(ran.status, 0) << ran.errors;
   EXPECT_EQ(files(), "figure.glb small.html");
   EXPECT_NE(ran.out.find("does not touch itself"), std::string::npos) << ran.out;
-  expect_refused(run("cscd view small"), "small.html");
+  // A page of its own is replaced, and nothing else is.
+  EXPECT_EQ(run("cscd view small --frames 0:2").status, 0);
+  EXPECT_EQ(header_of(text("small.html"))["clip"]["frames"], 3);
+  for (const char* other :
+       {"", "<!doctype html><p>cscd view", "notes\n<meta name=\"generator\" content=\"cscd view\">"}) {
+    put("small.html", other);
+    expect_refused(run("cscd view small"), "small.html");
+    EXPECT_EQ(text("small.html"), other);
+  }
   EXPECT_EQ(run("cscd view small --force").status, 0);
   EXPECT_EQ(run("cscd view small -o - | head -c 15").out, "<!doctype html>");
 }
@@ -62,7 +70,9 @@ TEST_F(View, GivesTheAnswersOfAQuery) {
                 .status,
             0);
   const json header = header_of(text("page.html"));
-  EXPECT_FALSE(header.contains("up"));
+  EXPECT_EQ(header["up"]["axis"], "y");
+  EXPECT_EQ(header["up"]["because"], "glTF files have it so");
+  EXPECT_TRUE(header["engine_colours"]);
   for (const char* strategy : {"drvbc_fast_complete", "base"}) {
     json query =
         json::parse(run(std::string("cscd query figure.glb --clip hug --json - --strategy ") + strategy).out);
@@ -88,7 +98,7 @@ TEST_F(View, HoldsCoversPatchesAndObservers) {
       if (section["name"] == name) return section["raw"].get<int>();
     return -1;
   };
-  EXPECT_EQ(header["up"], "z");  // its chain falls the other way
+  EXPECT_EQ(header["up"]["axis"], "z");  // its chain falls the other way
   EXPECT_TRUE(header["strategies"][0]["has_patches"]);
   EXPECT_FALSE(header["strategies"][1]["has_patches"]);
   EXPECT_GT(header["strategies"][0]["covers"], 0);
@@ -103,6 +113,35 @@ TEST_F(View, HoldsCoversPatchesAndObservers) {
   EXPECT_EQ(bytes_of("s2.cover0.observer_count"), -1);
   // A scene's bones have the names of its file, or of its shape.
   EXPECT_NE(header["texts"].dump().find("bone_1"), std::string::npos) << header["texts"];
+}
+
+// Up is what the input says, or the user. A point cache that says nothing has y up, and the page says why.
+TEST_F(View, SaysWhichAxisPointsUp) {
+  const auto up_of = [&](const std::string& command) {
+    const Ran ran = run("cscd view " + command + " -o page.html --force");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    return header_of(text("page.html"))["up"];
+  };
+  EXPECT_EQ(up_of("small"), (json{{"axis", "z"}, {"because", "things fall the other way"}}));
+  ASSERT_EQ(run("cscd export small small.h5").status, 0);
+  EXPECT_EQ(up_of("small.h5"), (json{{"axis", "z"}, {"because", "the file says so"}}));
+  EXPECT_EQ(up_of("small.h5 --up -x"), (json{{"axis", "-x"}, {"because", "--up says so"}}));
+  ASSERT_EQ(run("cscd export figure.glb frames.ply").status, 0);
+  EXPECT_EQ(up_of("frames.0000.ply"), (json{{"axis", "y"}, {"because", ""}}));
+  expect_refused(run("cscd view small --up up"), "--up");
+}
+
+// Contacts that are ignored are counted and named, in the text, in the JSON and in the page.
+TEST_F(View, IgnoresWhatItIsToldTo) {
+  const std::string asked = "figure.glb --clip hug --ignore-neighbours 1 ";
+  const json query = json::parse(run("cscd query " + asked + "--json -").out);
+  const Ran ran = run("cscd view " + asked + "-o page.html");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.out.find("(--ignore-neighbours 1)"), std::string::npos) << ran.out;
+  const json header = header_of(text("page.html"));
+  EXPECT_EQ(header["ignore"], (json{{"pairs", json::array()}, {"neighbours", 1}}));
+  EXPECT_EQ(header["ignore"], query["ignore"]);
+  EXPECT_EQ(header["strategies"][0]["summary"]["ignored"], query["summary"]["ignored"]);
 }
 
 TEST_F(View, RefusesWhatItCannotShow) {

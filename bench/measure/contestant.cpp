@@ -17,6 +17,23 @@ void add(const Preparation& sample, PreparationRecord& record) {
 
 }  // namespace
 
+Setup measured_setup(const Input& input, const ElementaryTest& elementary, bool first_only,
+                     Pipeline pipeline) {
+  Setup setup = input.setup(elementary, first_only, pipeline);
+  if (input.ignored) setup.exclusions = &input.ignored->triangles;
+  return setup;
+}
+
+// What is ignored is dropped before it is tested. That is right where a strategy passes on all contacts.
+std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& strategy) {
+  if (!input.ignored) return std::nullopt;
+  if (strategy.own_test) return "its elementary test is its own, and knows nothing of what is ignored";
+  if (strategy.guarantee == Guarantee::first_contact)
+    return "it promises the first contact alone, which may be an ignored one";
+  if (strategy.guarantee == Guarantee::heuristic) return "it promises nothing of what is not ignored";
+  return std::nullopt;
+}
+
 std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
                                          const ElementaryTest& exact, const ElementaryTest& timed,
                                          Pipeline pipeline) {
@@ -27,7 +44,7 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
     contestant.strategy = strategy;
     contestant.pipeline = pipeline;
     const auto make = [&](const ElementaryTest& test) {
-      Prepared prepared = strategy->make(input.setup(test, false, pipeline));
+      Prepared prepared = strategy->make(measured_setup(input, test, false, pipeline));
       add(prepared.preparation, contestant.preparation);
       contestant.threads = prepared.preparation.threads;
       progress.advance();
@@ -50,7 +67,7 @@ std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<con
   };
   const auto add_group = [&](std::string_view group) {
     for (const Strategy* strategy : strategies_in(group))
-      if (has(*strategy) && allows(input, *strategy)) add(strategy);
+      if (has(*strategy) && allows(input, *strategy) && !why_not_ignoring(input, *strategy)) add(strategy);
   };
   if (names.empty()) add_group("");
   for (const std::string& name : names)
@@ -60,6 +77,9 @@ std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<con
         throw InputError("strategy " + name +
                          " is not of the paper, so the pipeline published does not have it; leave it out, or "
                          "run it with --pipeline today");
+      if (const auto reason = why_not_ignoring(input, strategy))
+        throw InputError("strategy " + name + " cannot leave out what is ignored: " + *reason +
+                         "; leave the strategy out, or --ignore and --ignore-neighbours");
       add(&strategy);
     } else {
       add_group(name);

@@ -27,7 +27,7 @@ constexpr char kReferee[] = "exact";  // judges culling, whatever test is timed
 constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 4;
 
 // Returns the command line with every default spelt out, and without the place of the result.
-std::vector<std::string> command_line(const ReplayRequest& options, bool is_model) {
+std::vector<std::string> command_line(const ReplayRequest& options, const Input& input) {
   std::vector<std::string> words = {"cscd",
                                     "run",
                                     "--scene",
@@ -54,7 +54,13 @@ std::vector<std::string> command_line(const ReplayRequest& options, bool is_mode
                                     std::to_string(options.seed),
                                     "--threads",
                                     std::to_string(options.threads)};
-  if (is_model) {
+  if (input.ignored) {
+    for (const auto& [first, second] : input.ignored->names)
+      words.insert(words.end(), {"--ignore", first + ":" + second});
+    if (input.ignored->neighbours)
+      words.insert(words.end(), {"--ignore-neighbours", std::to_string(*input.ignored->neighbours)});
+  }
+  if (input.import) {
     const std::vector<std::string> model = to_arguments(options.model.import);
     words.insert(words.end(), model.begin(), model.end());
   }
@@ -112,7 +118,8 @@ std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& ra
                                            const ReplayRequest& request) {
   const std::vector<std::size_t> regular = every_kth(range, request.time_every);
   if (request.time_contacts == 0) return regular;
-  const Prepared fastest = complete_stand_in().make(input.setup(elementary_test_named("filtered_exact")));
+  const Prepared fastest =
+      complete_stand_in().make(measured_setup(input, elementary_test_named("filtered_exact")));
   return with_contacts(regular, intervals_with_contacts(input, *fastest.detector, range),
                        request.time_contacts);
 }
@@ -176,7 +183,7 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
   if (request.strategies.empty())
     throw InputError("--strategy: " + request.scene +
                      " allows none of these; name others (cscd list strategies)");
-  replay.command = command_line(request, input.import.has_value());
+  replay.command = command_line(request, input);
 
   ChosenIntervals& intervals = replay.intervals;
   intervals.range = range;

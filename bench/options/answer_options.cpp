@@ -29,8 +29,23 @@ void add_answer_options(CLI::App& command, AnswerRequest& request) {
       .add_option("--interval-seconds", request.interval_seconds,
                   "seconds after which an interval is given up; default 60 for model files, else none")
       ->check(CLI::Range(0.01, 1e6));
+  add_ignore_options(command, request.ignored);
   add_threads_option(command, request.threads);
   add_model_options(command, request.model);
+}
+
+void add_ignore_options(CLI::App& command, IgnoreRequest& request) {
+  command
+      .add_option(
+          "--ignore", request.pairs,
+          "A:B, two bones, parts or meshes whose contacts and crossings with each other do not count;\n"
+          "* in a name stands for any letters, and A:* is A and everything; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("A:B");
+  command
+      .add_option("--ignore-neighbours", request.neighbours,
+                  "ignore bones that are at most so many joints apart, such as both sides of a knee with 1")
+      ->check(CLI::Range(0, 1000));
 }
 
 void require_sound(const AnswerRequest& request) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bench/answer/answer.h"
+#include "bench/answer/ignore.h"
 #include "bench/input/watchdog.h"
 #include "bench/options/model_options.h"
 
@@ -14,6 +15,7 @@ namespace cscd::bench {
 struct AnswerRequest {
   std::string input, elementary = "filtered_exact", frames;
   AnswerOptions answers;
+  IgnoreRequest ignored;
   std::optional<double> interval_seconds;
   int threads = 1;
   ModelOptions model;
@@ -21,6 +23,9 @@ struct AnswerRequest {
 
 // The input itself and these options. `request` must live as long as the command.
 void add_answer_options(CLI::App& command, AnswerRequest& request);
+
+// --ignore and --ignore-neighbours. `request` must live as long as the command.
+void add_ignore_options(CLI::App& command, IgnoreRequest& request);
 
 // Throws InputError where options do not go together.
 void require_sound(const AnswerRequest& request);

@@ -1,5 +1,6 @@
 #include "bench/view/html.h"
 
+#include <fstream>
 #include <stdexcept>
 
 #include "bench/view/viewer_page.h"
@@ -45,6 +46,16 @@ std::string viewer_with(const nlohmann::json& header, const Sections& sections) 
   return with_data(viewer_page(), header_element(whole) +
                                       "\n<script type=\"application/octet-stream\" id=\"arrays\">" +
                                       base64(sections.bytes()) + "</script>");
+}
+
+bool is_page_of_viewer(const std::filesystem::path& path) {
+  constexpr std::string_view kGenerator = "<meta name=\"generator\" content=\"cscd view\">";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  std::string head(500, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.starts_with("<!doctype html>") && head.find(kGenerator) != std::string::npos;
 }
 
 std::string report_with(const nlohmann::json& document) {

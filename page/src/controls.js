@@ -1,17 +1,23 @@
 // Buttons, slider and keys: each calls one method of the viewer (main.js).
 import { byId, element, isDark, radios } from "./dom.js";
+import { isOfEngine } from "./painter.js";
 
 const AXES = ["x", "y", "z", "-x", "-y", "-z"];
 
 export function makeControls(viewer) {
-  const { recording, modes } = viewer, { strategies, clip } = recording;
+  const { recording, modes } = viewer, { strategies, clip, header } = recording;
   radios(byId("strategies"), strategies.map((s, i) => [String(i), s.name]), (value) => viewer.setStrategy(Number(value)));
   byId("together-label").hidden = strategies.length < 2;
   byId("together").addEventListener("change", (event) => viewer.setTogether(event.target.checked));
-  radios(byId("modes"), modes, (value) => viewer.setMode(value));
-  makeToggle(viewer, "normals", "normalsShown");
-  if (clip.bones > 0) makeToggle(viewer, "bones", "bonesShown");
-  if (strategies.some((s) => s.observers?.length > 0)) makeToggle(viewer, "observers", "observersShown");
+  byId("strategy-row").hidden = strategies.length < 2;
+  const engine = modes.filter(([mode]) => isOfEngine(mode));
+  radios(byId("modes"), modes.filter(([mode]) => !isOfEngine(mode)), (value) => viewer.setMode(value));
+  radios(byId("engine-modes"), engine, (value) => viewer.setMode(value));
+  byId("engine").hidden = engine.length === 0;
+  byId("engine").open = header.engine_colours;
+  makeToggle(viewer, "normals", "normalsShown", "toggles");
+  if (clip.bones > 0) makeToggle(viewer, "bones", "bonesShown", "toggles");
+  if (strategies.some((s) => s.observers?.length > 0)) makeToggle(viewer, "observers", "observersShown", "engine-toggles");
   makeUp(viewer);
 
   const slider = byId("slider"), onClick = (id, act) => byId(id).addEventListener("click", act);
@@ -27,7 +33,7 @@ export function makeControls(viewer) {
   document.addEventListener("keydown", (event) => onKey(viewer, event));
 }
 
-function makeToggle(viewer, name, property) {
+function makeToggle(viewer, name, property, box) {
   const button = element("button", name);
   button.id = `show-${name}`;
   button.setAttribute("aria-pressed", String(viewer[property]));
@@ -36,15 +42,20 @@ function makeToggle(viewer, name, property) {
     button.setAttribute("aria-pressed", String(viewer[property]));
     viewer.refresh();
   });
-  byId("toggles").append(button);
+  byId(box).append(button);
 }
 
+// Which axis points up, and who says so. The button turns the picture to the next axis.
 function makeUp(viewer) {
+  const { because } = viewer.recording.header.up, note = byId("up-note");
   const button = element("button", `up: ${viewer.upName}`);
   button.id = "up";
+  button.title = because ? `because ${because}` : "";
+  note.textContent = because ? "" : `up: ${viewer.upName}, because nothing says otherwise`;
   button.addEventListener("click", () => {
     viewer.setUp(AXES[(AXES.indexOf(viewer.upName) + 1) % AXES.length]);
     button.textContent = `up: ${viewer.upName}`;
+    button.title = note.textContent = "";
   });
   byId("toggles").append(button);
 }

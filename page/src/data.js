@@ -69,6 +69,21 @@ function strategyOf(row, arrays, prefix, triangles) {
   return strategy;
 }
 
+// The least and the greatest place of every frame along x, y and z, [frames][3][2], as shares of the grid.
+function boxesOf(places, { frames, vertices }) {
+  const boxes = new Float64Array(6 * frames);
+  for (let row = 0; row < 3 * frames; ++row) {
+    let low = 65535, high = 0;
+    for (let at = row * vertices; at < (row + 1) * vertices; ++at) {
+      if (places[at] < low) low = places[at];
+      if (places[at] > high) high = places[at];
+    }
+    boxes[2 * row] = low / 65535;
+    boxes[2 * row + 1] = high / 65535;
+  }
+  return boxes;
+}
+
 // Whether a triangle's bit is set in the row of an interval.
 export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.ceil(triangles / 8) + (t >> 3)] >> (t & 7)) & 1;
 
@@ -98,18 +113,14 @@ export async function loadRecording() {
   const ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
   const endOfInterval = new Map(Array.from(arrays.interval_of_end, (interval, i) => [interval, i]));
   const side = clip.grid.step * 65535;
-  const middle = [0, 0, 0];  // between the first and the last place that occur, on the grid
-  for (let axis = 0; axis < 3; ++axis) {
-    let low = 65535, high = 0;
-    for (let f = 0; f < clip.frames; ++f)
-      for (let v = 0, at = (3 * f + axis) * clip.vertices; v < clip.vertices; ++v, ++at) {
-        if (places[at] < low) low = places[at];
-        if (places[at] > high) high = places[at];
-      }
-    middle[axis] = (low + high) / 2 / 65535;
-  }
+  const frameBoxes = boxesOf(places, clip);
+  const middle = [0, 1, 2].map((axis) => {  // between the first and the last place that occur, on the grid
+    const ends = frameBoxes.filter((_, i) => Math.floor(i / 2) % 3 === axis);
+    return (ends.reduce((a, b) => Math.min(a, b)) + ends.reduce((a, b) => Math.max(a, b))) / 2;
+  });
   return {
     header, clip, intervals, places, ends, endOfInterval, middle,
+    frameBoxes: frameBoxes.map((x, i) => x - middle[Math.floor(i / 2) % 3]),
     texts: header.texts,
     corners: arrays.corners,
     place: arrays.place,

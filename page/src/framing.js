@@ -6,13 +6,14 @@ export class Framing {
     this.recording = recording;
     this.stage = stage;
     this.marker = marker;
-    this.anchor = null;  // the vertex that the camera follows, or null for the middle of the surface
+    this.anchor = null;  // the vertex that the camera follows, null for the middle of the surface, or "none" for a camera at rest
     this.opened = false;
   }
 
   follow() { this.stage.follow(this.anchorPoint()); }
 
   anchorPoint() {
+    if (this.anchor === "none") return null;
     return this.anchor === null ? this.stage.whole.center : this.stage.surface.point(this.anchor, new THREE.Vector3());
   }
 
@@ -22,11 +23,28 @@ export class Framing {
     this.follow();
   }
 
-  // `room` is how much larger than the surface the view is.
+  // Shows the shown pose, and follows it. `room` is how much larger than the surface the view is.
   showWhole(smooth, room) {
     this.setAnchor(null);
     const direction = this.broadSide(), { center, distance } = this.stage.fit(direction, room);
     this.stage.look(center, distance, direction, smooth);
+  }
+
+  // Shows the surface of all frames, with a camera that does not move.
+  showAllTimes(smooth) {
+    this.setAnchor("none");
+    const direction = this.broadSide(), { center, distance } = this.stage.fit(direction, 1.02, undefined, this.eachCornerOfFrames());
+    this.stage.look(center, distance, direction, smooth);
+  }
+
+  // Visits the corners of the box of every frame.
+  eachCornerOfFrames() {
+    const { frameBoxes, clip } = this.recording, point = new THREE.Vector3();
+    return (take) => {
+      for (let f = 0; f < clip.frames; ++f)
+        for (let corner = 0; corner < 8; ++corner)
+          take(point.fromArray([0, 1, 2].map((axis) => frameBoxes[6 * f + 2 * axis + ((corner >> axis) & 1)])));
+    };
   }
 
   // Looks at a moment that has a place, from where least hides it.
@@ -83,23 +101,4 @@ export class Framing {
     if (direction.dot(new THREE.Vector3(0.2, 0.1, 1)) < 0) direction.negate();
     return direction.applyAxisAngle(up, 0.4).addScaledVector(up, 0.28).normalize();
   }
-}
-
-// The axis that points up. Models say y, and so do most caches. A scene in which things fall says so itself. Another one stands
-// along the longest side of its box, with the side up that holds more of the surface.
-export function upAxis({ header, clip, places }) {
-  if (header.up) return header.up;
-  if (header.kind !== "scene") return "y";
-  const sides = [0, 1, 2].map((axis) => {
-    let low = 65535, high = 0, sum = 0;
-    for (let v = 0; v < clip.vertices; ++v) {
-      const x = places[axis * clip.vertices + v];
-      low = Math.min(low, x);
-      high = Math.max(high, x);
-      sum += x;
-    }
-    return { length: high - low, heavier: sum / clip.vertices > (low + high) / 2 };
-  });
-  const order = [1, 0, 2].sort((a, b) => sides[b].length - sides[a].length);
-  return (sides[order[0]].heavier ? "" : "-") + "xyz"[order[0]];
 }

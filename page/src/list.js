@@ -43,7 +43,7 @@ export class MomentList {
       return row;
     });
     if (moments.length > MOST_ROWS) rows.push(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
-    if (moments.length === 0) rows.push(element("p", "Nothing touches. Play the clip, or look at how the method sees the surface."));
+    if (moments.length === 0) rows.push(element("p", "Nothing touches."));
     this.box.replaceChildren(...rows);
   }
 

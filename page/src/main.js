@@ -5,7 +5,7 @@ import { offerClips } from "./clips.js";
 import { makeControls } from "./controls.js";
 import { loadRecording } from "./data.js";
 import { byId, prefersDark, setDark } from "./dom.js";
-import { Framing, upAxis } from "./framing.js";
+import { Framing } from "./framing.js";
 import { MomentList } from "./list.js";
 import { Marker } from "./marker.js";
 import { momentsOf, timeOf } from "./moments.js";
@@ -28,7 +28,7 @@ class Viewer {
     this.position = 0;  // in frames
     this.pinned = null;  // the moment of a chosen contact: {interval, t, predicted}
     this.chosen = null;  // the chosen moment (moments.js), or null
-    this.upName = upAxis(recording);
+    this.upName = recording.header.up.axis;
     this.stage = new Stage(byId("canvas"), recording, this.upName, () => this.placeInset());
     this.stage.beforeDraw = (now) => this.tick(now);
     this.stage.insetBox = () => (this.together ? null : this.insetBox());
@@ -216,7 +216,7 @@ class Viewer {
       this.marker.markObservers(look.marks, s, mode, interval, pose.t, this.observersShown);
     });
     stage.setInsetPoint(this.pointOf(this.chosen));
-    byId("modes").update(mode);
+    for (const box of ["modes", "engine-modes"]) byId(box).update(mode);
     byId("strategies").update(String(this.strategy));
     byId("slider").value = String(this.position);
     const { frame, seconds } = momentOf(this.recording, this.position);
@@ -230,7 +230,9 @@ class Viewer {
     stage.requestDraw();
   }
 
+  // Where nothing touches, no moment matters more than another: all of the clip is shown, from where the camera stays.
   showWhole(smooth) {
+    if (this.moments.length === 0 && !this.together) return this.framing.showAllTimes(smooth);
     this.framing.showWhole(smooth, this.together ? 1.3 : 1.06);  // side by side, names need room
   }
 

@@ -9,9 +9,15 @@ const PAINT = CLUSTERS.map(rgb);
 // Which cover of drvbc_fast a way of colouring is about: 0 is the first.
 export const coverOf = (mode) => (mode.startsWith("cover") ? Number(mode.slice(5)) : 0);
 
+// Ways of colouring that show how the engine works, which whoever makes it wants to see.
+export const isOfEngine = (mode) => !["verdict", "place", "part", "often"].includes(mode);
+
 // The ways of colouring that a recording has something to say in, as [name, text].
 export function modesOf({ strategies, clip, place, part }) {
   const modes = [["verdict", "verdict"]], some = (what) => strategies.some(what);
+  if (new Set(place).size > 1) modes.push(["place", clip.bones > 0 ? "bone" : "part"]);
+  if (clip.bones > 0 && new Set(part).size > 1) modes.push(["part", "part"]);
+  modes.push(["often", "how often"]);
   if (some((s) => s.has_clusters)) {
     modes.push(["atomic", "atomic cluster"]);
     modes.push(["cluster", some((s) => s.has_clusters && s.covers === 1 && !s.has_patches) ? "mega cluster" : "cluster in force"]);
@@ -20,9 +26,6 @@ export function modesOf({ strategies, clip, place, part }) {
   for (const [c, text] of [[1, "second cover"], [2, "third cover"]])
     if (some((s) => s.covers > c)) modes.push([`cover${c}`, text]);
   if (some((s) => s.has_patches)) modes.push(["patch", "patch"]);
-  if (new Set(place).size > 1) modes.push(["place", clip.bones > 0 ? "bone" : "part"]);
-  if (clip.bones > 0 && new Set(part).size > 1) modes.push(["part", "part"]);
-  modes.push(["often", "how often"]);
   return modes;
 }
 

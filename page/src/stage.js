@@ -248,7 +248,7 @@ export class Stage {
     const box = this.insetBox && this.insetShown ? this.insetBox() : null;
     if (box) {
       const away = new THREE.Vector3().subVectors(camera.position, this.controls.target).normalize();
-      const { center, distance: from } = this.fit(away, 1.25, box, 2000);  // some of the vertices tell enough
+      const { center, distance: from } = this.fit(away, 1.25, box, this.eachVertex(2000));  // some of the vertices tell enough
       this.insetCamera.position.copy(center).addScaledVector(away, from);
       this.insetCamera.lookAt(center);
       this.insetCamera.near = 0.01;
@@ -269,14 +269,19 @@ export class Stage {
     if (point) setDots(this.insetDot, [point.x, point.y, point.z], [1]);
   }
 
-  // The point to look at along a direction, and the distance from it, at which the whole shown pose just fits.
-  fit(direction, margin = 1.06, pane = this.panes[0], most = Infinity) {
-    const { surface, up, recording } = this, stride = Math.max(1, Math.floor(recording.clip.vertices / most));
-    const right = new THREE.Vector3().crossVectors(up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
-    const point = new THREE.Vector3(), low = [1e9, 1e9], high = [-1e9, -1e9], axes = [right, above];
-    const each = (take) => {
+  // Visits the vertices of the shown pose, or about `most` of them.
+  eachVertex(most = Infinity) {
+    const { surface, recording } = this, stride = Math.max(1, Math.floor(recording.clip.vertices / most)), point = new THREE.Vector3();
+    return (take) => {
       for (let v = 0; v < recording.clip.vertices; v += stride) take(surface.point(v, point));
     };
+  }
+
+  // The point to look at along a direction, and the distance from it, at which all points that `each` visits just fit.
+  fit(direction, margin = 1.06, pane = this.panes[0], each = this.eachVertex()) {
+    const { surface, up } = this;
+    const right = new THREE.Vector3().crossVectors(up, direction).normalize(), above = new THREE.Vector3().crossVectors(direction, right);
+    const low = [1e9, 1e9], high = [-1e9, -1e9], axes = [right, above];
     each((x) => axes.forEach((axis, i) => {
       const along = x.dot(axis);
       low[i] = Math.min(low[i], along);

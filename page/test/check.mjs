@@ -48,6 +48,32 @@ try {
   if (option("--text")) require(said.includes(option("--text")), `the verdict does not say "${option("--text")}": ${said}`);
   await picture("opening");
 
+  // A page without contact shows the surface of every frame, and its camera stays.
+  if (await page.evaluate(() => window.cscd.moments.length === 0)) {
+    const outside = await page.evaluate(() => {
+      const { stage, recording } = window.cscd, point = stage.camera.position.clone();
+      let most = 0, seen = 0;
+      for (let f = 0; f <= recording.intervals; ++f) {
+        window.cscd.seek(f);
+        stage.draw();
+        for (let v = 0; v < recording.clip.vertices; v += 7) {
+          stage.surface.point(v, point).project(stage.camera);
+          const reach = Math.max(Math.abs(point.x), Math.abs(point.y));
+          most = Math.max(most, reach);
+          ++seen;
+        }
+      }
+      window.cscd.open();
+      return { most, seen };
+    });
+    require(outside.seen > 0 && outside.most <= 1, `the surface leaves the picture: it reaches ${outside.most} of the way to its border`);
+    require(outside.most > 0.5, `the surface is small: it reaches ${outside.most} of the way to the border`);
+    await settle();
+  }
+  const said_up = await page.evaluate(() => window.cscd.recording.header.up);
+  require((await page.textContent("#up")) === `up: ${said_up.axis}`, "the page does not show what is up");
+  require((await page.textContent("#up-note")) === (said_up.because ? "" : `up: ${said_up.axis}, because nothing says otherwise`), "the page does not say why that is up");
+
   const first = await look();
   require(new Set(first).size > 20, "the canvas is empty");
   require(different(first, await look()) === 0, "one view gives two pictures");
@@ -84,7 +110,11 @@ try {
   const scripts = times.map((t) => t.cpu).sort((a, b) => a - b);
 
   // Every way of colouring shows colours of its own.
-  const modes = await page.locator("#modes button").all();
+  // Those that show the engine are folded away, unless a strategy was named.
+  const engine = await page.evaluate(() => ({ open: document.getElementById("engine").open, asked: window.cscd.recording.header.engine_colours }));
+  require(engine.open === engine.asked, `the engine's colours are ${engine.open ? "shown" : "hidden"}`);
+  if (!engine.open && (await page.locator("#engine").isVisible())) await page.click("#engine summary");
+  const modes = await page.locator("#modes button, #engine-modes button").all();
   const pictures = [];
   for (const mode of modes) {
     await mode.click();
