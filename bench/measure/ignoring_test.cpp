@@ -63,7 +63,7 @@ struct Subject {
 // others carry it too.
 TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
   std::size_t ignored = 0, kept = 0, rows = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Subject subject(seed);
     const Strategy& oracle = strategy_named("brute");
     ContactSet expected = subject.ask(oracle.make(subject.input.setup(exact())));
@@ -82,7 +82,7 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
     }
     rows = std::max(rows, names.size());
   }
-  EXPECT_GT(ignored, 500u);
+  EXPECT_GT(ignored, 200u);
   EXPECT_GT(kept, 500u);
   EXPECT_GE(rows, 7u);
 }
