@@ -1,7 +1,9 @@
 """Programs of commits: what scripts that compare commits build and run."""
+import difflib
 import fcntl
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -27,7 +29,43 @@ def commit_named(name):
         # With the dates of HEAD the same changes give the same commit, so that an interrupted call finds its measurements.
         date = git("show", "-s", "--format=%cI", "HEAD")
         return git("stash", "create", GIT_AUTHOR_DATE=date, GIT_COMMITTER_DATE=date) or git("rev-parse", "HEAD")
-    return git("rev-parse", "--verify", f"{name}^{{commit}}")
+    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--verify", "--quiet", "--end-of-options", f"{name}^{{commit}}"],
+                          capture_output=True, text=True)
+    if done.returncode:
+        refuse(f"commit {name}: this repository has no commit of that name; `git log --oneline` lists them")
+    return done.stdout.strip()
+
+
+def names_of(names):
+    """The names between commas; refuses an empty one."""
+    split = names.split(",")
+    if not all(split):
+        refuse(f"{names!r}: holds an empty name; write names with single commas between them")
+    return split
+
+
+def require_names(commit, what, names, known):
+    """Refuses names that a commit does not know, with the closest of those that it does."""
+    for name in names:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            refuse(f"{what} {name}: {commit[:10]} has none of that name" + (f"; did you mean {near[0]}?" if near else "")
+                   + f"; it has {', '.join(sorted(known))}")
+
+
+def scenes_of(commit):
+    """The names of the scenes that a commit holds."""
+    return {pathlib.PurePath(path).stem for path in git("ls-tree", "--name-only", commit, "scenes/").splitlines()
+            if path.endswith(".json")}
+
+
+def strategies_of(commit):
+    """The names and groups in a commit's catalogue of strategies."""
+    catalogue = git("ls-tree", "--name-only", commit, "bench/rows/catalogue.cpp", "bench/catalogue.cpp").splitlines()
+    if not catalogue:
+        refuse(f"commit {commit[:10]}: has no catalogue of strategies, so it cannot be measured")
+    rows = git("show", f"{commit}:{catalogue[0]}").partition("playing(")[0]  # behind them are look-ups and their errors
+    return set(re.findall(r'"(\w+)"', rows))
 
 
 class Build:
