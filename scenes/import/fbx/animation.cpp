@@ -123,21 +123,24 @@ class ClipReader {
   }
 
   // Refuses layers of rotations whose result is not determined. A rotation has many sets of angles, and
-  // which of them a layer by channel finds above a layer that combines rotations as maps is not known. In
-  // orders other than XYZ, Maya and the FBX SDK do not agree on what such a layer does.
+  // which of them a layer by channel finds above a layer that combines rotations as maps is not known. Where
+  // such a layer overrides with a weight, in an order other than XYZ, Maya and ufbx do not agree on the
+  // rotation; where it adds, they do.
   static void require_order(const Layered<3>& turns, bool xyz) {
-    bool as_maps = false;
+    bool as_maps = false, mixes = false;
     for (const Layer<3>& layer : turns.above) {
       if (as_maps && !layer.as_maps)
         throw InputError(
             "a layer adds angles by channel above a layer whose rotations are combined by layer; bake the "
             "animation to one layer on export");
       as_maps |= layer.as_maps;
+      mixes |= layer.as_maps && layer.blend == LayerBlend::mix;
     }
-    if (as_maps && !xyz && axes_of(turns) > 1)
+    if (mixes && !xyz && axes_of(turns) > 1)
       throw InputError(
-          "layers of rotations are combined by layer in an order other than XYZ; bake the animation to one "
-          "layer on export");
+          "a layer overrides rotations with a weight and by layer, in an order of axes other than XYZ; bake "
+          "the "
+          "animation to one layer on export");
   }
 
   // Returns the number of axes about which the layers turn. Rotations about a single axis commute.
