@@ -2,6 +2,7 @@
 // The target decides by itself whether the input is right. What is right is answered as all pairs of features
 // say, and what is wrong is refused with one line.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -12,9 +13,9 @@
 
 #include "baselines/brute.h"
 #include "core/elementary/catalogue.h"
+#include "fuzz/numbers.h"
 
 #include "cscd/cscd.h"
-#include "fuzz/numbers.h"
 
 namespace cscd::fuzz {
 namespace {
