@@ -19,9 +19,8 @@ std::string version_text() {
   std::string out = "cscd " + version_number() + "\n";
   out += "commit: " + get("commit") + (build.at("dirty").get<bool>() ? " with changes" : "") + "\n";
   out += "compiler: " + get("compiler") + ", " + get("build_type") + ", flags " + get("flags") + "\n";
-  out += "instruction set: " + get("instruction_set") +
-         " (CSCD_ISA=" + std::string(to_string(engine_set())) + "); the program is built for " +
-         build_info::kInstructionSets + "\n";
+  out += "instruction set: " + get("instruction_set") + " (CSCD_ISA=" + std::string(to_string(engine_set())) +
+         "); the program is built for " + build_info::kInstructionSets + "\n";
   out += "libraries:";
   for (const auto& [name, number] : build.at("libraries").items())
     out += " " + name + " " + number.get<std::string>() + ",";
