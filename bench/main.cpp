@@ -30,8 +30,8 @@ int complain(const std::string& text) {
 }
 
 #ifdef CSCD_ALL_ISAS
-// This program is compiled for plain x86-64, and programs beside it for wider instruction sets. Runs the widest
-// that the machine has in the place of this process, and returns if that is this program.
+// This program is compiled for plain x86-64, and programs beside it for wider instruction sets. Runs the
+// widest that the machine has in the place of this process, and returns if that is this program.
 void run_for_this_machine(char** argv) {
   using enum cscd::InstructionSet;
   const cscd::InstructionSet chosen = cscd::chosen_among(std::array{avx512, avx2, baseline});

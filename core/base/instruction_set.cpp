@@ -57,9 +57,8 @@ InstructionSet chosen_among(std::span<const InstructionSet> built) {
       return std::ranges::find(built, set) != built.end() && machine_has(set);
     });
     if (best == std::end(kAll))
-      throw InputError(
-          "this build has kernels for " + names_of(built) +
-          " alone, which this machine lacks; build without CSCD_NATIVE, or on this machine");
+      throw InputError("this build has kernels for " + names_of(built) +
+                       " alone, which this machine lacks; build without CSCD_NATIVE, or on this machine");
     return *best;
   }
   const std::string what = "CSCD_ISA=" + std::string(asked);

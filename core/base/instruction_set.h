@@ -3,8 +3,8 @@
 #include <span>
 #include <string_view>
 
-// The instruction sets for which the kernels of core/geometry are written. A build compiles the engine for all
-// of them (scripts/cmake/instruction_sets.cmake) and chooses when the program runs, or for one of them.
+// The instruction sets for which the kernels of core/geometry are written. A build compiles the engine for
+// all of them (scripts/cmake/instruction_sets.cmake) and chooses when the program runs, or for one of them.
 namespace cscd {
 
 // In the order in which they are preferred. `baseline` is what every processor of the architecture has.
@@ -20,8 +20,9 @@ inline constexpr InstructionSet kCompiledFor =
     InstructionSet::baseline;
 #endif
 
-// Returns the instruction set for which the engine of this program is compiled. In a build for all sets, files
-// outside of the engine are compiled for plain x86-64 (kCompiledFor), whatever the engine is compiled for.
+// Returns the instruction set for which the engine of this program is compiled. In a build for all sets,
+// files outside of the engine are compiled for plain x86-64 (kCompiledFor), whatever the engine is compiled
+// for.
 InstructionSet engine_set();
 
 // Returns the name of the enumerator.
