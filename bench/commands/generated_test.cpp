@@ -28,8 +28,7 @@ class Generated : public testing::Test {
   }
   // The one line of a refusal; nothing where the file is accepted.
   std::string refusal(const std::string& file, std::vector<std::string> options = {}) {
-    options.insert(options.begin(),
-                   {"query", file, "--frames", "0:1", "--json", scratch / "q.json", "--force"});
+    options.insert(options.begin(), {"query", file, "--fps", "1", "--json", scratch / "q.json", "--force"});
     const Outcome asked = cscd(options);
     EXPECT_EQ(std::count(asked.errors.begin(), asked.errors.end(), '\n'), asked.code == 2) << asked.errors;
     return asked.code == 2 ? asked.errors : std::string();

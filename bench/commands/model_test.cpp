@@ -160,8 +160,8 @@ TEST_P(LargeCharacters, AreAnsweredWithinTwoSeconds) {
   for (int i = 0; i < 3; ++i)
     for (const std::string strategy : {"drvbc_fast", "base"}) {
       const double before = seconds_of_children();
-      const Outcome asked = cscd({"query", file, "--frames", "0:1", "--strategy", strategy, "--json",
-                                  scratch / (strategy + ".json"), "--force"});
+      const Outcome asked = cscd({"query", file, "--clip", "0", "--frames", "0:1", "--strategy", strategy,
+                                  "--json", scratch / (strategy + ".json"), "--force"});
       ASSERT_EQ(asked.code, 0) << asked.errors;
       const double seconds = seconds_of_children() - before;
       least[strategy] = std::min(least.try_emplace(strategy, seconds).first->second, seconds);
@@ -371,7 +371,7 @@ TEST(Models, DefectiveOnesSayWhy) {
   const Scratch scratch;
   const auto refusal = [&](const std::string& name, const std::string& strategy) {
     const Outcome outcome = cscd({"query", model(name), "--component", "auto", "--strategy", strategy,
-                                  "--frames", "0:1", "--json", scratch / "out.json", "--force"});
+                                  "--fps", "1", "--json", scratch / "out.json", "--force"});
     return outcome.code == 2 ? outcome.errors : std::string();
   };
   EXPECT_NE(refusal("nonclosed/spider.glb", "drvbc").find("non-manifold edges: 8, boundary edges: 4"),

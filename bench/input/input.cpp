@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 
@@ -32,6 +33,8 @@ std::unique_ptr<scenes::ClipSource> clip_of(const scenes::Scene& scene, const st
 constexpr double kSameFrame = 1e-3;
 
 std::string shown(double value) {
+  if (value == std::floor(value) && std::abs(value) < 1e15)
+    return std::to_string(static_cast<std::int64_t>(value));
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
