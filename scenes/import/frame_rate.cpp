@@ -16,12 +16,15 @@ constexpr double kSameMoment = 1e-4;
 // By how much of a gap a key may miss its place, and by which share two rates may differ and be the same.
 constexpr double kMiss = 0.02, kSameRate = 3e-4;
 
-template <class Keys>
-void add_times(const Keys& keys, std::vector<double>& times) {
-  for (const auto& key : keys) times.push_back(key.time);
+template <class Value>
+void add_times(const std::vector<Key<Value>>& keys, std::vector<double>& times) {
+  for (const Key<Value>& key : keys) times.push_back(key.time);
 }
-void add_times(const Components& components, std::vector<double>& times) {
-  for (const Curve& curve : components.axis) add_times(curve, times);
+template <std::size_t Width>
+void add_times(const Layered<Width>& layered, std::vector<double>& times) {
+  for (const Curve& curve : layered.base.axis) add_times(curve.keys, times);
+  for (const Layer<Width>& layer : layered.above)
+    for (const Curve& curve : layer.values.axis) add_times(curve.keys, times);
 }
 
 // Returns all moments at which a clip has keys, in order.
@@ -36,7 +39,7 @@ std::vector<double> moments_of(const Animation& animation) {
     add_times(channel.angles.degrees, times);
   }
   for (const MorphChannel& morph : animation.morphs)
-    for (const Curve& weights : morph.weights) add_times(weights, times);
+    for (const Layered<1>& weights : morph.weights) add_times(weights, times);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end(), [](double a, double b) { return b - a < kSameMoment; }),
               times.end());
