@@ -17,6 +17,7 @@
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/record/record.h"
+#include "bench/record/shortfall.h"
 #include "bench/rows/catalogue.h"
 #include "bench/shards/cell_run.h"
 #include "bench/shards/code_version.h"
@@ -41,28 +42,42 @@ struct RunOptions {
   CellLimits limits;
 };
 
+constexpr std::size_t kListedFailures = 5;  // of a row; the record holds all
+
+unsigned long long count(std::uint64_t number) {
+  return number;
+}
+
 void print(const VerificationRecord& v, const std::string& timed) {
-  std::printf("verified on %zu intervals against %s with the elementary test %s, in %.1f s\n",
-              v.intervals.size(), v.reference.c_str(), v.elementary.c_str(), v.seconds);
+  std::printf("intervals verified against %s with the elementary test %s, in %.1f s: %zu\n",
+              v.reference.c_str(), v.elementary.c_str(), v.seconds, v.intervals.size());
+  std::printf("  with contacts: %zu%s\n", v.colliding.size(),
+              v.colliding.empty() ? ", so a row could fail by inventing one alone" : "");
+  if (!v.unembedded.empty())
+    std::printf("  with a start that is not embedded, as the surface crosses itself: %zu\n",
+                v.unembedded.size());
+  std::size_t width = 0;
+  for (const VerifiedStrategy& s : v.strategies) width = std::max(width, s.name.size());
   for (const VerifiedStrategy& s : v.strategies) {
-    std::printf("  %-8s %-13s %s, kept %llu of %llu contacts; contact promised on %llu intervals\n",
-                s.name.c_str(), s.guarantee.c_str(), s.failures.empty() ? "ok" : "FAILED",
-                static_cast<unsigned long long>(s.contacts_found),
-                static_cast<unsigned long long>(s.contacts_expected),
-                static_cast<unsigned long long>(s.intervals_promised));
-    for (const std::string& failure : s.failures) std::printf("    %s\n", failure.c_str());
+    const std::optional<Shortfall> lacking = shortfall(v, s);
+    std::printf("  %-*s  %-17s %-6s  %s\n", static_cast<int>(width), s.name.c_str(), s.guarantee.c_str(),
+                s.failures.empty() ? "ok" : "FAILED",
+                lacking ? shortfall_text(*lacking).c_str() : "kept all contacts");
+    for (std::size_t i = 0; i < std::min(kListedFailures, s.failures.size()); ++i)
+      std::printf("    %s\n", s.failures[i].c_str());
+    if (s.failures.size() > kListedFailures)
+      std::printf("    and %zu more, which the record holds\n", s.failures.size() - kListedFailures);
   }
   for (const auto& own : v.own_tests)
-    std::printf("  %s asks its own test: %s contacts missed, %s invented, times off by at most %s\n",
-                own["strategy"].get<std::string>().c_str(), own["misses"].dump().c_str(),
-                own["false_alarms"].dump().c_str(), own["largest_time_error"].dump().c_str());
+    std::printf(
+        "  %s asks its own test: %s contacts missed, %s invented, times off by at most %s of an interval\n",
+        own["strategy"].get<std::string>().c_str(), own["misses"].dump().c_str(),
+        own["false_alarms"].dump().c_str(), own["largest_time_error"].dump().c_str());
   std::printf(
-      "  %s on %llu feature pairs: %llu misses, %llu false alarms, %llu undecided, times off by at most "
-      "%.2g\n",
-      timed.c_str(), static_cast<unsigned long long>(v.accuracy_tests),
-      static_cast<unsigned long long>(v.accuracy.misses),
-      static_cast<unsigned long long>(v.accuracy.false_alarms),
-      static_cast<unsigned long long>(v.accuracy.undecided), v.accuracy.largest_time_error);
+      "the timed test %s on %llu feature pairs: %llu contacts missed, %llu invented, %llu undecided, "
+      "times off by\nat most %.2g of an interval\n",
+      timed.c_str(), count(v.accuracy_tests), count(v.accuracy.misses), count(v.accuracy.false_alarms),
+      count(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
 // Names the strategies that would have run if nothing were ignored.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "bench/record/shortfall.h"
 #include "bench/rows/catalogue.h"
 
 namespace cscd::bench {
@@ -189,11 +190,7 @@ std::string short_text(double value) {
 }
 
 bool is_marked(const Record& record, const std::string& strategy) {
-  const auto row = std::ranges::find(record.verification.strategies, strategy, &VerifiedStrategy::name);
-  if (row == record.verification.strategies.end()) return false;
-  const bool needs_embedded_start = row->guarantee == kFirstContact || row->guarantee == kAllFromEmbedded;
-  return row->contacts_found < row->contacts_expected ||
-         (needs_embedded_start && !record.verification.unembedded.empty());
+  return shortfall(record, strategy).has_value();
 }
 
 Measured measure(const ordered_json& definition, const Record& record) {

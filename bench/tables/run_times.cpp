@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "bench/record/shortfall.h"
 #include "bench/tables/quantity.h"
 
 namespace cscd::bench {
@@ -25,12 +26,25 @@ std::string beside_reference(const std::string& strategy, const Record& record) 
   return text;
 }
 
+// A run that only shows that everything works (--smoke) has times, too.
+std::string too_few(const Record& record) {
+  constexpr std::size_t kLeastRepetitions = 5;  // bench/METHODOLOGY.md
+  for (const StrategyRecord& strategy : record.strategies) {
+    if (strategy.ms.empty()) continue;
+    const std::size_t repetitions = strategy.ms.begin()->second.size();
+    if (repetitions < kLeastRepetitions)
+      return "times are of " + std::to_string(repetitions) + " repetitions of " +
+             std::to_string(record.timed_intervals.size()) +
+             " intervals, too few to conclude anything from\n";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string run_times_text(const Record& record) {
   std::size_t width = 0;
   std::string rows;
-  bool any_marked = false;
   for (const StrategyRecord& strategy : record.strategies) width = std::max(width, strategy.name.size());
   for (const StrategyRecord& strategy : record.strategies) {
     const Measured total = median_query(strategy.name, record);
@@ -38,11 +52,10 @@ std::string run_times_text(const Record& record) {
     char text[128];
     std::snprintf(text, sizeof text, "  %-*s %10.4g ms%s", static_cast<int>(width), strategy.name.c_str(),
                   *total.value, total.marked ? "*" : "");
-    any_marked = any_marked || total.marked;
     rows += text + beside_reference(strategy.name, record) + "\n";
   }
-  if (any_marked) rows += std::string(kMarkNote) + "\n";
-  return rows.empty() ? "" : "median total of an interval, with refit:\n" + rows;
+  if (rows.empty()) return "";
+  return too_few(record) + "median total of an interval, with refit:\n" + rows + shortfall_note({&record, 1});
 }
 
 }  // namespace cscd::bench
