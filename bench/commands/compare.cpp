@@ -12,7 +12,7 @@ namespace {
 
 struct CompareOptions {
   std::string before, after, lane = "all", json, markdown;
-  bool force = false;
+  bool force = false, show_all = false;
 };
 
 void compare_sides(const CompareOptions& options) {
@@ -24,7 +24,7 @@ void compare_sides(const CompareOptions& options) {
       compare(before, after, options.lane == "counters" ? Lane::counters : Lane::all);
   if (json) json->commit(json_text(comparison_json(comparison)));
   if (markdown) markdown->commit(comparison_markdown(comparison));
-  std::fputs(comparison_text(comparison).c_str(), stdout);
+  std::fputs(comparison_text(comparison, options.show_all).c_str(), stdout);
   if (const int status = exit_status(comparison.verdict()); status != 0) throw ExitStatus{status};
 }
 
@@ -45,7 +45,9 @@ void add_compare(CLI::App& app) {
       "time has changed only where the interval over processes excludes no change, the change passes the "
       "floors, and\n"
       "all pairings of layouts agree in its sign. Times need six processes a side, measured in turns, as\n"
-      "scripts/bench_commits does; each line says which change it could have seen.\n\n"
+      "scripts/bench_commits does; each line says which change it could have seen. Where no verdict about "
+      "times is\n"
+      "possible, the times of both sides are shown all the same, with the reason.\n\n"
       "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest "
       "is not worse.");
   command->add_option("old", options->before, "records of the old program: files or folders, commas between")
@@ -56,6 +58,7 @@ void add_compare(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--json", options->json, "where the comparison goes as JSON; - is standard output");
   command->add_option("--markdown", options->markdown, "where it goes as Markdown, for a pull request");
+  command->add_flag("--all", options->show_all, "show every finding and every time, scene by scene");
   command->add_flag("--force", options->force, "replace files that exist");
   command->callback([options] { compare_sides(*options); });
 }

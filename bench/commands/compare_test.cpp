@@ -27,6 +27,7 @@ TEST_F(CompareCommand, EndsWithWhatItFound) {
   EXPECT_EQ(run("cscd compare old.json old.json --lane counters").status, 0);
   const Ran one = run("cscd compare old.json old.json");
   EXPECT_EQ(one.status, 2);
+  EXPECT_EQ(one.out.find("verdict: not comparable: small: times not compared: "), 0u) << one.out;
   EXPECT_NE(one.out.find("small: times not compared: the smaller side has 1 process"), std::string::npos)
       << one.out;
   put_changed("dearer.json", R"(s/"bvot": \[[0-9]*/&9/)");
@@ -58,8 +59,11 @@ TEST_F(CompareCommand, RefusesWhatIsNoRecord) {
 
 TEST_F(CompareCommand, ConvertsForOtherTools) {
   ASSERT_EQ(run("cscd convert old.json --to google-benchmark --json g.json").status, 0);
-  const Ran same = run("cscd compare g.json g.json --lane counters");
-  EXPECT_EQ(same.status, 0) << same.out << same.errors;
+  const Ran same = run("cscd compare g.json g.json");
+  EXPECT_NE(same.out.find("times of a whole query without a verdict"), std::string::npos) << same.out;
+  const Ran nothing = run("cscd compare g.json g.json --lane counters");
+  EXPECT_EQ(nothing.status, 2) << "such a file has times alone";
+  EXPECT_NE(nothing.out.find("share no answer and no counter"), std::string::npos) << nothing.out;
   const Ran action = run("cscd convert old.json --to github-action --json - | cat");
   EXPECT_EQ(ordered_json::parse(action.out).at(0).at("unit"), "ms");
 }

@@ -30,6 +30,7 @@ void compare_scene(const std::string& scene, const Records& before, const Record
     out.refusals.push_back(
         {scene, "digests of contacts",
          "other pipelines: the elementary tests are " + one.elementary + " and " + other.elementary});
+  out.compared_answers += compared_answers(one, other);
   append(out.truth, compare_truth(before, after));
   if (const std::string why = counters_refused(one, other); !why.empty()) {
     out.refusals.push_back({scene, "counters", why});
@@ -39,8 +40,24 @@ void compare_scene(const std::string& scene, const Records& before, const Record
     append(out.footprint, compare_footprints(before, after));
   }
   if (out.lane != Lane::all) return;
-  if (const std::string why = times_refused(before, after); !why.empty())
+  if (const std::string why = times_refused(before, after); !why.empty()) {
     out.refusals.push_back({scene, "times", why});
+    if (one.scene.digest == other.scene.digest) {
+      append(out.unjudged_times, unjudged_times(scene, before, after));
+    } else {  // of other frames, so nothing is to be read from how they differ
+      append(out.unjudged_times, unjudged_times(scene, before, {}));
+      append(out.unjudged_times, unjudged_times(scene, {}, after));
+    }
+  }
+}
+
+// A scene that one side alone has.
+void compare_with_none(const std::string& scene, std::span<const Record> before,
+                       std::span<const Record> after, Comparison& out) {
+  out.only_in_one.push_back(scene + ": only in " + (before.empty() ? "NEW" : "OLD"));
+  if (out.lane != Lane::all) return;
+  for (UnjudgedTime& time : unjudged_times(scene, before, after))
+    out.unjudged_times.push_back(std::move(time));
 }
 
 // After all refusals are known, since how wide an interval is depends on how many there are.
@@ -82,10 +99,13 @@ Comparison compare(const Side& before, const Side& after, Lane lane) {
     if (const auto same = after.scenes.find(scene); same != after.scenes.end())
       compare_scene(scene, records, same->second, out);
     else
-      out.only_in_one.push_back(scene + ": only in OLD");
+      compare_with_none(scene, records, {}, out);
   for (const auto& [scene, records] : after.scenes)
-    if (!before.scenes.contains(scene)) out.only_in_one.push_back(scene + ": only in NEW");
-  if (out.scenes.empty()) out.refusals.push_back({"", "everything", "OLD and NEW have no scene in common"});
+    if (!before.scenes.contains(scene)) compare_with_none(scene, {}, records, out);
+  if (out.scenes.empty())
+    out.refusals.push_back({"", "everything", "OLD and NEW have no scene in common"});
+  else if (out.compared_answers + out.compared_counts == 0 && lane == Lane::counters)
+    out.refusals.push_back({"", "everything", "the records share no answer and no counter"});
   if (lane == Lane::all) compare_all_times(before, after, out);
   return out;
 }

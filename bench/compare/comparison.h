@@ -38,10 +38,11 @@ struct Comparison {
   std::vector<std::string> scenes;       // compared
   std::vector<std::string> only_in_one;  // scenes and rows that one side does not have
   std::vector<TruthFinding> truth;
-  std::size_t compared_counts = 0;
+  std::size_t compared_answers = 0, compared_counts = 0;
   std::vector<CounterFinding> counters;
   std::vector<FootprintFinding> footprint;
   std::vector<TimeFinding> times;
+  std::vector<UnjudgedTime> unjudged_times;  // of the scenes without a verdict about times
   std::vector<MeanFinding> means;
   std::vector<Refusal> refusals;
 
@@ -55,7 +56,8 @@ int exit_status(ComparisonVerdict verdict);
 std::string_view to_string(ComparisonVerdict verdict);
 
 nlohmann::ordered_json comparison_json(const Comparison& comparison);
-std::string comparison_text(const Comparison& comparison);
+// For a terminal: the verdict and its reason first, then what differs most. `all` leaves nothing out.
+std::string comparison_text(const Comparison& comparison, bool all = false);
 // For a pull request: the verdict, what changed, and all times folded away.
 std::string comparison_markdown(const Comparison& comparison);
 

@@ -1,5 +1,6 @@
 #include "bench/compare/comparison.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -42,6 +43,56 @@ TEST(Comparison, OfEqualRecordsFindsNothing) {
   EXPECT_TRUE(same.counters.empty());
   EXPECT_EQ(same.compared_counts, 3u * 2 * 4);  // rows, costs and other counters, intervals
   EXPECT_EQ(exit_status(same.verdict()), 0);
+}
+
+// What was not compared is not called the same.
+TEST(Comparison, OfOtherScenesComparesNothing) {
+  Record other = small_record();
+  other.scene.name = "foot";
+  const Comparison none = compare(one_side(small_record()), one_side(other), Lane::all);
+  EXPECT_EQ(exit_status(none.verdict()), 2);
+  const std::string text = comparison_text(none);
+  EXPECT_EQ(
+      text.find("verdict: not comparable: everything not compared: OLD and NEW have no scene in common\n"),
+      0u)
+      << text;
+  EXPECT_NE(text.find("truth: not compared\ncounters: not compared\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("the same"), std::string::npos) << text;
+  ASSERT_EQ(none.unjudged_times.size(), 6u);
+  EXPECT_EQ(none.unjudged_times[0].scene, "hand") << "of OLD";
+  EXPECT_TRUE(none.unjudged_times[0].before_ms && !none.unjudged_times[0].after_ms);
+  EXPECT_EQ(schema_violation(comparison_json(none), "compare.schema.json"), "");
+}
+
+TEST(Comparison, ShowsTimesThatItCannotJudge) {
+  Record slower = small_record();
+  for (auto& repetition : slower.strategies[0].ms["traversal"])
+    for (double& ms : repetition) ms *= 2;
+  const Comparison one = compare(one_side(small_record()), one_side(slower), Lane::all);
+  EXPECT_EQ(exit_status(one.verdict()), 2);
+  ASSERT_EQ(one.unjudged_times.size(), 3u);
+  EXPECT_NEAR(*one.unjudged_times[0].after_ms / *one.unjudged_times[0].before_ms, 1.9,
+              0.01);  // refit takes 1 of 10
+  EXPECT_NE(comparison_text(one).find("\n  slow "), std::string::npos) << comparison_text(one);
+  EXPECT_NE(comparison_text(one).find("\n  swift†"), std::string::npos) << "found 2 of 3 contacts";
+}
+
+// Of each kind of finding the gravest are shown, and the rest is there for who asks.
+TEST(Comparison, FitsOnAScreen) {
+  const auto many = [](Record& record) {
+    for (int i = 0; i < 40; ++i) {
+      record.strategies.push_back(record.strategies[0]);
+      record.strategies.back().name = "row" + std::to_string(i);
+    }
+  };
+  Record before = small_record(), changed = small_record();
+  many(before), many(changed);
+  for (std::size_t i = 0; i < changed.strategies.size(); ++i) changed.strategies[i].counts["bvot"][0] += i;
+  const Comparison comparison = compare(one_side(before), one_side(changed), Lane::all);
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  EXPECT_LT(lines(comparison_text(comparison)), 32) << comparison_text(comparison);
+  EXPECT_GT(lines(comparison_text(comparison, true)), 80);
+  EXPECT_NE(comparison_text(comparison).find("hand, row39 "), std::string::npos) << "the largest change";
 }
 
 TEST(Comparison, FindsEveryLossOfTruth) {

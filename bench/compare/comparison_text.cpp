@@ -1,15 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "bench/compare/comparison.h"
 #include "bench/compare/stage_samples.h"
 #include "bench/output/markdown.h"
+#include "bench/record/shortfall.h"
 
 namespace cscd::bench {
 namespace {
 
-using nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string percent(double share) {
@@ -43,6 +46,10 @@ std::string with_row(const std::string& scene, const std::string& row) {
   return row.empty() ? scene : scene + ", " + row;
 }
 
+std::string mark(bool of_shortfall) {
+  return of_shortfall ? std::string(kShortfallMark) : "";
+}
+
 bool is_reported(const TimeFinding& time) {
   return time.change != Change::same;
 }
@@ -60,11 +67,83 @@ std::string tally(const std::vector<Finding>& findings) {
   return out;
 }
 
+std::string counted(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::size_t losses(const Comparison& c) {
+  return static_cast<std::size_t>(std::ranges::count_if(c.truth, &TruthFinding::is_lost));
+}
+
 std::string truth_line(const Comparison& c) {
-  const auto lost = std::count_if(c.truth.begin(), c.truth.end(), [](const auto& f) { return f.is_lost; });
-  return lost > 0          ? std::to_string(lost) + " losses"
-         : c.truth.empty() ? "the same"
-                           : "nothing lost; " + std::to_string(c.truth.size()) + " changes";
+  const std::string of = " in " + counted(c.compared_answers, "answer");
+  if (losses(c) > 0) return std::to_string(losses(c)) + (losses(c) == 1 ? " loss" : " losses") + of;
+  if (c.compared_answers == 0) return "not compared";
+  return c.truth.empty() ? "the same" + of : "nothing lost" + of + "; " + counted(c.truth.size(), "change");
+}
+
+std::string counters_line(const Comparison& c) {
+  return c.compared_counts == 0
+             ? "not compared"
+             : tally(c.counters) + " of " + std::to_string(c.compared_counts) + " compared";
+}
+
+std::string footprint_line(const Comparison& c) {
+  return c.scenes.empty() ? "not compared" : tally(c.footprint);
+}
+
+// "a, b, c and 9 more".
+std::string few(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 4;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i) out += (i > 0 ? ", " : "") + names[i];
+  return names.size() <= kMost ? out : out + " and " + std::to_string(names.size() - kMost) + " more";
+}
+
+// Refusals for the same reason in one line each.
+std::vector<std::string> refusal_lines(const Comparison& c) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  for (const Refusal& refusal : c.refusals) {
+    const std::string text = refusal.what + " not compared: " + refusal.reason;
+    auto group = std::ranges::find(groups, text, &std::pair<std::string, std::vector<std::string>>::first);
+    if (group == groups.end()) group = groups.insert(groups.end(), {text, {}});
+    if (!refusal.scene.empty()) group->second.push_back(refusal.scene);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [text, scenes] : groups)
+    lines.push_back((scenes.empty() ? "" : few(scenes) + ": ") + text);
+  return lines;
+}
+
+// The verdict, and what speaks for it most.
+std::string verdict_line(const Comparison& c) {
+  const std::string verdict(to_string(c.verdict()));
+  const auto worse = [](const auto& findings) {
+    return static_cast<std::size_t>(
+        std::ranges::count(findings, Change::worse, [](const auto& f) { return f.change; }));
+  };
+  switch (c.verdict()) {
+    case ComparisonVerdict::less_true: {
+      const TruthFinding& first = *std::ranges::find_if(c.truth, &TruthFinding::is_lost);
+      return verdict + ": " + with_row(first.scene, first.row) + ": " + first.text +
+             (losses(c) > 1 ? "; and " + std::to_string(losses(c) - 1) + " more" : "");
+    }
+    case ComparisonVerdict::worse: {
+      std::string what;
+      const auto add = [&](std::size_t count, const std::string& one) {
+        if (count > 0) what += (what.empty() ? ": " : ", ") + counted(count, one);
+      };
+      add(worse(c.counters), "counter");
+      add(worse(c.footprint), "footprint");
+      add(worse(c.times), "time");
+      return verdict + what + (c.refusals.empty() ? "" : "; not everything could be compared");
+    }
+    case ComparisonVerdict::not_comparable:
+      return verdict + ": " + refusal_lines(c).front();
+    case ComparisonVerdict::nothing_worse:
+      break;
+  }
+  return verdict;
 }
 
 // What this comparison could have seen.
@@ -87,9 +166,21 @@ std::string power_line(const Comparison& c) {
          percent(*std::max_element(floors.begin(), floors.end())) + ").";
 }
 
+// What is worse first, and then by how much OLD and NEW differ, as a share.
+template <class Finding>
+std::vector<Finding> gravest_first(std::vector<Finding> findings) {
+  const auto rank = [](const Finding& f) {
+    const double before = static_cast<double>(f.before), after = static_cast<double>(f.after);
+    const double least = std::min(before, after), most = std::max(before, after);
+    return std::pair(f.change != Change::worse, most > 0 ? least / most : 1);
+  };
+  std::ranges::stable_sort(findings, {}, rank);
+  return findings;
+}
+
 Rows counter_rows(const Comparison& c) {
   Rows rows;
-  for (const CounterFinding& f : c.counters)
+  for (const CounterFinding& f : gravest_first(c.counters))
     rows.push_back({with_row(f.scene, f.row), f.counter, std::to_string(f.before), std::to_string(f.after),
                     std::to_string(f.intervals_that_differ) + " of " + std::to_string(f.intervals),
                     std::string(to_string(f.change))});
@@ -99,7 +190,7 @@ const std::vector<std::string> kCounterHead = {"scene and row", "counter", "OLD"
 
 Rows footprint_rows(const Comparison& c) {
   Rows rows;
-  for (const FootprintFinding& f : c.footprint)
+  for (const FootprintFinding& f : gravest_first(c.footprint))
     rows.push_back({with_row(f.scene, f.row), f.what, number(f.before), number(f.after),
                     change_text(f.after / f.before), std::string(to_string(f.change))});
   return rows;
@@ -110,9 +201,9 @@ Rows time_rows(const Comparison& c, bool reported_only) {
   Rows rows;
   for (const TimeFinding& f : c.times) {
     if (reported_only && !is_reported(f)) continue;
-    rows.push_back({with_row(f.scene, f.row), f.stage, number(f.before_ms), number(f.after_ms),
-                    interval_text(f.ratio), percent(f.smallest_detectable), percent(f.noise_floor),
-                    std::to_string(f.agreeing) + " of " + std::to_string(f.pairings),
+    rows.push_back({with_row(f.scene, f.row) + mark(f.of_shortfall), f.stage, number(f.before_ms),
+                    number(f.after_ms), interval_text(f.ratio), percent(f.smallest_detectable),
+                    percent(f.noise_floor), std::to_string(f.agreeing) + " of " + std::to_string(f.pairings),
                     is_reported(f) ? std::string(to_string(f.change)) : f.withheld});
   }
   return rows;
@@ -128,6 +219,80 @@ Rows mean_rows(const Comparison& c) {
   return rows;
 }
 const std::vector<std::string> kMeanHead = {"row", "scenes", "geometric mean of the change"};
+
+std::string number_or_dash(const std::optional<double>& value) {
+  return value ? number(*value) : "-";
+}
+
+Rows unjudged_rows(const Comparison& c) {
+  Rows rows;
+  for (const UnjudgedTime& t : c.unjudged_times)
+    rows.push_back({with_row(t.scene, t.row) + mark(t.of_shortfall), number_or_dash(t.before_ms),
+                    number_or_dash(t.after_ms),
+                    t.before_ms && t.after_ms ? change_text(*t.after_ms / *t.before_ms) : ""});
+  return rows;
+}
+const std::vector<std::string> kUnjudgedHead = {"scene and row", "OLD, ms", "NEW, ms", "differs by"};
+
+// What the whole queries of a row take, over the scenes: those of either side, and those that both have.
+struct RowTimes {
+  std::string row;
+  std::vector<double> before = {}, after = {}, shared_before = {}, shared_after = {}, ratios = {};
+  bool of_shortfall = false;
+};
+
+// The rows that most scenes have come first.
+std::vector<RowTimes> unjudged_by_row(const Comparison& c) {
+  std::vector<RowTimes> rows;
+  for (const UnjudgedTime& t : c.unjudged_times) {
+    auto row = std::ranges::find(rows, t.row, &RowTimes::row);
+    if (row == rows.end()) row = rows.insert(rows.end(), RowTimes{.row = t.row});
+    row->of_shortfall = row->of_shortfall || t.of_shortfall;
+    if (t.before_ms) row->before.push_back(*t.before_ms);
+    if (t.after_ms) row->after.push_back(*t.after_ms);
+    if (!t.before_ms || !t.after_ms) continue;
+    row->shared_before.push_back(*t.before_ms), row->shared_after.push_back(*t.after_ms);
+    row->ratios.push_back(*t.after_ms / *t.before_ms);
+  }
+  std::ranges::stable_sort(rows, std::greater(),
+                           [](const RowTimes& row) { return row.before.size() + row.after.size(); });
+  return rows;
+}
+
+double geometric_mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+// Of rows that both sides timed on the same scenes.
+Rows unjudged_means(const std::vector<RowTimes>& all) {
+  Rows rows;
+  for (const RowTimes& row : all)
+    if (!row.ratios.empty())
+      rows.push_back({row.row + mark(row.of_shortfall), std::to_string(row.ratios.size()),
+                      number(geometric_mean(row.shared_before)), number(geometric_mean(row.shared_after)),
+                      change_text(geometric_mean(row.ratios)),
+                      change_text(*std::ranges::min_element(row.ratios)) + " to " +
+                          change_text(*std::ranges::max_element(row.ratios))});
+  return rows;
+}
+const std::vector<std::string> kUnjudgedMeanHead = {"row",     "scenes",     "OLD, ms",
+                                                    "NEW, ms", "differs by", "in single scenes"};
+
+// Where the sides share no scene, so that their times cannot be told from each other's scenes.
+Rows unshared_means(const std::vector<RowTimes>& all) {
+  const auto mean_text = [](const std::vector<double>& values) {
+    return values.empty() ? "-" : number(geometric_mean(values));
+  };
+  Rows rows;
+  for (const RowTimes& row : all)
+    rows.push_back({row.row + mark(row.of_shortfall), mean_text(row.before),
+                    std::to_string(row.before.size()), mean_text(row.after),
+                    std::to_string(row.after.size())});
+  return rows;
+}
+const std::vector<std::string> kUnsharedHead = {"row", "OLD, ms", "scenes", "NEW, ms", "scenes"};
 
 // Columns of a plain text, each as wide as its widest cell.
 std::string plain_table(const std::vector<std::string>& head, const Rows& rows) {
@@ -151,49 +316,76 @@ std::string plain_table(const std::vector<std::string>& head, const Rows& rows) 
   return out;
 }
 
-std::string plain_or_nothing(const std::vector<std::string>& head, const Rows& rows) {
-  return rows.empty() ? "" : plain_table(head, rows);
+// A table of at most so many rows; nothing without rows.
+std::string plain_table(const std::vector<std::string>& head, Rows rows, std::size_t most) {
+  if (rows.empty()) return "";
+  rows.resize(std::min(most, rows.size()));
+  return plain_table(head, rows);
 }
 
-std::string refusal_text(const Refusal& refusal) {
-  return (refusal.scene.empty() ? "" : refusal.scene + ": ") + refusal.what +
-         " not compared: " + refusal.reason;
+// ", of which 3 follow", where a table is cut.
+std::string cut_text(std::size_t count, std::size_t most) {
+  return count > most ? ", of which " + std::to_string(most) + " follow" : "";
 }
 
-ordered_json interval_json(const Estimate& ratio) {
-  return {ratio.low, ratio.high};
+std::string unjudged_text(const Comparison& c, bool all, std::size_t most) {
+  if (c.unjudged_times.empty()) return "";
+  const std::string title = "times of a whole query without a verdict, milliseconds an interval";
+  if (all) return title + "\n" + plain_table(kUnjudgedHead, unjudged_rows(c));
+  const std::vector<RowTimes> by_row = unjudged_by_row(c);
+  const Rows means = unjudged_means(by_row);
+  if (means.empty())
+    return title + ", of other scenes on either side" + cut_text(by_row.size(), most) + "\n" +
+           plain_table(kUnsharedHead, unshared_means(by_row), most);
+  return title + cut_text(means.size(), most) + "\n" + plain_table(kUnjudgedMeanHead, means, most);
+}
+
+std::string shortfall_line(const Comparison& c) {
+  const bool marked = std::ranges::any_of(c.times, &TimeFinding::of_shortfall) ||
+                      std::ranges::any_of(c.unjudged_times, &UnjudgedTime::of_shortfall);
+  return marked ? std::string(kShortfallMark) +
+                      " keeps fewer contacts than a complete row, or promises nothing on some intervals\n"
+                : "";
 }
 
 }  // namespace
 
-std::string comparison_text(const Comparison& c) {
-  std::string out = "OLD " + commit_text(c.old_commit, c.old_dirty) + "\nNEW " +
-                    commit_text(c.new_commit, c.new_dirty) + "\n\ntruth: " + truth_line(c) + "\n";
-  for (const TruthFinding& f : c.truth)
-    out += (f.is_lost ? "  LOST  " : "  ") + with_row(f.scene, f.row) + ": " + f.text + "\n";
-  out += "counters: " + tally(c.counters) + " of " + std::to_string(c.compared_counts) + " compared\n" +
-         plain_or_nothing(kCounterHead, counter_rows(c));
-  out += "memory and instructions: " + tally(c.footprint) + "\n" +
-         plain_or_nothing(kFootprintHead, footprint_rows(c));
+std::string comparison_text(const Comparison& c, bool all) {
+  // Rows of a table where not all are shown. Two full records then fit on a screen.
+  const std::size_t some = all ? SIZE_MAX : 3, most = all ? SIZE_MAX : 12;
+  std::string out = "verdict: " + verdict_line(c) + "\nOLD " + commit_text(c.old_commit, c.old_dirty) +
+                    "\nNEW " + commit_text(c.new_commit, c.new_dirty) + "\n\ntruth: " + truth_line(c) +
+                    cut_text(c.truth.size(), some) + "\n";
+  std::vector<TruthFinding> truth = c.truth;
+  std::ranges::stable_sort(truth, std::greater(), &TruthFinding::is_lost);
+  for (std::size_t i = 0; i < std::min(some, truth.size()); ++i)
+    out += (truth[i].is_lost ? "  LOST  " : "  ") + with_row(truth[i].scene, truth[i].row) + ": " +
+           truth[i].text + "\n";
+  out += "counters: " + counters_line(c) + cut_text(c.counters.size(), some) + "\n" +
+         plain_table(kCounterHead, counter_rows(c), some);
+  out += "memory and instructions: " + footprint_line(c) + cut_text(c.footprint.size(), some) + "\n" +
+         plain_table(kFootprintHead, footprint_rows(c), some);
   if (!c.times.empty())
     out += "times: " + tally(c.times) + " of " + std::to_string(c.times.size()) + " stages\n" +
-           plain_table(kTimeHead, time_rows(c, false));
+           plain_table(kTimeHead, time_rows(c, !all), most);
   if (const std::string power = power_line(c); !power.empty()) out += power + "\n";
-  out += plain_or_nothing(kMeanHead, mean_rows(c));
-  for (const Refusal& refusal : c.refusals) out += refusal_text(refusal) + "\n";
-  for (const std::string& one : c.only_in_one) out += "not compared: " + one + "\n";
-  return out + "\nverdict: " + std::string(to_string(c.verdict())) + "\n";
+  out += plain_table(kMeanHead, mean_rows(c), most) + unjudged_text(c, all, most) + shortfall_line(c);
+  for (const std::string& line : refusal_lines(c)) out += line + "\n";
+  if (all)
+    for (const std::string& one : c.only_in_one) out += "not compared: " + one + "\n";
+  else if (!c.only_in_one.empty())
+    out += "not compared: " + few(c.only_in_one) + "\n";
+  return out + (all ? "" : "--all shows every finding, and every time scene by scene\n");
 }
 
 std::string comparison_markdown(const Comparison& c) {
-  std::string out = "## Verdict: " + std::string(to_string(c.verdict())) + "\n\nOLD is " +
-                    commit_text(c.old_commit, c.old_dirty) + ", NEW is " +
-                    commit_text(c.new_commit, c.new_dirty) + ".\n\n- truth: " + truth_line(c) +
-                    "\n- counters: " + tally(c.counters) + " of " + std::to_string(c.compared_counts) +
-                    " compared\n- memory and instructions: " + tally(c.footprint) + "\n";
+  std::string out =
+      "## Verdict: " + verdict_line(c) + "\n\nOLD is " + commit_text(c.old_commit, c.old_dirty) +
+      ", NEW is " + commit_text(c.new_commit, c.new_dirty) + ".\n\n- truth: " + truth_line(c) +
+      "\n- counters: " + counters_line(c) + "\n- memory and instructions: " + footprint_line(c) + "\n";
   if (!c.times.empty())
     out += "- times: " + tally(c.times) + " of " + std::to_string(c.times.size()) + " stages\n";
-  for (const Refusal& refusal : c.refusals) out += "- " + refusal_text(refusal) + "\n";
+  for (const std::string& line : refusal_lines(c)) out += "- " + line + "\n";
   for (const std::string& one : c.only_in_one) out += "- not compared: " + one + "\n";
   if (!c.truth.empty()) {
     out += "\n### Truth\n\n";
@@ -211,71 +403,9 @@ std::string comparison_markdown(const Comparison& c) {
     out += "\n<details><summary>All times</summary>\n\n" + markdown_table(kTimeHead, time_rows(c, false)) +
            "\n</details>\n";
   section("Over the scenes", kMeanHead, mean_rows(c));
+  section("Times without a verdict", kUnjudgedHead, unjudged_rows(c));
+  if (const std::string line = shortfall_line(c); !line.empty()) out += "\n" + line;
   return out;
-}
-
-ordered_json comparison_json(const Comparison& c) {
-  const auto side = [](const std::string& commit, bool dirty) {
-    return ordered_json{{"commit", commit}, {"dirty", dirty}};
-  };
-  ordered_json truth = ordered_json::array(), counters = ordered_json::array(),
-               footprint = ordered_json::array(), times = ordered_json::array(),
-               means = ordered_json::array(), refusals = ordered_json::array();
-  for (const TruthFinding& f : c.truth)
-    truth.push_back({{"scene", f.scene}, {"row", f.row}, {"text", f.text}, {"lost", f.is_lost}});
-  for (const CounterFinding& f : c.counters)
-    counters.push_back({{"scene", f.scene},
-                        {"row", f.row},
-                        {"counter", f.counter},
-                        {"old", f.before},
-                        {"new", f.after},
-                        {"intervals", f.intervals},
-                        {"intervals_that_differ", f.intervals_that_differ},
-                        {"change", to_string(f.change)}});
-  for (const FootprintFinding& f : c.footprint)
-    footprint.push_back({{"scene", f.scene},
-                         {"row", f.row},
-                         {"what", f.what},
-                         {"old", f.before},
-                         {"new", f.after},
-                         {"change", to_string(f.change)}});
-  for (const TimeFinding& f : c.times)
-    times.push_back({{"scene", f.scene},
-                     {"row", f.row},
-                     {"stage", f.stage},
-                     {"pairs", f.pairs},
-                     {"old_ms", f.before_ms},
-                     {"new_ms", f.after_ms},
-                     {"ratio", f.ratio.value},
-                     {"interval", interval_json(f.ratio)},
-                     {"floor", f.floor},
-                     {"noise_floor", f.noise_floor},
-                     {"smallest_detectable", f.smallest_detectable},
-                     {"pairings", f.pairings},
-                     {"pairings_that_agree", f.agreeing},
-                     {"change", to_string(f.change)},
-                     {"withheld", f.withheld}});
-  for (const MeanFinding& f : c.means)
-    means.push_back({{"row", f.row},
-                     {"scenes", f.scenes},
-                     {"ratio", f.ratio.value},
-                     {"interval", interval_json(f.ratio)}});
-  for (const Refusal& f : c.refusals)
-    refusals.push_back({{"scene", f.scene}, {"what", f.what}, {"reason", f.reason}});
-  return {{"schema", kComparisonSchema},
-          {"verdict", to_string(c.verdict())},
-          {"lane", c.lane == Lane::counters ? "counters" : "all"},
-          {"old", side(c.old_commit, c.old_dirty)},
-          {"new", side(c.new_commit, c.new_dirty)},
-          {"scenes", c.scenes},
-          {"only_in_one", c.only_in_one},
-          {"truth", std::move(truth)},
-          {"counts_compared", c.compared_counts},
-          {"counters", std::move(counters)},
-          {"footprint", std::move(footprint)},
-          {"times", std::move(times)},
-          {"geometric_means", std::move(means)},
-          {"not_compared", std::move(refusals)}};
 }
 
 }  // namespace cscd::bench

@@ -9,6 +9,7 @@
 #include "bench/compare/side.h"
 #include "bench/compare/stage_samples.h"
 #include "bench/output/data.h"
+#include "bench/record/shortfall.h"
 
 namespace cscd::bench {
 namespace {
@@ -217,7 +218,36 @@ std::vector<TimeFinding> compare_times(std::span<const Record> before, std::span
   std::vector<TimeFinding> out;
   for_each_stage(before, after, [&](const std::string& row, const std::string& stage, const Paired& all) {
     out.push_back(judged(all, after.front().scene.name, row, stage, comparisons));
+    out.back().of_shortfall = shortfall(after.front(), row).has_value();
   });
+  return out;
+}
+
+std::vector<UnjudgedTime> unjudged_times(const std::string& scene, std::span<const Record> before,
+                                         std::span<const Record> after) {
+  std::vector<std::size_t> shared;
+  if (!before.empty() && !after.empty()) shared = shared_timed(before, after);
+  const auto typical = [&](std::span<const Record> side, const std::string& row) -> std::optional<double> {
+    std::vector<double> of_processes;
+    for (const Record& record : side) {
+      const StrategyRecord* strategy = record.strategy(row);
+      if (strategy == nullptr) continue;
+      const ProcessTimes times = stage_times(record, *strategy, std::string(kTotal),
+                                             shared.empty() ? record.timed_intervals : shared);
+      if (!times.empty()) of_processes.push_back(process_time(times));
+    }
+    if (of_processes.empty()) return std::nullopt;
+    return median(of_processes);
+  };
+  std::vector<UnjudgedTime> out;
+  for (const std::span<const Record> side : {after, before})
+    for (const StrategyRecord& row :
+         side.empty() ? std::span<const StrategyRecord>() : side.front().strategies) {
+      if (std::ranges::find(out, row.name, &UnjudgedTime::row) != out.end()) continue;
+      UnjudgedTime time{scene, row.name, typical(before, row.name), typical(after, row.name),
+                        shortfall(side.front(), row.name).has_value()};
+      if (time.before_ms || time.after_ms) out.push_back(std::move(time));
+    }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,14 @@ struct TimeFinding {
   Change change = Change::same;
   // Why a change that the interval shows is not reported; empty where it is, or where there is none.
   std::string withheld = {};
+  bool of_shortfall = false;  // whether the row answers less than a complete row (bench/record/shortfall.h)
+};
+
+// The whole query of a row where no verdict about its times is possible. A side without such times has none.
+struct UnjudgedTime {
+  std::string scene, row;
+  std::optional<double> before_ms, after_ms;  // an interval, medians over the processes
+  bool of_shortfall = false;  // whether the row answers less than a complete row (bench/record/shortfall.h)
 };
 
 // The geometric mean over scenes of what the whole query of a row takes, after over before.
@@ -52,6 +61,11 @@ std::size_t count_times(std::span<const Record> before, std::span<const Record> 
 // Why times of two sides cannot be compared: no times, other machines, another pipeline, too few processes,
 // not measured in turns. Empty where they can.
 std::string times_refused(std::span<const Record> before, std::span<const Record> after);
+
+// Returns what the whole queries of each row took on the intervals that each side timed; on those that both
+// timed, where there are any. Either side may be empty.
+std::vector<UnjudgedTime> unjudged_times(const std::string& scene, std::span<const Record> before,
+                                         std::span<const Record> after);
 
 std::vector<MeanFinding> mean_over_scenes(std::span<const TimeFinding> times, std::size_t comparisons);
 

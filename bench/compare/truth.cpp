@@ -144,19 +144,34 @@ void compare_from_embedded(const Record& before, const StrategyRecord& old_row, 
                    false});
 }
 
-void compare_rows(const Record& before, const Record& after, Findings& out) {
+// Calls `each` with the two rows of every name that both records have answers of, to the same questions.
+template <class Each>
+void for_each_answering_row(const Record& before, const Record& after, const Each& each) {
   if (before.scene.digest != after.scene.digest || before.elementary != after.elementary) return;
   for (const StrategyRecord& new_row : after.strategies) {
     const StrategyRecord* old_row = before.strategy(new_row.name);
-    if (old_row == nullptr || old_row->digests.empty() || new_row.digests.empty()) continue;
-    if (old_row->guarantee == kComplete && new_row.guarantee != kComplete)
-      out.push_back({after.scene.name, new_row.name, "promises less: " + new_row.guarantee, true});
-    if (has_own_test(before, new_row.name) || has_own_test(after, new_row.name)) continue;
-    if (old_row->guarantee == kComplete && new_row.guarantee == kComplete)
-      compare_complete(before, *old_row, after, new_row, out);
-    else if (new_row.guarantee == kFirstContact || new_row.guarantee == kAllFromEmbedded)
-      compare_from_embedded(before, *old_row, after, new_row, out);
+    if (old_row != nullptr && !old_row->digests.empty() && !new_row.digests.empty()) each(*old_row, new_row);
   }
+}
+
+enum class Judged { not_by_answers, as_complete, from_embedded };
+
+Judged judged(const Record& before, const StrategyRecord& old_row, const Record& after,
+              const StrategyRecord& new_row) {
+  if (has_own_test(before, new_row.name) || has_own_test(after, new_row.name)) return Judged::not_by_answers;
+  if (old_row.guarantee == kComplete && new_row.guarantee == kComplete) return Judged::as_complete;
+  return new_row.guarantee == kFirstContact || new_row.guarantee == kAllFromEmbedded ? Judged::from_embedded
+                                                                                     : Judged::not_by_answers;
+}
+
+void compare_rows(const Record& before, const Record& after, Findings& out) {
+  for_each_answering_row(before, after, [&](const StrategyRecord& old_row, const StrategyRecord& new_row) {
+    if (old_row.guarantee == kComplete && new_row.guarantee != kComplete)
+      out.push_back({after.scene.name, new_row.name, "promises less: " + new_row.guarantee, true});
+    const Judged how = judged(before, old_row, after, new_row);
+    if (how == Judged::as_complete) compare_complete(before, old_row, after, new_row, out);
+    if (how == Judged::from_embedded) compare_from_embedded(before, old_row, after, new_row, out);
+  });
 }
 
 bool answers_alike(const Record& one, const Record& other) {
@@ -170,6 +185,15 @@ bool answers_alike(const Record& one, const Record& other) {
 }
 
 }  // namespace
+
+std::size_t compared_answers(const Record& before, const Record& after) {
+  const std::size_t intervals = shared_intervals(before.counted_intervals, after.counted_intervals).size();
+  std::size_t count = 0;
+  for_each_answering_row(before, after, [&](const StrategyRecord& old_row, const StrategyRecord& new_row) {
+    if (judged(before, old_row, after, new_row) != Judged::not_by_answers) count += intervals;
+  });
+  return count;
+}
 
 std::vector<TruthFinding> compare_truth(std::span<const Record> before, std::span<const Record> after) {
   Findings out;

@@ -29,4 +29,7 @@ struct TruthFinding {
 // contacts of the reference they found.
 std::vector<TruthFinding> compare_truth(std::span<const Record> before, std::span<const Record> after);
 
+// How many answers of the two records were compared for this: one a row and counted interval that both have.
+std::size_t compared_answers(const Record& before, const Record& after);
+
 }  // namespace cscd::bench
