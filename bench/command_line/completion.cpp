@@ -25,6 +25,8 @@ std::string quoted(const std::string& text) {
 // The words that may stand for an option's value, as an argument of the shell; empty where any file may.
 std::string words_of(const OptionRow& option) {
   if (!option.choices.empty()) return quoted(joined(option.choices, " "));
+  if (option.positional && option.names.front() == "what")  // of `list`
+    return "\"scenes strategies tests shapes effects families scene-file $(_cscd_names '')\"";
   const std::string section = section_of(option);
   return section.empty() ? "" : "\"$(_cscd_names " + section + ")\"";
 }

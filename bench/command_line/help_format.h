@@ -2,13 +2,24 @@
 
 #include <CLI/App.hpp>
 #include <string>
+#include <utility>
 
 namespace cscd::bench {
 
-// As CLI11's own, but the list of commands has the first paragraph of each command's description alone; the
-// rest is in the command's own help.
+// As CLI11's own, but a command's help begins with the first paragraph of its description and the usage; the
+// rest of the description follows. The list of commands has the first paragraphs alone.
 class HelpFormat : public CLI::Formatter {
  public:
+  std::string make_description(const CLI::App* command) const override {
+    const std::string text = command->get_description();
+    return text.substr(0, text.find("\n\n")) + "\n";
+  }
+  std::string make_usage(const CLI::App* command, std::string name) const override {
+    const std::string text = command->get_description();
+    const std::size_t rest = text.find("\n\n");
+    return CLI::Formatter::make_usage(command, std::move(name)) +
+           (rest == std::string::npos ? "" : text.substr(rest + 1) + "\n");
+  }
   std::string make_subcommand(const CLI::App* command) const override {
     std::string text = command->get_description();
     text.erase(std::min(text.find("\n\n"), text.size()));

@@ -139,11 +139,49 @@ TEST_F(CommandLine, ListsNamesAndFaults) {
   EXPECT_EQ(run("cscd list scenes --names").out, "broken\nsmall\n");
   const Ran listed = run("cscd list scenes");
   EXPECT_EQ(listed.status, 0);
-  EXPECT_NE(listed.out.find("broken\n    fault: "), std::string::npos) << listed.out;
-  EXPECT_NE(listed.out.find("vertices: 82"), std::string::npos);
+  EXPECT_NE(listed.out.find("  broken  FAULT: "), std::string::npos) << listed.out;
+  EXPECT_NE(listed.out.find("  small   160 triangles, 6 frames. A chain falls.\n"), std::string::npos)
+      << listed.out;
+  EXPECT_NE(run("cscd list small").out.find("  vertices: 82\n"), std::string::npos);
   EXPECT_EQ(run("cscd query small --json /dev/null").status, 0) << "breaks nothing else";
   const Ran all = run("cscd run --scene all --json records");
   expect_refused(all, "broken.json: is not JSON");
+}
+
+TEST_F(CommandLine, ListsEverythingInALineEach) {
+  const Ran all = run("cscd list");
+  EXPECT_EQ(all.status, 0) << all.errors;
+  std::istringstream lines(all.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u) << line;
+  EXPECT_NE(all.out.find("\n  base "), std::string::npos) << all.out;
+  const Ran twist = run("cscd list twist");
+  EXPECT_NE(twist.out.find("turns  rows of 2 numbers; unit frame, turn; required\n"), std::string::npos)
+      << twist.out;
+  expect_refused(run("cscd list twits"), "did you mean twist?");
+  expect_refused(run("cscd list --markdown"), "scene-file");
+}
+
+// The page comes from the rows by which scene files are read. To write it anew:
+// cscd list scene-file --markdown > scenes/README.md
+TEST_F(CommandLine, HasThePageOfSceneFiles) {
+  std::ifstream file(scenes::scenes_folder() / "README.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  EXPECT_EQ(run("cscd list scene-file --markdown").out, page.str());
+  EXPECT_NE(run("cscd list scene-file").out.find("  frames    whole number; 2 to 100000000; required\n"),
+            std::string::npos);
+}
+
+// Whoever asks for help learns within ten lines what the command does and how it is called.
+TEST_F(CommandLine, SaysFirstWhatEachCommandDoes) {
+  std::istringstream commands(run("cscd help | sed -n '/^Subcommands:/,$s/^  \\([a-z]*\\) .*/\\1/p'").out);
+  std::size_t seen = 0;
+  for (std::string command; std::getline(commands, command); ++seen) {
+    const std::string head = run("cscd " + command + " --help | head -10").out;
+    EXPECT_NE(head.find("Usage:"), std::string::npos) << command << "\n" << head;
+    EXPECT_TRUE(std::isupper(static_cast<unsigned char>(head.front()))) << command << "\n" << head;
+  }
+  EXPECT_GT(seen, 20u);
 }
 
 TEST_F(CommandLine, TakesASceneFileFromAnyPath) {

@@ -1,6 +1,7 @@
 #include "scenes/catalog/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -20,6 +21,50 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 16 << 20;
 
+constexpr SceneField kFrames{.name = "frames",
+                             .type = "whole number",
+                             .meaning = "how many frames the scene has; frame 0 is the shape at rest",
+                             .least = 2,
+                             .most = 100'000'000};
+constexpr SceneField kSubsteps{
+    .name = "substeps",
+    .type = "whole number",
+    .meaning = "into how many steps a frame is divided for effects that run in substeps",
+    .least = 1,
+    .most = 100'000};
+constexpr SceneField kFields[] = {
+    {.name = "schema", .type = "text", .meaning = "cscd.scene/1"},
+    {.name = "story",
+     .type = "text",
+     .meaning = "what happens, in two sentences, with the units of the scene"},
+    {.name = "base",
+     .type = "text",
+     .meaning =
+         "name of a scene, beside the file or in the folder of scenes, whose members this file has where it "
+         "does not give them itself; objects are merged (RFC 7396)",
+     .required = false},
+    {.name = "patch",
+     .type = "list of objects",
+     .meaning = "changes at places of the base, such as /effects/0/weight (RFC 6902); needs a base",
+     .required = false},
+    {.name = "shape", .type = "object", .meaning = "name of a shape and the shape's parameters"},
+    kFrames,
+    kSubsteps,
+    {.name = "effects",
+     .type = "list of objects",
+     .meaning = "for each effect its name and its parameters, in the order in which effects run"},
+    {.name = "up",
+     .type = "text",
+     .meaning = "axis that points up: x, y, z, -x, -y or -z; without it, against the gravity of its effects",
+     .required = false},
+    {.name = "expected",
+     .type = "object",
+     .meaning =
+         "vertices, triangles, bones and the digest of all frames, which cscd compares with what it makes; "
+         "`cscd scene accept FILE` writes them",
+     .required = false},
+};
+
 // Reads one object of the file, with the object's place for error texts.
 class Reader {
  public:
@@ -35,6 +80,9 @@ class Reader {
     if (!at(key).is_string()) throw InputError(where_ + ": " + key + " must be a text");
     return at(key).get<std::string>();
   }
+  std::size_t count(const SceneField& field) const {
+    return count(std::string(field.name).c_str(), field.least, field.most);
+  }
   std::size_t count(const char* key, std::size_t least, std::size_t most) const {
     const Json& value = at(key);
     if (!value.is_number_unsigned() || value.get<std::size_t>() < least || value.get<std::size_t>() > most)
@@ -42,7 +90,8 @@ class Reader {
                        " to " + std::to_string(most));
     return value.get<std::size_t>();
   }
-  void only(std::initializer_list<std::string_view> known) const {
+  template <class Names>
+  void only(const Names& known) const {
     for (const auto& [key, value] : json_.items())
       if (std::find(known.begin(), known.end(), key) == known.end())
         throw InputError(where_ + ": " + key + " is unknown; remove it");
@@ -149,7 +198,7 @@ Json with_base(Json json, const std::string& where, const fs::path& folder) {
 Expected read_expected(const Json& json, const std::string& where) {
   constexpr std::size_t most = std::size_t{1} << 28;
   const Reader reader(json, where);
-  reader.only({"vertices", "triangles", "bones", "digest"});
+  reader.only(std::array<std::string_view, 4>{"vertices", "triangles", "bones", "digest"});
   Expected expected;
   if (json.contains("vertices")) expected.vertices = reader.count("vertices", 1, most);
   if (json.contains("triangles")) expected.triangles = reader.count("triangles", 1, most);
@@ -175,6 +224,10 @@ std::optional<fs::path> nearest_scenes(fs::path place) {
 }
 
 }  // namespace
+
+std::span<const SceneField> scene_fields() {
+  return kFields;
+}
 
 std::optional<fs::path> installed_scenes() {
   std::error_code error;
@@ -208,7 +261,11 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
                   const fs::path& folder) {
   Json json = with_base(parse_json(text, where), where, folder);
   const Reader reader(json, where);
-  reader.only({"schema", "story", "shape", "frames", "substeps", "effects", "up", "expected"});
+  if (json.contains("patch"))
+    throw InputError(where + ": its patch changes a base, and none is named; add base or remove patch");
+  std::vector<std::string_view> known;
+  for (const SceneField& field : kFields) known.push_back(field.name);
+  reader.only(known);
   if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");
 
   Scene scene;
@@ -217,8 +274,8 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
   const Reader shape(reader.at("shape"), where + ", shape");
   scene.shape = shape.text("name");
   scene.shape_parameters = to_parameters(shape.json(), where + ", shape " + scene.shape, "name");
-  scene.frames = reader.count("frames", 2, 100'000'000);
-  scene.substeps = static_cast<int>(reader.count("substeps", 1, 100'000));
+  scene.frames = reader.count(kFrames);
+  scene.substeps = static_cast<int>(reader.count(kSubsteps));
 
   if (!reader.at("effects").is_array()) throw InputError(where + ": effects must be a list");
   for (const Json& item : reader.at("effects")) {

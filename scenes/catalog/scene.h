@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,15 @@ struct Scene {
   Expected expected;
   std::string recipe;  // everything that the frames depend on, in canonical text
 };
+
+// One member of a scene file. `type` is a JSON type in words.
+struct SceneField {
+  std::string_view name, type, meaning;
+  bool required = true;
+  std::size_t least = 0, most = 0;  // range of a whole number
+};
+// All members that a scene file may have; parse_scene goes by them.
+std::span<const SceneField> scene_fields();
 
 // An entry of list_scenes(): the facts that a scene file states about its scene.
 struct SceneSummary {

@@ -291,6 +291,9 @@ TEST_F(Catalogue, TakesFromItsBaseWhatASceneDoesNotSay) {
   EXPECT_EQ(load_scene("variant").expected.vertices, base.expected.vertices);
 
   const auto file = (root / "scenes" / "variant.json").string();
+  put("variant", R"({"patch": []})");
+  EXPECT_NE(message([] { load_scene("variant"); }).find("changes a base, and none is named"),
+            std::string::npos);
   put("variant", R"({"base": "small", "patch": [{"op": "replace", "path": "/effects/9/drag", "value": 1}]})");
   EXPECT_NE(message([] { load_scene("variant"); }).find("its patch (RFC 6902) does not fit"),
             std::string::npos);

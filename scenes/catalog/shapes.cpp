@@ -20,8 +20,7 @@ std::span<const ShapeRow> shapes() {
 
 Shape make_shape(std::string_view name, const Parameters& parameters) {
   const ShapeRow& row = shape_row(name, parameters);
-  check(parameters, row.parameters);
-  return row.make(parameters);
+  return row.make(checked(parameters, row.parameters));
 }
 
 const ShapeRow& shape_row(std::string_view name, const Parameters& parameters) {

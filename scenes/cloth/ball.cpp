@@ -80,9 +80,18 @@ Shape ball(const BallParameters& p) {
 
 ShapeRow ball_row() {
   static const ParameterRow rows[] = {
-      {"parts", ParameterKind::integer, "parts of each edge of the icosahedron", true, 1, 2000},
-      {"radius", ParameterKind::number, "of the ball", true, 1e-9, 1e9},
-      {"centre", ParameterKind::vector, "of the ball"},
+      {.name = "parts",
+       .kind = ParameterKind::integer,
+       .meaning = "parts of each edge of the icosahedron",
+       .least = 1,
+       .most = 2000},
+      {.name = "radius",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "radius of the ball",
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "centre", .kind = ParameterKind::vector, .unit = "length", .meaning = "centre of the ball"},
   };
   return {
       "ball", "geodesic ball, closed and without bones", rows,

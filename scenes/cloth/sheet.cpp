@@ -51,12 +51,21 @@ Shape sheet(const SheetParameters& p) {
 
 ShapeRow sheet_row() {
   static const ParameterRow rows[] = {
-      {"cells", ParameterKind::integer, "edges of a row", true, 1, 1e5},
-      {"strips", ParameterKind::integer, "strips of triangles, an even number", true, 2, 1e5},
-      {"edge", ParameterKind::number, "length of an edge", true, 1e-9, 1e9},
-      {"centre", ParameterKind::vector, "middle of the sheet"},
-      {"u", ParameterKind::vector, "direction of the rows"},
-      {"v", ParameterKind::vector, "side to which the rows follow each other"},
+      {.name = "cells", .kind = ParameterKind::integer, .meaning = "edges of a row", .least = 1, .most = 1e5},
+      {.name = "strips",
+       .kind = ParameterKind::integer,
+       .meaning = "strips of triangles, an even number",
+       .least = 2,
+       .most = 1e5},
+      {.name = "edge",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "length of an edge",
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "centre", .kind = ParameterKind::vector, .unit = "length", .meaning = "middle of the sheet"},
+      {.name = "u", .kind = ParameterKind::vector, .meaning = "direction of the rows"},
+      {.name = "v", .kind = ParameterKind::vector, .meaning = "side to which the rows follow each other"},
   };
   return {
       "sheet", "flat sheet of equilateral triangles, open and without bones", rows,

@@ -145,19 +145,46 @@ void add_skirt(const SkirtParameters& p, Shape& body, const std::string& where) 
 
 ShapeRow skirted_limbed_sphere_row() {
   static const ParameterRow skirt_rows[] = {
-      {"points", ParameterKind::integer, "points of the hem; the cone unrolls into so many sixths of a disc",
-       true, 1, 5},
-      {"aspect", ParameterKind::number, "extent along y, as a share of that along x", true, 1e-3, 1e3},
-      {"edge", ParameterKind::number, "length of an edge", true, 1e-9, 1e9},
-      {"first_row", ParameterKind::integer, "row at the waist, counted from the apex", true, 2, 3000},
-      {"last_row", ParameterKind::integer, "row at the hem", true, 3, 3000},
-      {"band_rows", ParameterKind::integer, "rows at the waist that the body's bones carry", true, 1, 3000},
-      {"apex", ParameterKind::vector, "of the cone"},
+      {.name = "points",
+       .kind = ParameterKind::integer,
+       .meaning = "points of the hem; the cone unrolls into so many sixths of a disc",
+       .least = 1,
+       .most = 5},
+      {.name = "aspect",
+       .kind = ParameterKind::number,
+       .meaning = "extent along y as a share of that along x",
+       .least = 1e-3,
+       .most = 1e3},
+      {.name = "edge",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "length of an edge",
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "first_row",
+       .kind = ParameterKind::integer,
+       .meaning = "row at the waist, counted from the apex",
+       .least = 2,
+       .most = 3000},
+      {.name = "last_row",
+       .kind = ParameterKind::integer,
+       .meaning = "row at the hem",
+       .least = 3,
+       .most = 3000},
+      {.name = "band_rows",
+       .kind = ParameterKind::integer,
+       .meaning = "rows at the waist that the body's bones carry",
+       .least = 1,
+       .most = 3000},
+      {.name = "apex", .kind = ParameterKind::vector, .unit = "length", .meaning = "apex of the cone"},
   };
   static const std::vector<ParameterRow> rows = [] {
     const std::span<const ParameterRow> body = limbed_sphere_row().parameters;
     std::vector<ParameterRow> all(body.begin(), body.end());
-    all.push_back({"skirts", ParameterKind::objects, "one object for each skirt"});
+    all.push_back({.name = "skirts",
+                   .kind = ParameterKind::objects,
+                   .meaning = "one object for each skirt",
+                   .items = skirt_rows});
     return all;
   }();
   ShapeRow row = limbed_sphere_row();
@@ -167,7 +194,6 @@ ShapeRow skirted_limbed_sphere_row() {
   row.make = [](const Parameters& parameters) {
     Shape shape = limbed_sphere_row().make(parameters);
     for (const Parameters& skirt : parameters.objects("skirts")) {
-      check(skirt, skirt_rows);
       add_skirt(
           {skirt.integer("points"), skirt.number("aspect"), skirt.number("edge"), skirt.integer("first_row"),
            skirt.integer("last_row"), skirt.integer("band_rows"), skirt.vector("apex")},

@@ -40,10 +40,10 @@ class ChainContact final : public Effect {
   ChainContact(const Parameters& p, const Shape& shape)
       : apart_(2 * p.number("radius") + p.number("clearance")),
         radius_(p.number("radius")),
-        friction_(p.number("friction", 0)),
+        friction_(p.number("friction")),
         has_floor_(p.has("floor")),
         floor_(p.number("floor", 0)),
-        iterations_(p.integer("iterations", 8)) {
+        iterations_(p.integer("iterations")) {
     require_chain(shape, p.where());
     double shortest = (shape.rig.reference[0].tail - shape.rig.reference[0].head).norm();
     for (const Bone& bone : shape.rig.reference)
@@ -130,12 +130,38 @@ class ChainContact final : public Effect {
 
 EffectRow chain_contact_row() {
   static const ParameterRow rows[] = {
-      {"radius", ParameterKind::number, "of the capsules", true, 1e-9, 1e9},
-      {"clearance", ParameterKind::number, "gap kept between capsules", true, 0, 1e9},
-      {"friction", ParameterKind::number, "Coulomb's coefficient", false, 0, 1e3},
-      {"floor", ParameterKind::number, "height of a floor; half the clearance above it the chain lies",
-       false},
-      {"iterations", ParameterKind::integer, "sweeps over the contacts per substep", false, 1, 1000},
+      {.name = "radius",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "radius of the capsules round the bones",
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "clearance",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "gap that is kept between two capsules",
+       .least = 0,
+       .most = 1e9},
+      {.name = "friction",
+       .kind = ParameterKind::number,
+       .meaning = "Coulomb's coefficient of friction",
+       .required = false,
+       .least = 0,
+       .most = 1e3,
+       .otherwise = {0}},
+      {.name = "floor",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning =
+           "height of a floor, on which the chain lies half the clearance high; without it there is no floor",
+       .required = false},
+      {.name = "iterations",
+       .kind = ParameterKind::integer,
+       .meaning = "sweeps over the contacts in each substep",
+       .required = false,
+       .least = 1,
+       .most = 1000,
+       .otherwise = {8}},
   };
   return {"chain_contact", "capsule contact of a chain of bones with itself and a floor", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

@@ -48,10 +48,10 @@ class ChainDynamics final : public Effect {
       : gravity_(p.vector("gravity")),
         drag_(p.number("drag")),
         stiffness_(p.number("bend_stiffness")),
-        iterations_(p.integer("iterations", 4)) {
+        iterations_(p.integer("iterations")) {
     require_chain(shape, p.where());
-    const Vec3 axis = p.vector("axis", Vec3::Zero());
-    steady_ = static_cast<std::size_t>(p.integer("steady_bone", 0));
+    const Vec3 axis = p.vector("axis");
+    steady_ = static_cast<std::size_t>(p.integer("steady_bone"));
     if (steady_ >= shape.rig.parent.size())
       throw InputError(p.where() + ": parameter steady_bone is " + std::to_string(steady_) +
                        "; the chain has " + std::to_string(shape.rig.parent.size()) +
@@ -177,18 +177,61 @@ class ChainDynamics final : public Effect {
 
 EffectRow chain_dynamics_row() {
   static const ParameterRow rows[] = {
-      {"gravity", ParameterKind::vector, "acceleration, length per frame squared"},
-      {"drag", ParameterKind::number, "share of the velocity lost per frame", true, 0, 1e6},
-      {"bend_stiffness", ParameterKind::number, "pull towards straight, per frame squared", true, 0, 1e9},
-      {"bend_radius", ParameterKind::number, "the chain bends no sharper than this", true, 1e-9, 1e12},
-      {"iterations", ParameterKind::integer, "sweeps over the constraints per substep", false, 1, 1000},
-      {"steady_bone", ParameterKind::integer, "bone that does not spin; lying on the floor, say", false, 0,
-       1e9},
-      {"axis", ParameterKind::vector, "a point of the vertical line about which paths turn", false},
-      {"first_end", ParameterKind::table, "frame, radius, turns, height; free outside its frames", false,
-       -1e300, 1e300, 4},
-      {"last_end", ParameterKind::table, "frame, radius, turns, height; free outside its frames", false,
-       -1e300, 1e300, 4},
+      {.name = "gravity",
+       .kind = ParameterKind::vector,
+       .unit = "length / frame^2",
+       .meaning = "acceleration of all joints"},
+      {.name = "drag",
+       .kind = ParameterKind::number,
+       .unit = "1 / frame",
+       .meaning = "share of the velocity that is lost",
+       .least = 0,
+       .most = 1e6},
+      {.name = "bend_stiffness",
+       .kind = ParameterKind::number,
+       .unit = "1 / frame^2",
+       .meaning = "pull of each joint towards a straight chain",
+       .least = 0,
+       .most = 1e9},
+      {.name = "bend_radius",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "the chain bends no sharper than this",
+       .least = 1e-9,
+       .most = 1e12},
+      {.name = "iterations",
+       .kind = ParameterKind::integer,
+       .meaning = "sweeps over the constraints in each substep",
+       .required = false,
+       .least = 1,
+       .most = 1000,
+       .otherwise = {4}},
+      {.name = "steady_bone",
+       .kind = ParameterKind::integer,
+       .meaning = "number of the bone that does not spin about its axis, such as one that lies on the floor",
+       .required = false,
+       .least = 0,
+       .most = 1e9,
+       .otherwise = {0}},
+      {.name = "axis",
+       .kind = ParameterKind::vector,
+       .unit = "length",
+       .meaning = "a point of the vertical line about which the ends are led",
+       .required = false,
+       .otherwise = {0, 0, 0}},
+      {.name = "first_end",
+       .kind = ParameterKind::table,
+       .unit = "frame, length, turn, length",
+       .meaning = "keys of frame, radius, turns, height on which the chain's first joint is led; it is free "
+                  "outside of their frames, and always without them",
+       .required = false,
+       .columns = 4},
+      {.name = "last_end",
+       .kind = ParameterKind::table,
+       .unit = "frame, length, turn, length",
+       .meaning = "the same for the chain's last joint",
+       .required = false,
+       .columns = 4},
   };
   return {"chain_dynamics", "position-based dynamics of a chain of bones under gravity, led at its ends",
           Pace::substep, rows,

@@ -12,14 +12,30 @@ namespace cscd::scenes {
 namespace {
 
 const ParameterRow kBallRows[] = {
-    {"radius", ParameterKind::number, "of the ball, with the gap that the cloth keeps", true, 1e-9, 1e9},
-    {"path", ParameterKind::table, "frame, x, y, z of its centre", true, -1e300, 1e300, 4},
+    {.name = "radius",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "radius of the ball, with the gap that the cloth keeps",
+     .least = 1e-9,
+     .most = 1e9},
+    {.name = "path",
+     .kind = ParameterKind::table,
+     .unit = "frame, length",
+     .meaning = "keys of frame, x, y, z of the ball's centre",
+     .columns = 4},
 };
 const ParameterRow kGripRows[] = {
-    {"from", ParameterKind::vector, "lower corner of the box whose vertices at rest are gripped"},
-    {"to", ParameterKind::vector, "upper corner of that box"},
-    {"path", ParameterKind::table, "frame, x, y, z: the way since the first frame; free before and after",
-     true, -1e300, 1e300, 4},
+    {.name = "from",
+     .kind = ParameterKind::vector,
+     .unit = "length",
+     .meaning = "lower corner of the box whose vertices at rest are gripped"},
+    {.name = "to", .kind = ParameterKind::vector, .unit = "length", .meaning = "upper corner of that box"},
+    {.name = "path",
+     .kind = ParameterKind::table,
+     .unit = "frame, length",
+     .meaning =
+         "keys of frame, x, y, z of the way since the first key; the vertices are free before and after",
+     .columns = 4},
 };
 
 Vec3 place_at(const KeyCurve& curve, double frame) {
@@ -97,12 +113,10 @@ class ClothDynamics final : public Effect {
     }
     if (p.has("balls"))
       for (const Parameters& ball : p.objects("balls")) {
-        check(ball, kBallRows);
         balls_.push_back({ball.number("radius"), {ball.table("path"), ball.where() + ": parameter path"}});
       }
     if (p.has("grips"))
       for (const Parameters& grip : p.objects("grips")) {
-        check(grip, kGripRows);
         grips_.push_back({inside(rest_, grip), {grip.table("path"), grip.where() + ": parameter path"}});
       }
     if (!p.has("volume")) return;
@@ -137,12 +151,12 @@ class ClothDynamics final : public Effect {
     ClothOptions options;
     options.gravity = p.vector("gravity");
     options.drag = p.number("drag");
-    options.viscosity = p.number("viscosity", 0);
-    options.stretch_compliance = p.number("stretch_compliance", 0);
+    options.viscosity = p.number("viscosity");
+    options.stretch_compliance = p.number("stretch_compliance");
     options.bend_compliance = p.number("bend_compliance");
-    options.volume_compliance = p.number("volume_compliance", 0);
+    options.volume_compliance = p.number("volume_compliance");
     options.thickness = p.number("thickness");
-    options.friction = p.number("friction", 0);
+    options.friction = p.number("friction");
     if (p.has("floor")) options.floor = p.number("floor");
     return options;
   }
@@ -204,24 +218,89 @@ class ClothDynamics final : public Effect {
 
 EffectRow cloth_dynamics_row() {
   static const ParameterRow rows[] = {
-      {"gravity", ParameterKind::vector, "acceleration, per frame squared"},
-      {"drag", ParameterKind::number, "share of the velocity lost, per frame", true, 0, 1e9},
-      {"viscosity", ParameterKind::number, "share of neighbours' relative velocity lost, per frame", false, 0,
-       1e9},
-      {"stretch_compliance", ParameterKind::number, "stretch of an edge per force", false, 0, 1e300},
-      {"bend_compliance", ParameterKind::number, "change of the distance across an edge per force", true, 0,
-       1e300},
-      {"thickness", ParameterKind::number,
-       "least distance of vertices that share no edge; 0 lets the cloth pass through itself", true, 0, 1e9},
-      {"friction", ParameterKind::number, "Coulomb's coefficient", false, 0, 1e3},
-      {"floor", ParameterKind::number, "height of a floor", false},
-      {"body_gap", ParameterKind::number, "least distance from the body that wears the cloth", false, 1e-9,
-       1e9},
-      {"balls", ParameterKind::objects, "balls that the cloth stays out of", false},
-      {"grips", ParameterKind::objects, "parts of the cloth that are led", false},
-      {"volume", ParameterKind::table, "frame, share of the volume at rest that a closed surface holds",
-       false, -1e300, 1e300, 2},
-      {"volume_compliance", ParameterKind::number, "change of the volume per pressure", false, 0, 1e300},
+      {.name = "gravity",
+       .kind = ParameterKind::vector,
+       .unit = "length / frame^2",
+       .meaning = "acceleration of all vertices, which have mass 1"},
+      {.name = "drag",
+       .kind = ParameterKind::number,
+       .unit = "1 / frame",
+       .meaning = "share of the velocity that is lost",
+       .least = 0,
+       .most = 1e9},
+      {.name = "viscosity",
+       .kind = ParameterKind::number,
+       .unit = "1 / frame",
+       .meaning = "share of the difference of two neighbours' velocities that is lost",
+       .required = false,
+       .least = 0,
+       .most = 1e9,
+       .otherwise = {0}},
+      {.name = "stretch_compliance",
+       .kind = ParameterKind::number,
+       .unit = "frame^2",
+       .meaning = "how much a force of 1 stretches an edge",
+       .required = false,
+       .least = 0,
+       .most = 1e300,
+       .otherwise = {0}},
+      {.name = "bend_compliance",
+       .kind = ParameterKind::number,
+       .unit = "frame^2",
+       .meaning = "how much a force of 1 changes the distance of the two corners across an edge",
+       .least = 0,
+       .most = 1e300},
+      {.name = "thickness",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "least distance of vertices that share no edge; 0 lets the cloth pass through itself",
+       .least = 0,
+       .most = 1e9},
+      {.name = "friction",
+       .kind = ParameterKind::number,
+       .meaning = "Coulomb's coefficient of friction",
+       .required = false,
+       .least = 0,
+       .most = 1e3,
+       .otherwise = {0}},
+      {.name = "floor",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "height of a floor; without it there is no floor",
+       .required = false},
+      {.name = "body_gap",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning =
+           "least distance from the body that wears the cloth; without it the cloth does not notice the body",
+       .required = false,
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "balls",
+       .kind = ParameterKind::objects,
+       .meaning = "balls that the cloth stays out of",
+       .required = false,
+       .items = kBallRows},
+      {.name = "grips",
+       .kind = ParameterKind::objects,
+       .meaning = "parts of the cloth that are led",
+       .required = false,
+       .items = kGripRows},
+      {.name = "volume",
+       .kind = ParameterKind::table,
+       .unit = "frame, share",
+       .meaning = "keys of frame and the share of its volume at rest that a closed surface holds; without it "
+                  "the volume is free",
+       .required = false,
+       .columns = 2},
+      {.name = "volume_compliance",
+       .kind = ParameterKind::number,
+       .unit = "length^4 frame^2",
+       .meaning = "how much a pressure of 1 changes the volume",
+       .required = false,
+       .least = 0,
+       .most = 1e300,
+       .otherwise = {0}},
   };
   EffectRow row{
       "cloth_dynamics", "cloth under gravity that keeps off itself, its wearer, balls and a floor (XPBD)",

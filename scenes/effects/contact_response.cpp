@@ -22,7 +22,7 @@ class ContactResponse final : public Effect {
  public:
   ContactResponse(const Parameters& p, const Shape& shape, const MakeDetector& first)
       : where_(p.where()),
-        pull_(p.number("pull", 0.3)),
+        pull_(p.number("pull")),
         mesh_(shape.triangles, shape.positions.size(), p.where()),
         setup_{mesh_, shape.positions, shape.rig.parent.empty() ? nullptr : &shape.rig,
                *find_elementary_test("filtered_exact")},
@@ -53,10 +53,10 @@ class ContactResponse final : public Effect {
  private:
   static ContactStepOptions options(const Parameters& p) {
     ContactStepOptions options;
-    options.push = p.number("push", options.push);
-    options.spread = p.number("spread", options.spread);
-    options.back_off = p.number("back_off", options.back_off);
-    options.rounds = p.integer("rounds", options.rounds);
+    options.push = p.number("push");
+    options.spread = p.number("spread");
+    options.back_off = p.number("back_off");
+    options.rounds = p.integer("rounds");
     return options;
   }
   void require_embedded(const std::string& frame) {
@@ -79,15 +79,43 @@ class ContactResponse final : public Effect {
 };
 
 const ParameterRow kRows[] = {
-    {"pull", ParameterKind::number, "share of the way back to the animation that a step tries to make up for",
-     false, 0, 1},
-    {"push", ParameterKind::number, "gap left at a contact, in mean edge lengths of the shape", false, 0,
-     1e3},
-    {"spread", ParameterKind::number, "how far along the surface a contact is felt, in mean edge lengths",
-     false, 1e-3, 1e6},
-    {"back_off", ParameterKind::number,
-     "share of the time before contact that a step keeps which has to be cut as a whole", false, 0.01, 0.99},
-    {"rounds", ParameterKind::integer, "corrections of a step before it is cut as a whole", false, 0, 100},
+    {.name = "pull",
+     .kind = ParameterKind::number,
+     .meaning = "share of the way back to the animation that a step tries to make up for",
+     .required = false,
+     .least = 0,
+     .most = 1,
+     .otherwise = {0.3}},
+    {.name = "push",
+     .kind = ParameterKind::number,
+     .unit = "mean edge",
+     .meaning = "gap that is left at a contact",
+     .required = false,
+     .least = 0,
+     .most = 1e3,
+     .otherwise = {ContactStepOptions{}.push}},
+    {.name = "spread",
+     .kind = ParameterKind::number,
+     .unit = "mean edge",
+     .meaning = "how far along the surface a contact is felt",
+     .required = false,
+     .least = 1e-3,
+     .most = 1e6,
+     .otherwise = {ContactStepOptions{}.spread}},
+    {.name = "back_off",
+     .kind = ParameterKind::number,
+     .meaning = "share of the time before contact that a step keeps if it is cut as a whole",
+     .required = false,
+     .least = 0.01,
+     .most = 0.99,
+     .otherwise = {ContactStepOptions{}.back_off}},
+    {.name = "rounds",
+     .kind = ParameterKind::integer,
+     .meaning = "corrections of a step before it is cut as a whole",
+     .required = false,
+     .least = 0,
+     .most = 100,
+     .otherwise = {double(ContactStepOptions{}.rounds)}},
 };
 
 }  // namespace

@@ -41,8 +41,8 @@ class Effect {
 // each substep.
 enum class Pace { substep, frame };
 
-// One row of the list of effects. `make` takes checked parameters and the shape, and throws InputError if
-// the effect cannot work on that shape.
+// One row of the list of effects. `make` takes parameters as `checked` returns them and the shape, and throws
+// InputError if the effect cannot work on that shape.
 struct EffectRow {
   std::string_view name;
   std::string_view description;

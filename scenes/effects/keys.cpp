@@ -8,10 +8,10 @@ namespace cscd::scenes {
 
 Envelope Envelope::from(const Parameters& parameters) {
   Envelope envelope;
-  envelope.start = parameters.number("start", envelope.start);
+  envelope.start = parameters.number("start");
   if (parameters.has("end")) envelope.end = parameters.number("end");
-  envelope.fade = parameters.number("fade", envelope.fade);
-  envelope.weight = parameters.number("weight", envelope.weight);
+  envelope.fade = parameters.number("fade");
+  envelope.weight = parameters.number("weight");
   if (!(envelope.end > envelope.start))
     throw InputError(parameters.where() + ": parameter end must be above start");
   return envelope;

@@ -15,9 +15,9 @@ EffectSequence::EffectSequence(std::span<const EffectCall> calls, const Shape& s
       known += (known.empty() ? "" : ", ") + std::string(row.name);
     }
     if (!found) throw InputError(call.parameters.where() + ": unknown effect; known are: " + known);
-    check(call.parameters, found->parameters);
     predicts_ = predicts_ || found->predicts;
-    entries_.push_back({found->name, found->pace, found->make(call.parameters, shape)});
+    entries_.push_back(
+        {found->name, found->pace, found->make(checked(call.parameters, found->parameters), shape)});
   }
 }
 

@@ -31,7 +31,12 @@ std::unique_ptr<Effect> make_instrumented(const Parameters&, const Shape&) {
   return std::make_unique<Instrumented>(std::string(1, Name));
 }
 
-const ParameterRow kSpeed[] = {{"speed", ParameterKind::number, "per frame", true, 0, 1}};
+const ParameterRow kSpeed[] = {{.name = "speed",
+                                .kind = ParameterKind::number,
+                                .unit = "length / frame",
+                                .meaning = "speed",
+                                .least = 0,
+                                .most = 1}};
 const EffectRow kRows[] = {
     {"a", "", Pace::substep, {}, make_instrumented<'a'>},
     {"b", "", Pace::substep, kSpeed, make_instrumented<'b'>},
@@ -96,7 +101,7 @@ TEST_F(Sequence, NamesSceneEffectAndParameterInItsRefusals) {
   EXPECT_EQ(refusal({call("a", {{"speed", 1.0}})}),
             "scene s, effect a: parameter speed is unknown; known are: none");
   EXPECT_EQ(refusal({call("b")}),
-            "scene s, effect b: parameter speed is missing (per frame); add it to the scene file");
+            "scene s, effect b: parameter speed is missing (speed); add it to the scene file");
   EXPECT_EQ(refusal({call("b", {{"speed", 1.0}})}), "");
 }
 

@@ -25,7 +25,7 @@ class TravellingWave final : public Effect {
     const double wave_length = p.number("wave_length", std::numeric_limits<double>::infinity());
     if (wave_length == 0) throw InputError(p.where() + ": parameter wave_length must not be 0");
     const Vec3 given = p.vector(p.has("axis") ? "axis" : "towards");
-    const double first = p.number("first_amplitude", 0), last = p.number("amplitude");
+    const double first = p.number("first_amplitude"), last = p.number("amplitude");
     for (const ChainBone& at : select_chains(shape, p.text("bones"), p.where())) {
       const Bone& bone = shape.rig.reference[at.bone];
       const Vec3 axis = p.has("axis") ? given : (bone.tail - bone.head).cross(given);
@@ -35,7 +35,7 @@ class TravellingWave final : public Effect {
       const auto place = static_cast<double>(at.place), chain = static_cast<double>(at.chain);
       const double share = at.length > 0 ? place / static_cast<double>(at.length) : 1;
       turn_[at.bone] = {axis.normalized(), first + (last - first) * share,
-                        p.number("phase", 0) + chain * p.number("chain_phase", 0) - place / wave_length};
+                        p.number("phase") + chain * p.number("chain_phase") - place / wave_length};
     }
   }
 
@@ -65,23 +65,82 @@ class TravellingWave final : public Effect {
 
 EffectRow travelling_wave_row() {
   static const ParameterRow rows[] = {
-      {"bones", ParameterKind::text, "names of the chains' bones, * for any text, blanks between"},
-      {"axis", ParameterKind::vector, "to turn about, in the axes of the rest pose", false},
-      {"towards", ParameterKind::vector, "or: where each bone leans first, in the axes of the rest pose",
-       false},
-      {"amplitude", ParameterKind::number, "of a chain's last bone, in turns", true, -1, 1},
-      {"first_amplitude", ParameterKind::number, "of a chain's first bone, in turns; 0 if not given", false,
-       -1, 1},
-      {"wave_length", ParameterKind::number,
-       "in bones, below 0 towards the first; without it all bones swing as one", false, -1e9, 1e9},
-      {"period", ParameterKind::number, "of a bone's swing, in frames; without it the wave stands still",
-       false, 1e-3, 1e9},
-      {"phase", ParameterKind::number, "of the first bone at frame 0, in turns", false},
-      {"chain_phase", ParameterKind::number, "from each chain to the next, in turns", false},
-      {"start", ParameterKind::number, "frame before which the effect does nothing", false},
-      {"end", ParameterKind::number, "frame after which it does nothing", false},
-      {"fade", ParameterKind::number, "frames that it takes to come, and to go", false, 0, 1e9},
-      {"weight", ParameterKind::number, "factor on the whole effect, 1 by default", false},
+      {.name = "bones",
+       .kind = ParameterKind::text,
+       .meaning = "names of the chains' bones, with blanks between and * for any text"},
+      {.name = "axis",
+       .kind = ParameterKind::vector,
+       .meaning = "axis about which all bones turn, in the axes of the rest pose; give this or towards",
+       .required = false},
+      {.name = "towards",
+       .kind = ParameterKind::vector,
+       .meaning = "where each bone leans first, in the axes of the rest pose; give this or axis",
+       .required = false},
+      {.name = "amplitude",
+       .kind = ParameterKind::number,
+       .unit = "turn",
+       .meaning = "amplitude of a chain's last bone",
+       .least = -1,
+       .most = 1},
+      {.name = "first_amplitude",
+       .kind = ParameterKind::number,
+       .unit = "turn",
+       .meaning = "amplitude of a chain's first bone",
+       .required = false,
+       .least = -1,
+       .most = 1,
+       .otherwise = {0}},
+      {.name = "wave_length",
+       .kind = ParameterKind::number,
+       .unit = "bone",
+       .meaning = "length of the wave, below 0 for one that runs towards the first bone; without it all "
+                  "bones swing as one",
+       .required = false,
+       .least = -1e9,
+       .most = 1e9},
+      {.name = "period",
+       .kind = ParameterKind::number,
+       .unit = "frame",
+       .meaning = "period of a bone's swing; without it the wave stands still",
+       .required = false,
+       .least = 1e-3,
+       .most = 1e9},
+      {.name = "phase",
+       .kind = ParameterKind::number,
+       .unit = "turn",
+       .meaning = "phase of the first bone at frame 0",
+       .required = false,
+       .otherwise = {0}},
+      {.name = "chain_phase",
+       .kind = ParameterKind::number,
+       .unit = "turn",
+       .meaning = "phase from each chain to the next",
+       .required = false,
+       .otherwise = {0}},
+      {.name = "start",
+       .kind = ParameterKind::number,
+       .unit = "frame",
+       .meaning = "frame before which the effect does nothing",
+       .required = false,
+       .otherwise = {0}},
+      {.name = "end",
+       .kind = ParameterKind::number,
+       .unit = "frame",
+       .meaning = "frame after which the effect does nothing; without it the effect goes on",
+       .required = false},
+      {.name = "fade",
+       .kind = ParameterKind::number,
+       .unit = "frame",
+       .meaning = "frames in which the effect comes, and in which it goes",
+       .required = false,
+       .least = 0,
+       .most = 1e9,
+       .otherwise = {0}},
+      {.name = "weight",
+       .kind = ParameterKind::number,
+       .meaning = "factor on the whole effect",
+       .required = false,
+       .otherwise = {1}},
   };
   return {"travelling_wave", "runs waves along chains of bones", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

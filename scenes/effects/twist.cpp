@@ -47,9 +47,14 @@ class Twist final : public Effect {
 
 EffectRow twist_row() {
   static const ParameterRow rows[] = {
-      {"bones", ParameterKind::text, "names of the chains' bones, * for any text, blanks between"},
-      {"turns", ParameterKind::table, "frame, turns of the last bone against the first", true, -1e300, 1e300,
-       2},
+      {.name = "bones",
+       .kind = ParameterKind::text,
+       .meaning = "names of the chains' bones, with blanks between and * for any text"},
+      {.name = "turns",
+       .kind = ParameterKind::table,
+       .unit = "frame, turn",
+       .meaning = "keys of frame and turns of a chain's last bone against its first",
+       .columns = 2},
   };
   return {"twist", "turns the bones of a chain about the chain's own axis", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

@@ -18,7 +18,7 @@ namespace {
 class VolumeBulge final : public Effect {
  public:
   VolumeBulge(const Parameters& p, const Shape& shape)
-      : share_(p.number("share", 1)),
+      : share_(p.number("share")),
         most_(p.number("most")),
         at_rest_(volume(shape.triangles, shape.positions)) {}
 
@@ -89,8 +89,19 @@ class VolumeBulge final : public Effect {
 
 EffectRow volume_bulge_row() {
   static const ParameterRow rows[] = {
-      {"most", ParameterKind::number, "largest displacement, a length", true, 0, 1e9},
-      {"share", ParameterKind::number, "of the lost volume that is given back; 1 if not given", false, 0, 1},
+      {.name = "most",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "largest displacement of a vertex",
+       .least = 0,
+       .most = 1e9},
+      {.name = "share",
+       .kind = ParameterKind::number,
+       .meaning = "share of the lost volume that is given back",
+       .required = false,
+       .least = 0,
+       .most = 1,
+       .otherwise = {1}},
   };
   return {"volume_bulge", "gives back the volume that skinning loses, by bulging where bones bend",
           Pace::frame, rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

@@ -35,11 +35,27 @@ Shape box(const BoxParameters& p) {
 
 ShapeRow box_row() {
   static const ParameterRow rows[] = {
-      {"cells_x", ParameterKind::integer, "cells along x", true, 1, 1e5},
-      {"cells_y", ParameterKind::integer, "cells along y", true, 1, 1e5},
-      {"cells_z", ParameterKind::integer, "cells along z, the axis of the bones", true, 1, 1e5},
-      {"size", ParameterKind::vector, "lengths along x, y, z", true},
-      {"bones", ParameterKind::integer, "bones of the chain on the axis", true, 1, 1e5},
+      {.name = "cells_x",
+       .kind = ParameterKind::integer,
+       .meaning = "cells along x",
+       .least = 1,
+       .most = 1e5},
+      {.name = "cells_y",
+       .kind = ParameterKind::integer,
+       .meaning = "cells along y",
+       .least = 1,
+       .most = 1e5},
+      {.name = "cells_z",
+       .kind = ParameterKind::integer,
+       .meaning = "cells along z, the axis of the bones",
+       .least = 1,
+       .most = 1e5},
+      {.name = "size", .kind = ParameterKind::vector, .unit = "length", .meaning = "lengths along x, y, z"},
+      {.name = "bones",
+       .kind = ParameterKind::integer,
+       .meaning = "bones of the chain on the axis",
+       .least = 1,
+       .most = 1e5},
   };
   return {"box", "sharp-edged box on a chain of bones along z, gridded on all faces", rows,
           [](const Parameters& parameters) {

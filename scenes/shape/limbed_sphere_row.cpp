@@ -23,30 +23,85 @@ std::vector<Vec3> points(const Parameters::Table& table) {
 }
 
 const ParameterRow kLimbRows[] = {
-    {"name", ParameterKind::text, "what the limb is called"},
-    {"parent", ParameterKind::text, "bone of the body on which it hangs; default its last", false},
-    {"bones", ParameterKind::text, "names of its bones; default NAME_1 and so on", false},
-    {"joints", ParameterKind::table, "x, y, z, from inside the body to the tip", true, -1e300, 1e300, 3},
-    {"sections", ParameterKind::table, "share of its length, radius_u, radius_v, shift_u, shift_v", true,
-     -1e300, 1e300, 5},
-    {"tip", ParameterKind::number, "over which length its end is rounded", false, 0, 1e12},
-    {"face", ParameterKind::text, "of the cube, on which it grows: -x, +x, -y, +y, -z or +z"},
-    {"cell_u", ParameterKind::integer, "lowest cell of its patch, along the face's first axis", true, 0, 1e6},
-    {"cell_v", ParameterKind::integer, "the same along the second", true, 0, 1e6},
-    {"size", ParameterKind::integer, "cells along each side of its patch", true, 1, 1e6},
-    {"rings", ParameterKind::integer, "rings of quads along it", true, 2, 1e7},
-    {"flare", ParameterKind::number, "how much wider than the limb its outline on the body is", false, 1e-3,
-     1e3},
-    {"collar", ParameterKind::number, "over which length that outline becomes the limb's section", true, 1e-9,
-     1e12},
-    {"root_blend", ParameterKind::number, "over which length body and limb share the weights", true, 1e-9,
-     1e12},
-    {"blend", ParameterKind::number, "the same at its joints, as a share of the shorter bone", false, 1e-3,
-     1},
+    {.name = "name", .kind = ParameterKind::text, .meaning = "what the limb is called"},
+    {.name = "parent",
+     .kind = ParameterKind::text,
+     .meaning = "bone of the body on which the limb hangs; without it the body's last",
+     .required = false},
+    {.name = "bones",
+     .kind = ParameterKind::text,
+     .meaning = "names of the limb's bones, with blanks between; without it NAME_1 and so on",
+     .required = false},
+    {.name = "joints",
+     .kind = ParameterKind::table,
+     .unit = "length",
+     .meaning = "x, y, z of each joint, from inside the body to the tip",
+     .columns = 3},
+    {.name = "sections",
+     .kind = ParameterKind::table,
+     .unit = "share, length",
+     .meaning = "rows of share of the limb's length, radius_u, radius_v, shift_u, shift_v",
+     .columns = 5},
+    {.name = "tip",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "length over which the limb's end is rounded",
+     .required = false,
+     .least = 0,
+     .most = 1e12,
+     .otherwise = {0}},
+    {.name = "face",
+     .kind = ParameterKind::text,
+     .meaning = "face of the cube on which the limb grows: -x, +x, -y, +y, -z or +z"},
+    {.name = "cell_u",
+     .kind = ParameterKind::integer,
+     .meaning = "lowest cell of the limb's patch along the face's first axis",
+     .least = 0,
+     .most = 1e6},
+    {.name = "cell_v",
+     .kind = ParameterKind::integer,
+     .meaning = "lowest cell of the limb's patch along the face's second axis",
+     .least = 0,
+     .most = 1e6},
+    {.name = "size",
+     .kind = ParameterKind::integer,
+     .meaning = "cells along each side of the limb's patch",
+     .least = 1,
+     .most = 1e6},
+    {.name = "rings",
+     .kind = ParameterKind::integer,
+     .meaning = "rings of quads along the limb",
+     .least = 2,
+     .most = 1e7},
+    {.name = "flare",
+     .kind = ParameterKind::number,
+     .meaning = "how much wider than the limb its outline on the body is",
+     .required = false,
+     .least = 1e-3,
+     .most = 1e3,
+     .otherwise = {Limb{}.flare}},
+    {.name = "collar",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "length over which that outline becomes the limb's section",
+     .least = 1e-9,
+     .most = 1e12},
+    {.name = "root_blend",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "length over which body and limb share the weights",
+     .least = 1e-9,
+     .most = 1e12},
+    {.name = "blend",
+     .kind = ParameterKind::number,
+     .meaning = "the same at the limb's joints, as a share of the shorter bone",
+     .required = false,
+     .least = 1e-3,
+     .most = 1,
+     .otherwise = {Limb{}.blend}},
 };
 
 Limb read_limb(const Parameters& p, const std::vector<std::string>& body_bones) {
-  check(p, kLimbRows);
   Limb limb;
   limb.name = p.text("name");
   limb.parent = p.has("parent") ? p.text("parent") : body_bones.empty() ? "" : body_bones.back();
@@ -57,7 +112,7 @@ Limb read_limb(const Parameters& p, const std::vector<std::string>& body_bones) 
     for (std::size_t i = 1; i < limb.form.joints.size(); ++i)
       limb.bones.push_back(limb.name + "_" + std::to_string(i));
   limb.form.sections = p.table("sections");
-  limb.form.tip = p.number("tip", 0);
+  limb.form.tip = p.number("tip");
   const std::string& face = p.text("face");
   if (face.size() != 2 || (face[0] != '-' && face[0] != '+') || face[1] < 'x' || face[1] > 'z')
     throw InputError(p.where() + ": parameter face is " + face + "; it must be -x, +x, -y, +y, -z or +z");
@@ -66,10 +121,10 @@ Limb read_limb(const Parameters& p, const std::vector<std::string>& body_bones) 
   limb.cell_v = p.integer("cell_v");
   limb.size = p.integer("size");
   limb.rings = p.integer("rings");
-  limb.flare = p.number("flare", limb.flare);
+  limb.flare = p.number("flare");
   limb.collar = p.number("collar");
   limb.root_blend = p.number("root_blend");
-  limb.blend = p.number("blend", limb.blend);
+  limb.blend = p.number("blend");
   return limb;
 }
 
@@ -93,21 +148,70 @@ Parameters scaled_limb(const Parameters& limb, double factor, int cells, double 
 
 ShapeRow limbed_sphere_row() {
   static const ParameterRow rows[] = {
-      {"cells", ParameterKind::integer, "along each edge of the cube that becomes the body", true, 1, 4000},
-      {"body_axis", ParameterKind::text, "x, y or z: the body's sections lie across it"},
-      {"body_sections", ParameterKind::table, "along the axis, half_u, half_v, shift_u, shift_v", true,
-       -1e300, 1e300, 5},
-      {"section_power", ParameterKind::integer, "2 for elliptic sections, even; more the squarer", false, 2,
-       64},
-      {"end_power", ParameterKind::integer, "2 for elliptic ends, even; more the blunter", false, 2, 64},
-      {"body_bones", ParameterKind::text, "names of the body's bones, from the root"},
-      {"body_joints", ParameterKind::table, "x, y, z, one more than bones", true, -1e300, 1e300, 3},
-      {"body_blend", ParameterKind::number, "over which length its bones share the weights", true, 1e-9,
-       1e12},
-      {"relax", ParameterKind::integer, "sweeps that space the body's vertices evenly", false, 0, 1e5},
-      {"smooth", ParameterKind::integer, "sweeps that round the creases where limbs begin", false, 0, 1e5},
-      {"limbs", ParameterKind::objects, "one object a limb"},
-      {"details", ParameterKind::objects, "one object for each raised, dented or folded place", false},
+      {.name = "cells",
+       .kind = ParameterKind::integer,
+       .meaning = "cells along each edge of the cube that becomes the body",
+       .least = 1,
+       .most = 4000},
+      {.name = "body_axis",
+       .kind = ParameterKind::text,
+       .meaning = "x, y or z: the body's sections lie across it"},
+      {.name = "body_sections",
+       .kind = ParameterKind::table,
+       .unit = "length",
+       .meaning = "rows of place along the axis, half_u, half_v, shift_u, shift_v",
+       .columns = 5},
+      {.name = "section_power",
+       .kind = ParameterKind::integer,
+       .meaning = "2 for elliptic sections, and even; larger powers are more square",
+       .required = false,
+       .least = 2,
+       .most = 64,
+       .otherwise = {double(BodyForm::Spec{}.section_power)}},
+      {.name = "end_power",
+       .kind = ParameterKind::integer,
+       .meaning = "2 for elliptic ends, and even; larger powers are blunter",
+       .required = false,
+       .least = 2,
+       .most = 64,
+       .otherwise = {double(BodyForm::Spec{}.end_power)}},
+      {.name = "body_bones",
+       .kind = ParameterKind::text,
+       .meaning = "names of the body's bones from the root, with blanks between"},
+      {.name = "body_joints",
+       .kind = ParameterKind::table,
+       .unit = "length",
+       .meaning = "x, y, z of each joint of the body, one more than bones",
+       .columns = 3},
+      {.name = "body_blend",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "length over which the body's bones share the weights",
+       .least = 1e-9,
+       .most = 1e12},
+      {.name = "relax",
+       .kind = ParameterKind::integer,
+       .meaning = "sweeps that space the body's vertices evenly",
+       .required = false,
+       .least = 0,
+       .most = 1e5,
+       .otherwise = {double(LimbedSphereParameters{}.relax)}},
+      {.name = "smooth",
+       .kind = ParameterKind::integer,
+       .meaning = "sweeps that round the creases where limbs begin",
+       .required = false,
+       .least = 0,
+       .most = 1e5,
+       .otherwise = {double(LimbedSphereParameters{}.smooth)}},
+      {.name = "limbs",
+       .kind = ParameterKind::objects,
+       .meaning = "one object for each limb",
+       .items = kLimbRows},
+      {.name = "details",
+       .kind = ParameterKind::objects,
+       .meaning = "one object for each raised, dented or folded place",
+       .required = false,
+       .items = detail_rows()},
   };
   return {"limbed_sphere",
           "body of a cube's grid, patches of which are extruded into limbs",
@@ -121,13 +225,13 @@ ShapeRow limbed_sphere_row() {
                                "; it must be x, y or z");
             p.body.axis = axis[0] - 'x';
             p.body.sections = parameters.table("body_sections");
-            p.body.section_power = parameters.integer("section_power", p.body.section_power);
-            p.body.end_power = parameters.integer("end_power", p.body.end_power);
+            p.body.section_power = parameters.integer("section_power");
+            p.body.end_power = parameters.integer("end_power");
             p.body_bones = words(parameters.text("body_bones"));
             p.body_joints = points(parameters.table("body_joints"));
             p.body_blend = parameters.number("body_blend");
-            p.relax = parameters.integer("relax", p.relax);
-            p.smooth = parameters.integer("smooth", p.smooth);
+            p.relax = parameters.integer("relax");
+            p.smooth = parameters.integer("smooth");
             for (const Parameters& limb : parameters.objects("limbs"))
               p.limbs.push_back(read_limb(limb, p.body_bones));
             if (parameters.has("details")) p.details = read_details(parameters.objects("details"));

@@ -65,6 +65,24 @@ void check_value(const Parameters& parameters, std::string_view name, const Para
 
 }  // namespace
 
+std::string_view to_string(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::number:
+      return "number";
+    case ParameterKind::integer:
+      return "whole number";
+    case ParameterKind::vector:
+      return "vector";
+    case ParameterKind::table:
+      return "table";
+    case ParameterKind::text:
+      return "text";
+    case ParameterKind::objects:
+      break;
+  }
+  return "objects";
+}
+
 Parameters Parameters::with(const std::string& name, Value value) const {
   Parameters changed = *this;
   changed.values_.insert_or_assign(name, std::move(value));
@@ -91,10 +109,6 @@ int Parameters::integer(std::string_view name) const {
   const double value = number(name);
   if (value != std::floor(value) || std::abs(value) > 1e9) refuse(*this, name, "must be a whole number");
   return static_cast<int>(value);
-}
-
-int Parameters::integer(std::string_view name, int otherwise) const {
-  return has(name) ? integer(name) : otherwise;
 }
 
 Vec3 Parameters::vector(std::string_view name) const {
@@ -127,14 +141,29 @@ const std::vector<Parameters>& Parameters::objects(std::string_view name) const 
   return *value;
 }
 
-void check(const Parameters& parameters, std::span<const ParameterRow> rows) {
+Parameters checked(const Parameters& parameters, std::span<const ParameterRow> rows) {
   // All names are looked at before any value: a misspelt name is the likelier mistake, and explains others.
   for (const auto& [name, value] : parameters.values())
     if (row_of(name, rows) == nullptr) refuse(parameters, name, "is unknown; known are: " + names(rows));
-  for (const auto& [name, value] : parameters.values()) check_value(parameters, name, *row_of(name, rows));
-  for (const ParameterRow& row : rows)
-    if (row.required && !parameters.has(row.name))
+  Parameters filled = parameters;
+  for (const auto& [name, value] : parameters.values()) {
+    const ParameterRow& row = *row_of(name, rows);
+    check_value(parameters, name, row);
+    if (row.kind != ParameterKind::objects) continue;
+    std::vector<Parameters> objects;
+    for (const Parameters& object : parameters.objects(name)) objects.push_back(checked(object, row.items));
+    filled = filled.with(name, std::move(objects));
+  }
+  for (const ParameterRow& row : rows) {
+    if (parameters.has(row.name)) continue;
+    if (row.required)
       refuse(parameters, row.name, "is missing (" + std::string(row.meaning) + "); add it to the scene file");
+    if (row.otherwise.size() == 1)
+      filled = filled.with(std::string(row.name), row.otherwise.front());
+    else if (!row.otherwise.empty())
+      filled = filled.with(std::string(row.name), row.otherwise);
+  }
+  return filled;
 }
 
 }  // namespace cscd::scenes

@@ -19,12 +19,18 @@ enum class ParameterKind { number, integer, vector, table, text, objects };
 struct ParameterRow {
   std::string_view name;  // "*" stands for any name that no other row has, such as the name of a bone
   ParameterKind kind;
-  std::string_view meaning;  // with units, in one line
+  // Such as "length" or "1 / frame"; empty for a count, a share, a direction or a text. A length is one of
+  // the scene's own, and the mean edge is that of the shape at rest. A table names the units of its columns.
+  std::string_view unit = "";
+  std::string_view meaning;  // in one line, with what happens without a parameter that has no default
   bool required = true;
   double least = std::numeric_limits<double>::lowest();  // range of a number or an integer
   double most = std::numeric_limits<double>::max();
-  std::size_t columns = 0;  // columns of a table
+  std::size_t columns = 0;                   // columns of a table
+  std::vector<double> otherwise = {};        // default: one number, or three for a vector; empty for none
+  std::span<const ParameterRow> items = {};  // the parameters of each object of a list
 };
+std::string_view to_string(ParameterKind kind);
 
 // Named values from a scene file, independent of the file's format. `where` ("scene rope, effect
 // skinning_linear") begins the texts of errors.
@@ -45,7 +51,6 @@ class Parameters {
   double number(std::string_view name) const;
   double number(std::string_view name, double otherwise) const;
   int integer(std::string_view name) const;
-  int integer(std::string_view name, int otherwise) const;
   Vec3 vector(std::string_view name) const;
   Vec3 vector(std::string_view name, const Vec3& otherwise) const;
   const std::string& text(std::string_view name) const;
@@ -63,8 +68,9 @@ class Parameters {
   std::map<std::string, Value, std::less<>> values_;
 };
 
+// Returns the parameters with the defaults of their rows where they are missing, in the objects of lists too.
 // Throws InputError if a parameter has no row, is missing although its row requires it, is of another kind,
 // or is out of its range. The error names the first such parameter.
-void check(const Parameters& parameters, std::span<const ParameterRow> rows);
+Parameters checked(const Parameters& parameters, std::span<const ParameterRow> rows);
 
 }  // namespace cscd::scenes

@@ -8,19 +8,44 @@
 namespace cscd::scenes {
 namespace {
 
+const ParameterRow kPartRows[] = {{.name = "weight",
+                                   .kind = ParameterKind::number,
+                                   .meaning = "how heavy",
+                                   .required = false,
+                                   .otherwise = {7}}};
 const ParameterRow kRows[] = {
-    {"count", ParameterKind::integer, "how many", true, 1, 10},
-    {"size", ParameterKind::number, "how large", false, 0, 5},
-    {"place", ParameterKind::vector, "where", false},
-    {"label", ParameterKind::text, "what", false},
-    {"path", ParameterKind::table, "time, height", false, 0, 0, 2},
+    {.name = "count", .kind = ParameterKind::integer, .meaning = "how many", .least = 1, .most = 10},
+    {.name = "size",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "how large",
+     .required = false,
+     .least = 0,
+     .most = 5,
+     .otherwise = {0.5}},
+    {.name = "place",
+     .kind = ParameterKind::vector,
+     .meaning = "where",
+     .required = false,
+     .otherwise = {1, 2, 3}},
+    {.name = "label", .kind = ParameterKind::text, .meaning = "what", .required = false},
+    {.name = "path",
+     .kind = ParameterKind::table,
+     .meaning = "time, height",
+     .required = false,
+     .columns = 2},
+    {.name = "parts",
+     .kind = ParameterKind::objects,
+     .meaning = "parts",
+     .required = false,
+     .items = kPartRows},
 };
 
 using Values = std::map<std::string, Parameters::Value, std::less<>>;
 
 std::string refusal(const Values& values) {
   try {
-    check(Parameters("scene s, effect e", values), kRows);
+    (void)checked(Parameters("scene s, effect e", values), kRows);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -28,23 +53,33 @@ std::string refusal(const Values& values) {
 }
 
 TEST(Parameters, HandsOutWhatTheyHold) {
-  const Parameters p("here", {{"count", 3.0},
-                              {"place", std::vector<double>{1, 2, 3}},
-                              {"label", std::string("rope")},
-                              {"path", Parameters::Table{{0, 1}, {2, 3}}}});
-  check(p, kRows);
+  const Parameters given("here", {{"count", 3.0},
+                                  {"place", std::vector<double>{1, 2, 3}},
+                                  {"label", std::string("rope")},
+                                  {"path", Parameters::Table{{0, 1}, {2, 3}}}});
+  const Parameters p = checked(given, kRows);
   EXPECT_EQ(p.integer("count"), 3);
   EXPECT_EQ(p.vector("place"), Vec3(1, 2, 3));
   EXPECT_EQ(p.text("label"), "rope");
   EXPECT_EQ(p.table("path")[1][0], 2);
-  EXPECT_EQ(p.number("size", 0.5), 0.5);
+  EXPECT_EQ(given.number("size", 4), 4);
+}
+
+TEST(Parameters, HaveTheDefaultsOfTheirRows) {
+  const Parameters p = checked({"here", {{"count", 3.0}, {"parts", std::vector<Parameters>(2)}}}, kRows);
+  EXPECT_EQ(p.number("size"), 0.5);
+  EXPECT_EQ(p.vector("place"), Vec3(1, 2, 3));
+  EXPECT_FALSE(p.has("label"));
+  ASSERT_EQ(p.objects("parts").size(), 2u);
+  EXPECT_EQ(p.objects("parts")[1].number("weight"), 7);
 }
 
 TEST(Parameters, NameWhatIsWrong) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal({{"count", 3.0}}), "");
-  EXPECT_EQ(refusal({{"count", 3.0}, {"colour", 1.0}}),
-            "scene s, effect e: parameter colour is unknown; known are: count, size, place, label, path");
+  EXPECT_EQ(
+      refusal({{"count", 3.0}, {"colour", 1.0}}),
+      "scene s, effect e: parameter colour is unknown; known are: count, size, place, label, path, parts");
   EXPECT_EQ(refusal({{"colour", 1.0}, {"count", 11.0}, {"zise", 1.0}}).substr(0, 42),
             "scene s, effect e: parameter colour is unk")
       << "names before values";
@@ -70,11 +105,12 @@ TEST(Parameters, NameWhatIsWrong) {
 }
 
 TEST(Parameters, MayHaveAnyNameWhereARowSaysSo) {
-  const ParameterRow rows[] = {{"*", ParameterKind::vector, "of a thing of that name", false},
-                               {"count", ParameterKind::integer, "how many"}};
+  const ParameterRow rows[] = {
+      {.name = "*", .kind = ParameterKind::vector, .meaning = "of a thing of that name", .required = false},
+      {.name = "count", .kind = ParameterKind::integer, .meaning = "how many"}};
   const auto refused = [&](std::map<std::string, Parameters::Value, std::less<>> values) -> std::string {
     try {
-      check(Parameters("scene s, effect e", std::move(values)), rows);
+      (void)checked(Parameters("scene s, effect e", std::move(values)), rows);
     } catch (const InputError& error) {
       return error.what();
     }

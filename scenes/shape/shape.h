@@ -40,7 +40,7 @@ struct ShapeRow {
   std::string_view name;
   std::string_view description;
   std::span<const ParameterRow> parameters;
-  Shape (*make)(const Parameters& parameters);  // takes checked parameters
+  Shape (*make)(const Parameters& parameters);  // takes what `checked` returns
   // Returns parameters for the same form and skeleton with `factor` times as many cells along every
   // direction, rounded. This gives about factor^2 times the triangles.
   Parameters (*at_resolution)(const Parameters& parameters, double factor);

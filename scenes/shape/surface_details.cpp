@@ -30,12 +30,36 @@ std::vector<Vec3> vertex_normals(const Shape& shape) {
 }
 
 const ParameterRow kRows[] = {
-    {"at", ParameterKind::vector, "its middle, at rest"},
-    {"reach", ParameterKind::vector, "half axes of the ellipsoid in which it lies, along x, y and z"},
-    {"height", ParameterKind::number, "along the surface's normals; negative for a dent"},
-    {"wave_length", ParameterKind::number, "from one fold to the next; default no folds", false, 1e-9, 1e12},
-    {"across", ParameterKind::vector, "direction from fold to fold", false},
-    {"mirrored", ParameterKind::integer, "1 for a second one with x negated", false, 0, 1},
+    {.name = "at",
+     .kind = ParameterKind::vector,
+     .unit = "length",
+     .meaning = "middle of the place, at rest"},
+    {.name = "reach",
+     .kind = ParameterKind::vector,
+     .unit = "length",
+     .meaning = "half axes of the ellipsoid in which the place lies, along x, y and z"},
+    {.name = "height",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "displacement along the surface's normals, negative for a dent"},
+    {.name = "wave_length",
+     .kind = ParameterKind::number,
+     .unit = "length",
+     .meaning = "distance from one fold to the next; without it there are no folds",
+     .required = false,
+     .least = 1e-9,
+     .most = 1e12},
+    {.name = "across",
+     .kind = ParameterKind::vector,
+     .meaning = "direction from fold to fold; folds need it",
+     .required = false},
+    {.name = "mirrored",
+     .kind = ParameterKind::integer,
+     .meaning = "1 for a second place with x negated",
+     .required = false,
+     .least = 0,
+     .most = 1,
+     .otherwise = {0}},
 };
 
 }  // namespace
@@ -50,10 +74,13 @@ void add_details(std::span<const SurfaceDetail> details, Shape& shape) {
   }
 }
 
+std::span<const ParameterRow> detail_rows() {
+  return kRows;
+}
+
 std::vector<SurfaceDetail> read_details(std::span<const Parameters> objects) {
   std::vector<SurfaceDetail> details;
   for (const Parameters& p : objects) {
-    check(p, kRows);
     SurfaceDetail detail{p.vector("at"), p.vector("reach"), p.number("height"), p.number("wave_length", 0),
                          p.vector("across", Vec3::Zero())};
     if (!(detail.reach.minCoeff() > 0))
@@ -62,7 +89,7 @@ std::vector<SurfaceDetail> read_details(std::span<const Parameters> objects) {
       throw InputError(p.where() + ": folds need both wave_length and a direction across that is not zero");
     if (p.has("wave_length")) detail.across.normalize();
     details.push_back(detail);
-    if (p.integer("mirrored", 0) == 0) continue;
+    if (p.integer("mirrored") == 0) continue;
     detail.at.x() *= -1;
     detail.across.x() *= -1;
     details.push_back(detail);

@@ -25,6 +25,9 @@ struct SurfaceDetail {
 // Displaces the positions by the sum of all details. Normals are those of the surface without details.
 void add_details(std::span<const SurfaceDetail> details, Shape& shape);
 
+// The parameters of each object of a shape's parameter `details`.
+std::span<const ParameterRow> detail_rows();
+
 // Reads the objects of a shape's parameter `details`. A mirrored detail gives two: the second has x negated.
 std::vector<SurfaceDetail> read_details(std::span<const Parameters> objects);
 

@@ -140,17 +140,65 @@ Shape tube(const TubeParameters& p) {
 
 ShapeRow tube_row() {
   static const ParameterRow rows[] = {
-      {"rings", ParameterKind::integer, "rings of vertices between the poles", true, 2, 1e6},
-      {"sides", ParameterKind::integer, "vertices of a ring", true, 3, 1e5},
-      {"bones", ParameterKind::integer, "bones of the chain on the axis", true, 1, 1e5},
-      {"radius", ParameterKind::number, "radius of the tube", true, 1e-9, 1e9},
-      {"length", ParameterKind::number, "from pole to pole, above two radii", true, 1e-9, 1e12},
-      {"start", ParameterKind::vector, "the first pole", false},
-      {"direction", ParameterKind::vector, "in which the axis leaves the first pole", false},
-      {"arc_turns", ParameterKind::number, "how far the axis turns in its middle: 0 straight, 0.5 hairpin",
-       false, 0, 0.5},
-      {"arc_radius", ParameterKind::number, "of that arc, above the tube's radius", false, 0, 1e12},
-      {"arc_side", ParameterKind::vector, "to which the axis turns", false},
+      {.name = "rings",
+       .kind = ParameterKind::integer,
+       .meaning = "rings of vertices between the poles",
+       .least = 2,
+       .most = 1e6},
+      {.name = "sides",
+       .kind = ParameterKind::integer,
+       .meaning = "vertices of a ring",
+       .least = 3,
+       .most = 1e5},
+      {.name = "bones",
+       .kind = ParameterKind::integer,
+       .meaning = "bones of the chain on the axis",
+       .least = 1,
+       .most = 1e5},
+      {.name = "radius",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "radius of the tube",
+       .least = 1e-9,
+       .most = 1e9},
+      {.name = "length",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "length from pole to pole, above two radii",
+       .least = 1e-9,
+       .most = 1e12},
+      {.name = "start",
+       .kind = ParameterKind::vector,
+       .unit = "length",
+       .meaning = "place of the first pole",
+       .required = false,
+       .otherwise = {0, 0, 0}},
+      {.name = "direction",
+       .kind = ParameterKind::vector,
+       .meaning = "direction in which the axis leaves the first pole",
+       .required = false,
+       .otherwise = {0, 0, 1}},
+      {.name = "arc_turns",
+       .kind = ParameterKind::number,
+       .unit = "turn",
+       .meaning = "how far the axis turns in its middle: 0 for a straight tube, 0.5 for a hairpin",
+       .required = false,
+       .least = 0,
+       .most = 0.5,
+       .otherwise = {0}},
+      {.name = "arc_radius",
+       .kind = ParameterKind::number,
+       .unit = "length",
+       .meaning = "radius of that arc, above the tube's radius where there is an arc",
+       .required = false,
+       .least = 0,
+       .most = 1e12,
+       .otherwise = {0}},
+      {.name = "arc_side",
+       .kind = ParameterKind::vector,
+       .meaning = "side to which the axis turns",
+       .required = false,
+       .otherwise = {1, 0, 0}},
   };
   return {"tube", "tube with rounded ends on a chain of bones, straight or a hairpin", rows,
           [](const Parameters& parameters) {
@@ -160,11 +208,11 @@ ShapeRow tube_row() {
             p.bones = parameters.integer("bones");
             p.radius = parameters.number("radius");
             p.length = parameters.number("length");
-            p.start = parameters.vector("start", p.start);
-            p.direction = parameters.vector("direction", p.direction);
-            p.arc_turns = parameters.number("arc_turns", p.arc_turns);
-            p.arc_radius = parameters.number("arc_radius", p.arc_radius);
-            p.arc_side = parameters.vector("arc_side", p.arc_side);
+            p.start = parameters.vector("start");
+            p.direction = parameters.vector("direction");
+            p.arc_turns = parameters.number("arc_turns");
+            p.arc_radius = parameters.number("arc_radius");
+            p.arc_side = parameters.vector("arc_side");
             return tube(p);
           },
           [](const Parameters& parameters, double factor) {
