@@ -63,6 +63,35 @@ TEST_F(Query, FailsOnContactWhereThatIsAsked) {
   EXPECT_EQ(run("cscd query small --fail-on-contact").status, 0);
 }
 
+// Whoever ignores a pair of places that meets is told of the others, and of how much is ignored.
+TEST_F(Query, IgnoresWhatItIsToldTo) {
+  const json whole = answer("figure.glb --clip hug"), met = whole["summary"]["met"];
+  EXPECT_EQ(whole["ignore"], nullptr);
+  EXPECT_EQ(whole["summary"]["with_ignored"], 0);
+  const std::string first = met[0]["first"], second = met[0]["second"];
+  const json without = answer("figure.glb --clip hug --ignore " + first + ":" + second);
+  EXPECT_EQ(without["ignore"]["pairs"], json::array({json::array({first, second})}));
+  const json& ignored = without["summary"]["ignored"];
+  ASSERT_EQ(ignored.size(), 1u);
+  EXPECT_EQ(ignored[0]["first"], first);
+  EXPECT_EQ(ignored[0]["second"], second);
+  for (const json& row : without["summary"]["met"])
+    EXPECT_FALSE(row["first"] == first && row["second"] == second) << row;
+  std::size_t contacts = 0, pairs = 0;
+  for (std::size_t i = 0; i < whole["intervals"].size(); ++i) {
+    const json &all = whole["intervals"][i], &some = without["intervals"][i];
+    contacts += some["ignored"]["contacts"].get<std::size_t>();
+    pairs += some["ignored"]["start_pairs"].get<std::size_t>();
+    EXPECT_LE(some["start_pairs_total"], all["start_pairs_total"]) << i;
+  }
+  EXPECT_EQ(ignored[0]["contacts"], contacts);
+  EXPECT_EQ(ignored[0]["start_pairs"], pairs);
+  EXPECT_GT(contacts + pairs, 0u);
+  expect_refused(run("cscd query figure.glb --ignore " + first + "x:" + second),
+                 "did you mean " + first + "?");
+  expect_refused(run("cscd query figure.glb --ignore " + first), "has no colon");
+}
+
 TEST_F(Query, SpeaksOfACharacterInItsOwnNamesAndTimes) {
   const Ran ran = run("cscd query figure.glb --clip HUG");
   ASSERT_EQ(ran.status, 0) << ran.errors;
