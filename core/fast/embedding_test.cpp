@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/elementary/catalogue.h"
-#include "core/fast/cut/surface_clusters.h"
+#include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/fast/fast_culler.h"
 #include "core/mesh/test_shapes.h"

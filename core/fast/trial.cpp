@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/base/team.h"
+#include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/cut/coarse_surface.h"
-#include "core/fast/cut/surface_clusters.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/bone_clusters.h"
@@ -120,7 +120,10 @@ struct Surfaces {
 };
 
 std::vector<std::int32_t> clusters_of_surface(const Surfaces& surfaces) {
-  return surfaces.on_trial_surface(surface_clusters(surfaces.coarse.mesh(), surfaces.coarse.positions()));
+  const TriangleMesh& coarse = surfaces.coarse.mesh();
+  const double fineness = static_cast<double>(surfaces.setup.mesh.triangle_count()) /
+                          static_cast<double>(coarse.triangle_count());
+  return surfaces.on_trial_surface(surface_clusters(coarse, surfaces.coarse.positions(), fineness));
 }
 
 // Returns the bone of each triangle of the trial surface. Edges of a coarse surface are long, so a cell of

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/base/digest.h"
+#include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/cut/observer.h"
 #include "core/fast/cut/patch_cutter.h"
-#include "core/fast/cut/surface_clusters.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd::fast {

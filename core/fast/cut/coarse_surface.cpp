@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/fast/clusters/seams.h"
 #include "core/fast/cut/covers.h"
 #include "core/fast/cut/rings.h"
-#include "core/fast/cut/seams.h"
 
 namespace cscd::fast {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
+#include "core/fast/clusters/seams.h"
 #include "core/fast/cut/covers.h"
-#include "core/fast/cut/seams.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {

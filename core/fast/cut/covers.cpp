@@ -3,16 +3,21 @@
 #include <algorithm>
 #include <map>
 
+#include "core/fast/clusters/seams.h"
 #include "core/fast/cut/observer.h"
 #include "core/fast/cut/rings.h"
-#include "core/fast/cut/seams.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd::fast {
 namespace {
 
 constexpr std::int32_t kReach = 6;  // so many rings of triangles about a seam belong to its cluster
-constexpr std::int32_t kThin = 4;   // a cluster without a triangle so many rings from its seams is merged
+// A seam's cluster reaches through this part of a cluster that is not deep. Between the clusters of two seams
+// there have to be patches that belong to neither: a patch that belongs to one, at a border of the other,
+// would leave the first a ring without its certificate.
+constexpr std::int32_t kPartReached = 7, kWhole = 10;
+constexpr std::int32_t kFar = kReach * kWhole / kPartReached + 1;  // from here on, all of kReach is reached
+constexpr std::int32_t kThin = 4;  // a cluster without a triangle so many rings from its seams is merged
 
 }  // namespace
 
@@ -158,7 +163,17 @@ std::vector<bool> inside(const TriangleMesh& mesh, std::span<const std::int32_t>
 std::vector<std::int32_t> nearest_seams(const TriangleMesh& mesh, std::span<const std::int32_t> cluster_of) {
   std::vector<std::vector<TriangleId>> seeds;
   for (auto& [clusters, triangles] : seams_of(mesh, cluster_of)) seeds.push_back(triangles);
-  return rings_from(mesh, seeds, kReach).seed;
+  const Rings rings = rings_from(mesh, seeds, kFar);
+  std::map<std::int32_t, std::int32_t> depth;  // of each cluster
+  for (std::size_t t = 0; t < cluster_of.size(); ++t) {
+    std::int32_t& deepest = depth[cluster_of[t]];
+    deepest = std::max(deepest, rings.distance[t] == kNone ? kFar : rings.distance[t]);
+  }
+  std::vector<std::int32_t> nearest = rings.seed;
+  for (std::size_t t = 0; t < nearest.size(); ++t)
+    if (rings.distance[t] > std::min(kReach, depth[cluster_of[t]] * kPartReached / kWhole))
+      nearest[t] = kNone;
+  return nearest;
 }
 
 }  // namespace cscd::fast

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/team.h"
+#include "core/fast/clusters/numbers.h"
 #include "core/fast/cut/following_point.h"
-#include "core/fast/cut/numbers.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd::fast {

@@ -78,6 +78,22 @@ TEST(CutSurface, IsTheSameOnAnyNumberOfThreads) {
   for (const int threads : {2, 5}) EXPECT_EQ(cut(threads), alone);
 }
 
+// Clusters of twelve rows of triangles. Mutation: every seam's cluster reaches as far as in a deep cluster.
+TEST(Covers, BetweenTheSeamsOfAThinClusterThereAreTrianglesOfNeither) {
+  const test::Shape tube = test::capped_tube(16, 121, 1, 60);
+  const TriangleMesh mesh = tube.mesh();
+  std::vector<std::int32_t> cluster_of;
+  for (const Triangle& c : mesh.triangles())
+    cluster_of.push_back(std::min(9, static_cast<int>(tube.positions[+c[0]].x() / 6)));
+  const std::size_t clusters = renumber(cluster_of);
+  const std::vector<std::int32_t> seams = nearest_seams(mesh, cluster_of);
+  std::vector<int> of_neither(clusters);
+  for (std::size_t t = 0; t < seams.size(); ++t) of_neither[index(cluster_of[t])] += seams[t] == kNone;
+  for (const int triangles : of_neither) EXPECT_GE(triangles, 2 * 16);
+  EXPECT_GT(std::ranges::count_if(seams, [](std::int32_t seam) { return seam != kNone; }),
+            mesh.triangle_count() / 4);
+}
+
 TEST(Covers, ObserversSeeAllOfATubeFromInside) {
   const test::Body body(0, 0);
   const Covers covers = cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle).covers;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/clusters/best_viewpoint.h"
 
 namespace cscd::fast {
 namespace {
@@ -28,6 +28,9 @@ constexpr float kHeights[] = {-0.5F, -1, -2, -4};
 
 // The best viewpoint of a cluster is found from at most this many of its faces, spread evenly.
 constexpr std::size_t kManyFaces = 512;
+// Vertices to follow are drawn from the half of a cluster's vertices that is nearest to the observer, but
+// from no fewer than these.
+constexpr std::size_t kFewestNear = 32;
 // The number of times that vertices to follow are drawn.
 constexpr int kDraws = 50;
 // The same for a search in a hurry, its steps towards the best viewpoint, and the number of faces it looks
@@ -38,6 +41,12 @@ constexpr std::size_t kFewFaces = 128;
 // Chooses a few of the vertices, with weights that make them the wanted point in the reference pose.
 FollowingPoint following(std::span<const Vec3> positions, std::vector<VertexId> vertices, const Vec3& wanted,
                          int draws) {
+  // Vertices far away move otherwise than what lies round the point, where the cluster bends.
+  if (const std::size_t near = std::max(kFewestNear, vertices.size() / 2); near < vertices.size()) {
+    std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(near), {},
+                             [&](VertexId v) { return (positions[+v] - wanted).squaredNorm(); });
+    vertices.resize(near);
+  }
   const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
   std::mt19937 random(kPreparationSeed);
   FollowingPoint best;

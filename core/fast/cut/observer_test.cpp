@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/clusters/best_viewpoint.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {

@@ -1,6 +1,6 @@
 #include "core/fast/cut/rings.h"
 
-#include "core/fast/cut/numbers.h"
+#include "core/fast/clusters/numbers.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd::fast {

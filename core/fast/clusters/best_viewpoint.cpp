@@ -1,4 +1,4 @@
-#include "core/fast/cut/best_viewpoint.h"
+#include "core/fast/clusters/best_viewpoint.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "core/fast/cut/surface_clusters.h"
+#include "core/fast/clusters/surface_clusters.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
