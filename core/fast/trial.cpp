@@ -34,9 +34,10 @@ constexpr std::size_t kTrials = 6, kFewTrials = 2;
 // add little to the time of preparation.
 constexpr std::size_t kManyTrianglesForCaps = 64000;
 
-// The trial poses are not the motion to come, so small differences between candidates say nothing. The second
-// candidate is taken only if it makes less work than the first by more than one part in kClose.
-constexpr std::uint64_t kClose = 64;
+// The trial poses turn the joints of the bones, at which the clusters of bones have their seams. The motion
+// to come bends the surface elsewhere too, so the clusters of bones are taken only if they make less work
+// than those of the surface by more than one part in kFlattered.
+constexpr std::uint64_t kFlattered = 20;
 
 // Returns the largest number of triangles that the surface may have on which clusters are found. A surface of
 // more than kManyTriangles triangles is always made coarser by one level at least.
@@ -184,16 +185,16 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
       candidates[i] = made(tried, clusters_of_surface(surfaces), options);
     }
   });
-  // The trial of the second candidate may stop once the second makes more work than the first, because the
-  // second is then not taken.
+  // The trial of the clusters of bones may stop once they make more work than those of the surface, because
+  // they are then not taken.
   std::array<TrialResult, 2> results;
-  std::atomic<std::uint64_t> of_first = results[0].work;
+  std::atomic<std::uint64_t> of_surface = results[1].work;
   for_both(tried.threads, [&](std::size_t i) {
-    const auto most = [&] { return i == 0 ? std::numeric_limits<std::uint64_t>::max() : of_first.load(); };
+    const auto most = [&] { return i == 1 ? std::numeric_limits<std::uint64_t>::max() : of_surface.load(); };
     results[i] = tried_with(*candidates[i].culler, trials, options.starts_embedded, most);
-    if (i == 0) of_first = results[0].work;
+    if (i == 1) of_surface = results[1].work;
   });
-  const std::size_t taken = results[1].work < results[0].work - results[0].work / kClose ? 1 : 0;
+  const std::size_t taken = results[0].work < results[1].work - results[1].work / kFlattered ? 0 : 1;
   return {std::move(candidates[taken]), results[taken].covers};
 }
 

@@ -11,7 +11,7 @@
 namespace cscd::fast {
 namespace {
 
-constexpr double kTurned = std::numbers::pi / 6, kFurther = std::numbers::pi / 36;
+constexpr double kTurned = std::numbers::pi / 9, kFurther = std::numbers::pi / 36;
 constexpr int kSmoothed = 8;  // the number of times that turns are smoothed over the seams
 
 using Transforms = std::vector<Eigen::Isometry3d>;
