@@ -47,7 +47,11 @@ using Pair = std::pair<std::int32_t, std::int32_t>;
 class Pieces {
  public:
   Pieces(const TriangleMesh& mesh, std::span<const Vec3> positions)
-      : mesh_(mesh), paths_(mesh, positions), piece_(mesh.triangle_count()) {
+      : mesh_(mesh),
+        has_limbs_(mesh.closed_and_oriented()),
+        paths_(mesh, positions,
+               has_limbs_ ? TrianglePaths::Steps::over_vertices : TrianglePaths::Steps::across_edges),
+        piece_(mesh.triangle_count()) {
     for (std::size_t t = 0; t < piece_.size(); ++t) {
       all_.push_back(TriangleId{static_cast<std::int32_t>(t)});
       faces_.push_back(face_of(mesh, positions, all_[t]));
@@ -63,7 +67,10 @@ class Pieces {
       area.push_back((positions[+c[1]] - positions[+c[0]]).cross(positions[+c[2]] - positions[+c[0]]).norm() /
                      2);
     std::vector<Body> bodies;
-    for (const Triangles& component : members()) bodies.push_back(body_of(paths_, area, piece_, component));
+    for (Triangles& component : members()) {
+      const bool is_small = component.size() < 2 * least_triangles();  // nothing of it is cut
+      bodies.push_back(is_small ? Body{{}, std::move(component)} : body_of(paths_, area, piece_, component));
+    }
     std::int32_t count = 0;
     for (const Body& body : bodies) {
       for (const Limb& limb : body.limbs) name(limb.triangles, count);
@@ -151,8 +158,9 @@ class Pieces {
     }
   }
 
-  // Lets the pieces grow again from their middles, in proportion to how deep they are. Seams then run halfway
-  // between the middles: straight round a limb, not up and down.
+  // Lets the pieces grow again from their middles. Seams then run halfway between the middles: straight round
+  // a limb, not up and down. Next to a limb, a hub would grow into it, so where there are limbs, pieces grow
+  // in proportion to how deep they are.
   void straighten() {
     Triangles seam, middle;
     for_each_seam_edge(mesh_, piece_, [&](TriangleId a, TriangleId b) { seam.insert(seam.end(), {a, b}); });
@@ -170,7 +178,7 @@ class Pieces {
       if (deep > 0 && std::isfinite(deep)) sum += deep, ++count;
     std::vector<double> stretch;
     for (const double deep : deepest)
-      stretch.push_back(deep > 0 && std::isfinite(deep) ? sum / count / deep : 1);
+      stretch.push_back(has_limbs_ && deep > 0 && std::isfinite(deep) ? sum / count / deep : 1);
     paths_.grow(piece_, all_, middle, stretch);
   }
 
@@ -268,6 +276,7 @@ class Pieces {
   }
 
   const TriangleMesh& mesh_;
+  bool has_limbs_;  // an open surface has none: it bends anywhere
   TrianglePaths paths_;
   Triangles all_;
   std::vector<Face> faces_;
@@ -279,12 +288,13 @@ class Pieces {
 std::vector<std::int32_t> surface_clusters(const TriangleMesh& mesh, std::span<const Vec3> reference,
                                            double fineness) {
   Pieces pieces(mesh, reference);
-  const bool has_limbs = mesh.closed_and_oriented();
-  if (has_limbs)
+  if (mesh.closed_and_oriented()) {
     pieces.slice(reference, fineness);
-  else
+    pieces.merge(kSlab);
+  } else {
     pieces.halve(kSheet);
-  pieces.merge(has_limbs ? kSlab : kSheetMerged);
+    pieces.merge(kSheetMerged);
+  }
   for (int i = 0; i < kStraightened; ++i) pieces.straighten();
   return pieces.numbered();
 }

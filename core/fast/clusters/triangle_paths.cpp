@@ -14,7 +14,7 @@ constexpr double kMostBuckets = 1 << 16;
 
 }  // namespace
 
-TrianglePaths::TrianglePaths(const TriangleMesh& mesh, std::span<const Vec3> positions)
+TrianglePaths::TrianglePaths(const TriangleMesh& mesh, std::span<const Vec3> positions, Steps steps)
     : length_(mesh.triangle_count()) {
   std::vector<Vec3> middle;
   for (const Triangle& c : mesh.triangles())
@@ -25,12 +25,17 @@ TrianglePaths::TrianglePaths(const TriangleMesh& mesh, std::span<const Vec3> pos
   for (std::size_t t = 0; t < middle.size(); ++t) {
     const auto number = static_cast<std::int32_t>(t);
     first_step_.push_back(steps_.size());
-    for_each_neighbour(mesh, TriangleId{number}, [&](TriangleId next) {
-      if (met[+next] == number) return;
+    const auto take = [&](TriangleId next) {
+      if (met[+next] == number || +next == t) return;
       met[+next] = number;
       steps_.push_back({next, (middle[+next] - middle[t]).norm()});
       if (std::isfinite(steps_.back().length)) sum += steps_.back().length, ++finite;
-    });
+    };
+    if (steps == Steps::over_vertices)
+      for_each_neighbour(mesh, TriangleId{number}, take);
+    else
+      for (const EdgeId e : mesh.edges_of(TriangleId{number}))
+        std::ranges::for_each(mesh.triangles_at(e), take);
   }
   first_step_.push_back(steps_.size());
   if (finite > 0 && sum > 0) bucket_width_ = sum / static_cast<double>(finite);

@@ -9,13 +9,16 @@
 namespace cscd::fast {
 
 // Lengths of shortest paths over the triangles of a surface. A step leads from the middle of a triangle to
-// the middle of any triangle that shares a vertex with it. Steps across edges alone have so few directions
-// that the lines of equal length run slantwise round a limb whose mesh is regular.
+// the middle of a triangle that shares a vertex with it, or of one that shares an edge. Steps across edges
+// alone have so few directions that the lines of equal length run slantwise round a limb whose mesh is
+// regular.
 //
 // The surface is divided into pieces, which the caller numbers: `piece` is [triangles].
 class TrianglePaths {
  public:
-  TrianglePaths(const TriangleMesh& mesh, std::span<const Vec3> positions);
+  enum class Steps { over_vertices, across_edges };
+  TrianglePaths(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                Steps steps = Steps::over_vertices);
 
   // Computes the lengths of the shortest paths from the seeds to the triangles `reached`. A path stays within
   // one piece. `reached` must hold all triangles of the seeds' pieces. A triangle that no path leads to has

@@ -38,15 +38,20 @@ constexpr int kDraws = 50;
 constexpr int kFewDraws = 8, kFewSteps = 60;
 constexpr std::size_t kFewFaces = 128;
 
+// Returns the half of the vertices that is nearest to the point.
+std::vector<VertexId> nearest_half(std::span<const Vec3> positions, std::vector<VertexId> vertices,
+                                   const Vec3& point) {
+  const std::size_t near = std::max(kFewestNear, vertices.size() / 2);
+  if (near >= vertices.size()) return vertices;
+  std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(near), {},
+                           [&](VertexId v) { return (positions[+v] - point).squaredNorm(); });
+  vertices.resize(near);
+  return vertices;
+}
+
 // Chooses a few of the vertices, with weights that make them the wanted point in the reference pose.
 FollowingPoint following(std::span<const Vec3> positions, std::vector<VertexId> vertices, const Vec3& wanted,
                          int draws) {
-  // Vertices far away move otherwise than what lies round the point, where the cluster bends.
-  if (const std::size_t near = std::max(kFewestNear, vertices.size() / 2); near < vertices.size()) {
-    std::ranges::nth_element(vertices, vertices.begin() + static_cast<std::ptrdiff_t>(near), {},
-                             [&](VertexId v) { return (positions[+v] - wanted).squaredNorm(); });
-    vertices.resize(near);
-  }
   const std::size_t count = std::min(FollowingPoint::kMost, vertices.size());
   std::mt19937 random(kPreparationSeed);
   FollowingPoint best;
@@ -176,7 +181,11 @@ FollowingPoint observer_of(const TriangleMesh& mesh, std::span<const Vec3> refer
   std::vector<Face> some;
   const std::size_t stride = (all.faces.size() + kManyFaces - 1) / kManyFaces;
   for (std::size_t i = 0; i < all.faces.size(); i += stride) some.push_back(all.faces[i]);
-  FollowingPoint best = following(reference, all.vertices, best_viewpoint(some), kDraws);
+  const Vec3 wanted = best_viewpoint(some);
+  // Where a limb bends, vertices far away move otherwise than what lies round the point.
+  FollowingPoint best = following(
+      reference, mesh.closed_and_oriented() ? nearest_half(reference, all.vertices, wanted) : all.vertices,
+      wanted, kDraws);
   const View among = view(all.faces, best.at(reference));
   // A cluster of a closed surface bends round its observer nearly always. The few that do not gained nothing
   // on characters in motion.
