@@ -5,6 +5,7 @@
 #include "bench/input/input.h"
 #include "bench/options/model_options.h"
 #include "bench/output/output.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
@@ -31,7 +32,8 @@ void clusters(const ClusterOptions& options) {
                      " has intervals 0 to " + std::to_string(input.clip->interval_count() - 1) +
                      "; choose one of them");
 
-  const Prepared prepared = strategy->make(input.setup(elementary_tests().front()));
+  const Prepared prepared = strategy->make(
+      setup_for(*strategy, input.setup(elementary_tests().front()), input.clip->interval_count()));
   if (prepared.preparation.atomic_cluster.empty())
     throw InputError("strategy " + std::string(strategy->name) + " has no clusters; choose a radial one");
   const scenes::ClipInterval interval = input.clip->load(options.frame);

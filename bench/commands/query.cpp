@@ -18,6 +18,7 @@
 #include "bench/options/answer_options.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
 
@@ -74,9 +75,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   ignore(input, options.ignored);
   const Strategy& strategy =
       options.strategy.empty() ? default_strategy(input) : strategy_named(options.strategy);
-  // Bones spare the default strategy a little work in every interval, and preparing for them takes longer
-  // than they spare in a clip of some hundred frames.
-  input.use_bones = !options.strategy.empty() || strategy.needs.bones;
+  input.use_bones = gets_bones(strategy, input.clip->interval_count());
   const IntervalRange range = parse_frames(options.frames, input);
   const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
   Watchdog watchdog = watchdog_of(options, input);

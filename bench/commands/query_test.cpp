@@ -8,6 +8,7 @@
 #include "bench/output/schema.h"
 #include "bench/testing/test_generated.h"
 #include "bench/testing/test_shell.h"
+#include "scenes/catalog/scene.h"
 
 // The query command from outside: what it prints, where, and the form of its JSON.
 namespace cscd::bench {
@@ -35,6 +36,22 @@ class Query : public Program {
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+// A scene whose bones would be taken if the strategy got them. Mutation: one of the two gets the bones.
+TEST_F(Query, TheDefaultCountsWhatIsMeasuredOfItsRow) {
+  fs::copy(scenes::scenes_folder() / "urchin.json", folder / "scenes" / "urchin.json");
+  put("scenes/few.json",
+      R"({"schema": "cscd.scene/1", "base": "urchin", "story": "A few frames.", "frames": 5})");
+  const json document = answer("few");
+  const Ran ran = run("cscd run --scene few --strategy " + document["strategy"].get<std::string>() +
+                      " --repetitions 1 --json run.json");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const json counts = json::parse(text("run.json"))["strategies"][0]["counts"];
+  ASSERT_EQ(document["intervals"].size(), 4u);
+  for (std::size_t i = 0; i < document["intervals"].size(); ++i)
+    for (const char* quantity : {"bvot", "pctp", "clusters"})
+      EXPECT_EQ(document["intervals"][i]["counts"][quantity], counts[quantity][i]) << quantity << ", " << i;
 }
 
 TEST_F(Query, AnswersAPersonWhoeverReads) {

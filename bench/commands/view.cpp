@@ -16,6 +16,7 @@
 #include "bench/options/answer_options.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "bench/view/clip_recording.h"
 #include "bench/view/html.h"
@@ -67,10 +68,8 @@ namespace {
 json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   input.threads = options.threads;
   ignore(input, options.ignored);
-  input.use_bones = !options.strategies.empty();  // as for a query
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
-  if (options.strategies.empty() && strategies[0]->needs.bones) input.use_bones = true;
   const IntervalRange range = parse_frames(options.frames, input);
   const SurfaceNames names(input);
   TextTable texts;
@@ -84,10 +83,12 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   std::vector<std::unique_ptr<Contestant>> contestants;
   for (const Strategy* strategy : strategies) {
     watchdog.restart();
+    input.use_bones = gets_bones(*strategy, input.clip->interval_count());
     contestants.emplace_back(
         new Contestant{Answerer(input, *strategy, elementary, options.answers),
                        StrategyRecording(input, names, *strategy, elementary, clip.grid())});
   }
+  input.use_bones = true;  // strategies that do without take no notice
   {
     Progress progress("view " + options.input, range.last - range.first);
     for (std::size_t i = range.first; i < range.last; ++i) {

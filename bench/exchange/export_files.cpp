@@ -9,6 +9,7 @@
 #include "bench/answer/answer_json.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "bench/view/touched.h"
 #include "core/base/error.h"
@@ -153,7 +154,7 @@ class Marker {
 
  private:
   static Input& prepared_input(Input& input, const Strategy& strategy) {
-    input.use_bones = strategy.needs.bones;
+    input.use_bones = gets_bones(strategy, input.clip->interval_count());
     return input;
   }
   Input& input_;

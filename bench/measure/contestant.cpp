@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/output/progress.h"
+#include "bench/rows/applicable.h"
 #include "bench/rows/catalogue.h"
 #include "core/base/error.h"
 
@@ -17,9 +18,10 @@ void add(const Preparation& sample, PreparationRecord& record) {
 
 }  // namespace
 
-Setup measured_setup(const Input& input, const ElementaryTest& elementary, bool first_only,
-                     Pipeline pipeline) {
-  Setup setup = input.setup(elementary, first_only, pipeline);
+Setup measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                     bool first_only, Pipeline pipeline) {
+  Setup setup =
+      setup_for(strategy, input.setup(elementary, first_only, pipeline), input.clip->interval_count());
   if (input.ignored) setup.exclusions = &input.ignored->triangles;
   return setup;
 }
@@ -44,7 +46,7 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
     contestant.strategy = strategy;
     contestant.pipeline = pipeline;
     const auto make = [&](const ElementaryTest& test) {
-      Prepared prepared = strategy->make(measured_setup(input, test, false, pipeline));
+      Prepared prepared = strategy->make(measured_setup(input, *strategy, test, false, pipeline));
       add(prepared.preparation, contestant.preparation);
       contestant.threads = prepared.preparation.threads;
       progress.advance();

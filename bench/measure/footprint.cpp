@@ -73,7 +73,8 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
   const auto resident = status_bytes("VmRSS");
 
   const auto begin = std::chrono::steady_clock::now();
-  Made made{row.strategy->make(measured_setup(input, elementary, row.first, row.pipeline)), {}};
+  Made made{row.strategy->make(measured_setup(input, *row.strategy, elementary, row.first, row.pipeline)),
+            {}};
   made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   ContactSet found;
   for (int time = 0; time < 2; ++time)

@@ -77,7 +77,8 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
     for (const Strategy* strategy : chosen_strategies(subject.input, {})) names.emplace_back(strategy->name);
     names.emplace_back("brute");
     for (const std::string& name : names) {
-      const Prepared prepared = strategy_named(name).make(measured_setup(subject.input, exact()));
+      const Strategy& strategy = strategy_named(name);
+      const Prepared prepared = strategy.make(measured_setup(subject.input, strategy, exact()));
       EXPECT_EQ(digest(subject.ask(prepared)), digest(expected)) << name << ", seed " << seed;
     }
     rows = std::max(rows, names.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -9,5 +10,12 @@ namespace cscd::bench {
 
 // Says why a strategy cannot be made for a mesh (Strategy::needs); nothing where it can.
 std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones);
+
+// Says whether a strategy gets the bones of a clip: always if it needs them. A strategy that can do without
+// spares some work in every interval by them, and takes longer to prepare, so it gets them only for a clip of
+// many intervals. Whether it is a query or a measurement makes no difference.
+bool gets_bones(const Strategy& strategy, std::size_t intervals);
+// Returns the set-up of a clip as the strategy gets it: without the rig if the strategy does not get bones.
+Setup setup_for(const Strategy& strategy, Setup setup, std::size_t intervals);
 
 }  // namespace cscd::bench

@@ -337,7 +337,7 @@ constexpr std::array kStrategies = {
         .name = "drvbc_fast_bones",
         .source = "drvbc_fast, all covers of bones without a trial",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = kBones,
         .make =
             [](const Setup& setup) {
               return make_drvbc_fast(

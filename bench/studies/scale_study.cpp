@@ -220,7 +220,9 @@ class Measurement {
     if (row.strategy != &complete_reference() || input().mesh.triangle_count() <= subject_.reference_limit)
       return make_measured(input(), row, test, 0);
     const auto begin = Clock::now();
-    Made made{row.strategy->make(input().setup(test, row.first)), {}};
+    Made made{row.strategy->make(
+                  setup_for(*row.strategy, input().setup(test, row.first), input().clip->interval_count())),
+              {}};
     made.make_ms = milliseconds_since(begin);
     return made;
   }
