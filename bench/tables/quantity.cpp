@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "bench/record/shortfall.h"
 #include "bench/rows/catalogue.h"
 
 namespace cscd::bench {

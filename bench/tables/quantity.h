@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/record/record.h"
+#include "bench/record/shortfall.h"
 #include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
@@ -21,7 +22,6 @@ struct Measured {
 // Whether a strategy's times in a record are marked: it did not keep all contacts of the verified intervals,
 // or it promises nothing from some of their starts.
 bool is_marked(const Record& record, const std::string& strategy);
-inline constexpr char kMark = '*';
 inline constexpr char kMarkNote[] =
     "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts";
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "bench/record/shortfall.h"
 #include "bench/tables/quantity.h"
 
 namespace cscd::bench {

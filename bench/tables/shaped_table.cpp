@@ -19,7 +19,7 @@ Figure figure_of(const Cell* cell, bool whole = false) {
   if (cell == nullptr) return figure;
   if (cell->measured.value) {
     figure.measured = short_text(whole ? std::round(*cell->measured.value) : *cell->measured.value);
-    if (cell->measured.marked) figure.measured += kMark;
+    if (cell->measured.marked) figure.measured += kShortfallMark;
   }
   if (cell->measured.interval) {
     figure.low = short_text(cell->measured.interval->low);
@@ -120,7 +120,8 @@ bool ShapedTable::begins_today(std::size_t i) const {
 
 bool ShapedTable::has_marks() const {
   return std::ranges::any_of(lines, [](const Line& line) {
-    return std::ranges::any_of(line.cells, [](const std::string& cell) { return cell.ends_with(kMark); });
+    return std::ranges::any_of(line.cells,
+                               [](const std::string& cell) { return cell.ends_with(kShortfallMark); });
   });
 }
 

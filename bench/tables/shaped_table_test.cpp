@@ -87,14 +87,15 @@ TEST(ShapedTables, HaveIntervalsOnRequestAlone) {
 // Mutation: the divisor's mark is forgotten.
 TEST(ShapedTables, MarkTimesOfStrategiesThatLostContacts) {
   std::vector<Record> records = wide_records({"rope"});
-  EXPECT_EQ(text_of(records).find(kMark), std::string::npos);
+  EXPECT_EQ(text_of(records).find(kShortfallMark), std::string::npos);
   for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
   const std::vector<ShapedTable> tables = shaped_of(records);
   EXPECT_FALSE(tables[0].has_marks()) << "preparation and counters are no times of queries";
-  EXPECT_FALSE(tables[1].lines[0].cells[0].ends_with(kMark));
-  for (const std::size_t i : {4, 5, 6}) EXPECT_TRUE(tables[1].lines[0].cells[i].ends_with(kMark)) << i;
-  EXPECT_FALSE(tables[2].lines[0].cells[5].ends_with(kMark)) << "rvbc";
-  EXPECT_TRUE(tables[2].lines[0].cells[11].ends_with(kMark)) << "drvbc";
+  EXPECT_FALSE(tables[1].lines[0].cells[0].ends_with(kShortfallMark));
+  for (const std::size_t i : {4, 5, 6})
+    EXPECT_TRUE(tables[1].lines[0].cells[i].ends_with(kShortfallMark)) << i;
+  EXPECT_FALSE(tables[2].lines[0].cells[5].ends_with(kShortfallMark)) << "rvbc";
+  EXPECT_TRUE(tables[2].lines[0].cells[11].ends_with(kShortfallMark)) << "drvbc";
   EXPECT_TRUE(times_of_strategies(records).has_marks());
   const std::string text = text_of(records);
   EXPECT_EQ(text.find(kMarkNote), text.rfind(kMarkNote)) << "one footnote";

@@ -222,7 +222,7 @@ std::string fast_text(std::span<const Record> records) {
     if (const std::optional<double> faster = times_faster(record, kPaper)) over_paper.push_back(*faster);
   }
   if (medians.empty()) return "";
-  std::string out = range_text(medians, "-") + " ms a query" + (marked ? std::string(1, kMark) : "");
+  std::string out = range_text(medians, "-") + " ms a query" + (marked ? std::string(kShortfallMark) : "");
   if (!over_best.empty()) out += ", " + range_text(over_best, "-") + " times faster than the best baseline";
   if (!over_paper.empty())
     out += ", " + range_text(over_paper, "-") + (over_best.empty() ? " times faster" : "") + " than DRVBC";
@@ -296,7 +296,8 @@ std::string tables_text(std::span<const ShapedTable> tables, std::span<const Cla
   std::string out;
   for (const ShapedTable& table : shown) out += table_text(table) + "\n";
   const std::string fast = fast_text(records), held = claims_text(claims);
-  if (any_marks(shown) || fast.find(kMark) != std::string::npos) out += std::string(kMarkNote) + "\n";
+  if (any_marks(shown) || fast.find(kShortfallMark) != std::string::npos)
+    out += std::string(kMarkNote) + "\n";
   out += remark("measured", measured_text(records));
   out += remark("pipeline", code_around(records));
   if (std::ranges::any_of(tables, is_published)) out += remark("published", published_machine());
