@@ -19,6 +19,7 @@
 #include "bench/tables/claims.h"
 #include "bench/tables/paper_tables.h"
 #include "bench/tables/record_inputs.h"
+#include "bench/tables/run_times.h"
 #include "bench/tables/shaped_table.h"
 #include "bench/tables/tables_json.h"
 #include "bench/view/html.h"
@@ -149,6 +150,9 @@ void report(const ReportOptions& options) {
   const std::vector<PaperTable> made = paper_tables(records);
   std::vector<ShapedTable> shaped = shaped_tables(made, records);
   shaped.push_back(times_of_strategies(records));
+  std::string caution;  // the first that any record gives
+  for (const Record& record : records)
+    if (caution.empty()) caution = too_few_text(record);
   const std::string text =
       report_with({{"schema", "cscd.report/1"},
                    {"base", ""},
@@ -156,6 +160,7 @@ void report(const ReportOptions& options) {
                    {"records", std::move(rows)},
                    {"shaped", shaped_json(shaped)},
                    {"mark_note", kMarkNote},
+                   {"caution", caution},
                    {"tables", tables_json(made, judge_claims(records), records)},
                    {"accuracy", study_json(accuracy, "accuracy.schema.json", accuracy_points, link)},
                    {"growth", study_json(scale, "scale.schema.json", growth_points, link)},

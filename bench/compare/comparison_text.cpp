@@ -138,8 +138,11 @@ std::string verdict_line(const Comparison& c) {
       add(worse(c.times), "time");
       return verdict + what + (c.refusals.empty() ? "" : "; not everything could be compared");
     }
-    case ComparisonVerdict::not_comparable:
-      return verdict + ": " + refusal_lines(c).front();
+    case ComparisonVerdict::not_comparable: {
+      const std::string why = refusal_lines(c).front();
+      if (c.compared_answers + c.compared_counts == 0) return verdict + ": " + why;
+      return "nothing worse in what was compared; " + why;
+    }
     case ComparisonVerdict::nothing_worse:
       break;
   }

@@ -32,9 +32,10 @@ std::unique_ptr<scenes::ClipSource> clip_of(const scenes::Scene& scene, const st
 // Frames whose numbers differ by less are one: numbers are seconds times a rate.
 constexpr double kSameFrame = 1e-3;
 
+// Numbers of frames are sums of rounded seconds: what is a whole number but for that is shown as one.
 std::string shown(double value) {
-  if (value == std::floor(value) && std::abs(value) < 1e15)
-    return std::to_string(static_cast<std::int64_t>(value));
+  if (const double whole = std::round(value); std::abs(value - whole) < kSameFrame && std::abs(value) < 1e15)
+    return std::to_string(static_cast<std::int64_t>(whole));
   char digits[32];
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
@@ -139,6 +140,14 @@ IntervalRange parse_frames(const std::string& text, const Input& input) {
   if (from < least - kSameFrame || to > most + kSameFrame || range.first >= range.last)
     throw InputError("--frames " + text + ": not inside the clip's frames " + shown(least) + " to " +
                      shown(most) + ", or empty; choose " + shown(least) + " <= A < B <= " + shown(most));
+  // Intervals lie between frames: to begin or end elsewhere would answer less than was asked.
+  const auto require_frame = [&](double asked, std::size_t frame, std::size_t before) {
+    if (std::abs(frame_number(input, frame) - asked) <= kSameFrame) return;
+    throw InputError("--frames " + text + ": no frame has the number " + shown(asked) + "; choose " +
+                     shown(frame_number(input, before)) + " or " + shown(frame_number(input, before + 1)));
+  };
+  require_frame(from, range.first, range.first == 0 ? 0 : range.first - 1);
+  require_frame(to, range.last, range.last);
   return range;
 }
 

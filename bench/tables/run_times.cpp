@@ -25,21 +25,19 @@ std::string beside_reference(const std::string& strategy, const Record& record) 
   return text;
 }
 
-// A run that only shows that everything works (--smoke) has times, too.
-std::string too_few(const Record& record) {
+}  // namespace
+
+std::string too_few_text(const Record& record) {
   constexpr std::size_t kLeastRepetitions = 5;  // bench/METHODOLOGY.md
   for (const StrategyRecord& strategy : record.strategies) {
     if (strategy.ms.empty()) continue;
     const std::size_t repetitions = strategy.ms.begin()->second.size();
     if (repetitions < kLeastRepetitions)
       return "times are of " + std::to_string(repetitions) + " repetitions of " +
-             std::to_string(record.timed_intervals.size()) +
-             " intervals, too few to conclude anything from\n";
+             std::to_string(record.timed_intervals.size()) + " intervals, too few to conclude anything from";
   }
   return "";
 }
-
-}  // namespace
 
 std::string run_times_text(const Record& record) {
   std::size_t width = 0;
@@ -54,7 +52,9 @@ std::string run_times_text(const Record& record) {
     rows += text + beside_reference(strategy.name, record) + "\n";
   }
   if (rows.empty()) return "";
-  return too_few(record) + "median total of an interval, with refit:\n" + rows + shortfall_note({&record, 1});
+  const std::string few = too_few_text(record);
+  return few + (few.empty() ? "" : "\n") + "median total of an interval, with refit:\n" + rows +
+         shortfall_note({&record, 1});
 }
 
 }  // namespace cscd::bench

@@ -65,8 +65,8 @@ class Report {
 
   say() {
     const { scenes } = this;
-    const times = scenes.map((scene) => this.cell("engine", scene, "fast.median")).filter(Boolean).map((cell) => cell.measured);
-    const gains = scenes.map((scene) => this.bestBaseline(scene)).filter(Boolean).map((row) => row.cell.measured);
+    const times = scenes.map((scene) => this.cell("engine", scene, "fast.median")).filter((cell) => cell && !cell.marked).map((cell) => cell.measured);
+    const gains = scenes.map((scene) => this.bestBaseline(scene)).filter((row) => row && !row.cell.marked).map((row) => row.cell.measured);
     const range = (values) => (Math.min(...values) === Math.max(...values) ? short(values[0]) : `${short(Math.min(...values))} to ${short(Math.max(...values))}`);
     byId("headline").textContent = times.length === 0 ? `What ${scenes.length} records say`
       : `From a start that is known to be embedded, drvbc_fast answers the median interval in ${range(times)} ms` + (gains.length ? `, ${range(gains)} times faster than the fastest complete baseline.` : ".");
@@ -74,7 +74,7 @@ class Report {
     const reproduced = verdicts.filter((claim) => claim.verdict === "reproduced").length;
     const { environment } = this.data.tables.records[0];
     const sum = (key) => this.data.tables.records.reduce((total, record) => total + (record[key] || 0), 0);
-    byId("summary").textContent = `${scenes.length} scene${scenes.length === 1 ? "" : "s"}; ${sum("verified_intervals")} intervals verified, ${sum("timed_intervals")} timed. ` +
+    byId("summary").textContent = (this.data.caution ? `Beware: ${this.data.caution}. ` : "") + `${scenes.length} scene${scenes.length === 1 ? "" : "s"}; ${sum("verified_intervals")} intervals verified, ${sum("timed_intervals")} timed. ` +
       `${reproduced} of ${verdicts.length} claims of the paper that can be measured here are reproduced. ${environment.cpu}, ${environment.cores} cores, ${environment.compiler}, commit ${environment.commit.slice(0, 12)}${environment.dirty ? " with changes" : ""}, ${environment.date.slice(0, 10)}.`;
   }
 

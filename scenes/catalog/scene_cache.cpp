@@ -128,7 +128,7 @@ void generate_to_cache(const Scene& scene, const Progress& progress) {
 }  // namespace
 
 fs::path cache_folder() {
-  if (const char* named = std::getenv("CSCD_CACHE")) return named;
+  if (const char* named = std::getenv("CSCD_CACHE"); named != nullptr && *named != '\0') return named;
   std::string no_scenes;
   try {
     const fs::path scenes = scenes_folder();

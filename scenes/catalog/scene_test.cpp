@@ -83,9 +83,8 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
   EXPECT_EQ(refusal("skinning_linear", "skinning").substr(0, 49),
             "small.json, effect skinning: unknown effect; know");
   EXPECT_EQ(refusal("\"drag\": 0.5, ", ""),
-            "small.json, effect chain_dynamics: parameter drag is missing (share of the velocity lost per "
-            "frame); add "
-            "it to the scene file");
+            "small.json, effect chain_dynamics: parameter drag is missing (share of the velocity that is "
+            "lost); add it to the scene file");
   EXPECT_EQ(refusal("\"vertices\": 82", "\"vertices\": 83"),
             "scene small: the shape has 82 vertices, the scene file expects 83; correct one of them");
   EXPECT_NE(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]").find("parameter first_end must be a list of lists"),

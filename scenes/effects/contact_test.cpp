@@ -128,7 +128,9 @@ class Ring : public testing::Test {
     std::size_t colliding = 0, frames = 0;
   };
   Outcome run(const MakeDetector& first) const {
-    const Parameters parameters("scene ring, effect contact_response", {{"push", 0.2}, {"spread", 4.0}});
+    const auto row = std::ranges::find(effects(), "contact_response", &EffectRow::name);
+    const Parameters parameters =
+        checked({"scene ring, effect contact_response", {{"push", 0.2}, {"spread", 4.0}}}, row->parameters);
     const TriangleMesh mesh(shape.triangles, shape.positions.size());
     EmbeddingTest embedding(mesh, shape.positions);
     Outcome outcome;

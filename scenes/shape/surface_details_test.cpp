@@ -81,7 +81,8 @@ TEST(SurfaceDetails, RefuseWhatIsNoPlace) {
         {{"at", std::vector<double>{1, 2, 3}}, {"reach", std::vector<double>{1, 1, 2}}, {"height", 0.5}});
     p = p.with(name, std::move(value));
     try {
-      read_details(std::span(&p, 1));
+      const Parameters whole = checked(p, detail_rows());
+      read_details(std::span(&whole, 1));
     } catch (const InputError& error) {
       return error.what();
     }
