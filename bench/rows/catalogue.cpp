@@ -15,6 +15,7 @@
 #include "bench/rows/unknown_name.h"
 #include "core/drvbc/drvbc.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/radial/setup.h"
 
 namespace cscd::bench {
 namespace {
@@ -340,6 +341,7 @@ constexpr std::array kStrategies = {
         .needs = kBones,
         .make =
             [](const Setup& setup) {
+              radial::require_radial_setup(setup, "drvbc_fast_bones");
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
             },

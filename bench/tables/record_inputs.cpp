@@ -52,6 +52,7 @@ std::size_t place_of(const std::string& scene) {
 
 RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted) {
   RecordFiles files;
+  std::string left_out;  // said only where something is left
   const auto add = [&](const fs::path& file, bool named_itself) {
     const std::string schema = schema_of(file);
     // An outdated record of a run is refused where it is read, and says why.
@@ -62,7 +63,7 @@ RecordFiles record_files(const std::vector<std::string>& named, std::span<const 
     } else if (named_itself) {
       if (!schema.starts_with("cscd."))
         throw InputError("record " + file.string() + ": is no record; name what cscd run wrote");
-      std::fprintf(stderr, "left out: %s is no record of a run (%s)\n", file.c_str(), schema.c_str());
+      left_out += "left out: " + file.string() + " is no record of a run (" + schema + ")\n";
     }
   };
   for (const std::string& name : named) {
@@ -76,6 +77,7 @@ RecordFiles record_files(const std::vector<std::string>& named, std::span<const 
   if (!files.contains(std::string(wanted.front())))
     throw InputError((named.size() == 1 ? named.front() + " holds no" : "none of these holds a") +
                      " record of cscd run; name what cscd run --json wrote, or a folder of it");
+  std::fputs(left_out.c_str(), stderr);
   return files;
 }
 
