@@ -10,8 +10,8 @@ namespace cscd::bench {
 // faster than `base` that is. Empty for a record without times.
 std::string run_times_text(const Record& record);
 
-// Says that a record has too few repetitions to conclude anything from its times, as one of `run --smoke` has.
-// Empty where it has enough.
+// Says that a record has too few repetitions to conclude anything from its times, as one of `run --smoke`
+// has. Empty where it has enough.
 std::string too_few_text(const Record& record);
 
 }  // namespace cscd::bench
