@@ -143,13 +143,14 @@ void ignore(Input& input, const IgnoreRequest& request) {
   }
   const std::vector<std::set<std::int32_t>> near = neighbours(parent, request.neighbours.value_or(0));
   std::vector<GroupPair> pairs;
-  for (const auto& [a, i] : groups)
-    for (const auto& [b, j] : groups) {
+  for (const auto& first : groups)
+    for (const auto& second : groups) {
+      const Group &a = first.first, &b = second.first;
       const bool are_near = request.neighbours && a.bone >= 0 && b.bone >= 0 &&
                             near[static_cast<std::size_t>(a.bone)].contains(b.bone);
       if (are_near ||
           std::ranges::any_of(ignored->names, [&](const Names& both) { return meet(both, a, b); }))
-        pairs.emplace_back(i, j);
+        pairs.emplace_back(first.second, second.second);
     }
   ignored->triangles.set_triangle_groups(input.mesh, std::move(group_of_triangle), pairs);
   input.ignored = std::move(ignored);
