@@ -9,7 +9,8 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
   scenes::ImportOptions& import = options.import;
   command
       .add_option("--clip", import.clip,
-                  "the clip, by name or number, or all (query and view); default all for query, and else the "
+                  "the clip, by name or by number from 0, or all (query and view); default all for query, "
+                  "and else the "
                   "first\nthat moves the surface")
       ->group(kGroup);
   command
