@@ -3,6 +3,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/mesh/test_shapes.h"
 #include "library/test_steps.h"
 
 namespace cscd {
@@ -70,6 +71,63 @@ TEST(SelfCollision, RefusesThePreparationOfAnotherMesh) {
   EXPECT_THROW(SelfCollision(other.faces, other.start, options), std::invalid_argument);
   options.preparation.pop_back();
   EXPECT_THROW(SelfCollision(step.faces, step.start, options), std::invalid_argument);
+}
+
+struct Tube {
+  Shape shape = uneven_tube(12, 40, 15, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); });
+  FaceRows faces = face_rows(shape.triangles);
+  Rows rest = rows(shape.positions);
+};
+
+// The trial takes the four parts of this tube. Mutation: labels are not handed on.
+TEST(SelfCollision, CutsTheSurfaceAlongLabels) {
+  const Tube tube;
+  const double first = tube.rest.col(0).minCoeff(), last = tube.rest.col(0).maxCoeff();
+  const auto prepared = [&](int parts) {
+    SelfCollision::Options options;
+    for (Eigen::Index v = 0; v < tube.rest.rows(); ++v)
+      options.labels.push_back(-3 *
+                               static_cast<int>((tube.rest(v, 0) - first) / (last - first) * parts * 0.999));
+    return SelfCollision(tube.faces, tube.rest, options).preparation();
+  };
+  const std::vector<std::byte> of_surface = SelfCollision(tube.faces, tube.rest).preparation();
+  EXPECT_NE(prepared(4), of_surface);
+  EXPECT_EQ(prepared(1), of_surface) << "one label says nothing";
+}
+
+TEST(SelfCollision, AnswersTheSameWithLabels) {
+  for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Step step(seed);
+    std::mt19937_64 random(seed);
+    SelfCollision::Options labelled;
+    for (Eigen::Index v = 0; v < step.start.rows(); ++v)
+      labelled.labels.push_back(static_cast<int>(random() % (1 + seed % 5)) - 2);
+    SelfCollision body(step.faces, step.start, labelled);
+    expect_right(step, body, Exclusions());
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(SelfCollision, RefusesLabelsThatCannotBeParts) {
+  const Tube tube;
+  const auto refusal = [&](std::vector<int> labels) {
+    SelfCollision::Options options;
+    options.labels = std::move(labels);
+    try {
+      SelfCollision(tube.faces, tube.rest, options);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto count = static_cast<std::size_t>(tube.rest.rows());
+  EXPECT_EQ(refusal({1, 2}), "labels: 2 for " + std::to_string(count) + " vertices; give one label a vertex");
+  const Shape fine = uneven_tube(12, 90, 15, [](double) { return 0.8; });
+  SelfCollision::Options each;
+  each.labels.resize(fine.positions.size());
+  std::iota(each.labels.begin(), each.labels.end(), 0);
+  EXPECT_THROW(SelfCollision(face_rows(fine.triangles), rows(fine.positions), each), std::invalid_argument);
 }
 
 }  // namespace

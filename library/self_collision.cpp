@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -28,6 +29,7 @@ Prepared make_complete(const Setup& setup) {
   return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
 }
 constexpr int kMostThreads = 1024;  // each has memory of its own
+constexpr std::size_t kMostLabels = 1000;
 const Strategy kFirst{"drvbc_fast", "", Guarantee::first_contact, {.closed_mesh = true}, make_first};
 const Strategy kComplete{.name = "drvbc_fast_complete",
                          .source = "",
@@ -145,6 +147,7 @@ class SelfCollision::Engine {
     if (options_.threads < 1 || options_.threads > kMostThreads)
       throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
                        std::to_string(kMostThreads));
+    check_labels();
     options_.obstacles.clear();
     if (beside_)
       obstacles_.emplace(mesh_, reference_, beside_->mesh, beside_->positions, beside_->first_vertex,
@@ -240,6 +243,18 @@ class SelfCollision::Engine {
   };
   static constexpr int kFilteredSteps = 16;  // after a step in which something excluded touched
 
+  void check_labels() const {
+    const std::vector<int>& labels = options_.labels;
+    if (labels.empty()) return;
+    if (labels.size() != mesh_.vertex_count())
+      throw InputError("labels: " + std::to_string(labels.size()) + " for " +
+                       std::to_string(mesh_.vertex_count()) + " vertices; give one label a vertex");
+    const std::size_t different = std::set<int>(labels.begin(), labels.end()).size();
+    if (different > kMostLabels)
+      throw InputError("labels: " + std::to_string(different) + " different ones; give at most " +
+                       std::to_string(kMostLabels) + ", such as one for each bone");
+  }
+
   static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
   Setup setup(bool first, const cscd::Exclusions* exclusions) const {
     return {.mesh = mesh_,
@@ -249,7 +264,8 @@ class SelfCollision::Engine {
             .threads = options_.threads,
             .first_only = first,
             .exclusions = exclusions,
-            .preparation = options_.preparation};
+            .preparation = options_.preparation,
+            .labels = options_.labels};
   }
   Session& made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
                 const cscd::Exclusions* exclusions) {

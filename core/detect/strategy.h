@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,6 +61,10 @@ struct Setup {
   // anew. The strategy throws InputError if it is damaged, or if less than half of the triangles were there.
   // Strategies that save nothing take no notice.
   std::span<const std::byte> preparation = {};
+  // The part that each vertex belongs to, [vertices], such as the bone that it follows most; empty where no
+  // parts are known. Any integers; parts turn against each other where they meet. They help to choose where
+  // to look from, as bones do, and answers do not depend on them. With a rig they are not looked at.
+  std::span<const std::int32_t> labels = {};
 };
 
 // Results and times of the one-time work before the first interval, in milliseconds (Table 1 of the paper).

@@ -4,11 +4,14 @@
 #include <array>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <limits>
+#include <map>
 
 #include "core/base/team.h"
 #include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/cut/coarse_surface.h"
+#include "core/fast/joints_of_parts.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/bone_clusters.h"
@@ -18,6 +21,12 @@ namespace {
 
 bool has_bones(const Setup& setup) {
   return setup.rig != nullptr && !setup.rig->parent.empty();
+}
+
+// Labels that are all alike say nothing.
+bool has_labels(const Setup& setup) {
+  return !has_bones(setup) &&
+         std::ranges::adjacent_find(setup.labels, std::not_equal_to{}) != setup.labels.end();
 }
 
 class CountingSink : public TrianglePairSink {
@@ -141,6 +150,34 @@ std::vector<BoneId> bones_of_triangles(const Surfaces& surfaces, StageClock& clo
   return bone_of;
 }
 
+// Returns the part of each triangle of the trial surface, numbered from 0 without gaps: the label of its
+// first corner, or of the second where the second and the third agree.
+std::vector<std::int32_t> labelled_parts(const Surfaces& surfaces) {
+  const std::vector<std::int32_t> label_of = surfaces.coarse.coarse_labels(surfaces.setup.labels);
+  std::vector<std::int32_t> part_of;
+  std::map<std::int32_t, std::int32_t> part_of_label;
+  for (const Triangle& c : surfaces.coarse.mesh().triangles()) {
+    const std::int32_t label = label_of[+c[label_of[+c[1]] == label_of[+c[2]] ? 1 : 0]];
+    const auto next = static_cast<std::int32_t>(part_of_label.size());
+    part_of.push_back(part_of_label.try_emplace(label, next).first->second);
+  }
+  return surfaces.on_trial_surface(std::move(part_of));
+}
+
+// The parts of a surface that turn against each other: bones, or what the labels of vertices tell apart.
+struct Parts {
+  Rig rig;
+  std::vector<BoneId> bone_of;  // [triangles of the trial surface]
+};
+Parts parts_of(const Surfaces& surfaces, StageClock& clock) {
+  const Setup tried = surfaces.trial_setup();
+  if (has_bones(tried)) return {*tried.rig, bones_of_triangles(surfaces, clock)};
+  const std::vector<std::int32_t> part_of = labelled_parts(surfaces);
+  Parts parts{joints_of_parts(tried.mesh, tried.reference, part_of), {}};
+  for (const std::int32_t part : part_of) parts.bone_of.push_back(BoneId{part});
+  return parts;
+}
+
 // Calls work(0) and work(1), side by side if there are two threads or more. Throws what one of the two calls
 // has thrown.
 template <class Work>
@@ -166,21 +203,21 @@ struct Decision {
 Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
   const Setup tried = surfaces.trial_setup();
-  if (!has_bones(tried) || options.clusters == Clusters::of_surface || !tried.mesh.closed_and_oriented())
+  const bool has_parts = has_bones(tried) || has_labels(surfaces.setup);
+  if (!has_parts || options.clusters == Clusters::of_surface || !tried.mesh.closed_and_oriented())
     return {{clusters_of_surface(surfaces), nullptr}};
   const auto of_bones = [&](std::span<const BoneId> bone_of) {
     return radial::make_atomic_clusters(tried.mesh, bone_of).of_triangle;
   };
-  if (options.clusters == Clusters::of_bones)
-    return {{of_bones(bones_of_triangles(surfaces, clock)), nullptr}};
+  if (options.clusters == Clusters::of_bones) return {{of_bones(parts_of(surfaces, clock).bone_of), nullptr}};
 
   std::vector<Trial> trials;
   std::array<Candidate, 2> candidates;
   for_both(tried.threads, [&](std::size_t i) {
     if (i == 0) {
-      const std::vector<BoneId> bone_of = bones_of_triangles(surfaces, clock);
-      trials = trial_poses(tried.mesh, tried.reference, *tried.rig, bone_of, surfaces.trials());
-      candidates[i] = made(tried, of_bones(bone_of), options);
+      const Parts parts = parts_of(surfaces, clock);
+      trials = trial_poses(tried.mesh, tried.reference, parts.rig, parts.bone_of, surfaces.trials());
+      candidates[i] = made(tried, of_bones(parts.bone_of), options);
     } else {
       candidates[i] = made(tried, clusters_of_surface(surfaces), options);
     }

@@ -145,8 +145,9 @@ PYBIND11_MODULE(_cscd, module) {
   py::class_<SelfCollision>(module, "SelfCollision")
       .def(py::init([](const Table<int>& faces, const Reals& reference, int threads, bool check_positions,
                        bool check_start, const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
-                       const std::string& preparation) {
-             SelfCollision::Options options{threads, check_positions, check_start, exclude, {}, {}};
+                       const std::string& preparation, std::vector<int> labels) {
+             SelfCollision::Options options{threads, check_positions,  check_start, exclude, {},
+                                            {},      std::move(labels)};
              const auto* const bytes = reinterpret_cast<const std::byte*>(preparation.data());
              options.preparation.assign(bytes, bytes + preparation.size());
              for (const auto& [corners, positions] : obstacles)

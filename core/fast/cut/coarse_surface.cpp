@@ -195,6 +195,17 @@ bool CoarseSurface::keep_what_fails(const TriangleMesh& mesh, const Level& level
   return any;
 }
 
+std::vector<std::int32_t> CoarseSurface::coarse_labels(std::span<const std::int32_t> label_of) const {
+  std::vector<std::int32_t> labels(label_of.begin(), label_of.end());
+  for (const std::unique_ptr<Level>& level : levels_) {
+    std::vector<std::int32_t> coarser(level->mesh.vertex_count());
+    for (std::size_t v = 0; v < labels.size(); ++v)
+      if (level->kept[v] != kNone) coarser[index(level->kept[v])] = labels[v];
+    labels = std::move(coarser);
+  }
+  return labels;
+}
+
 std::vector<std::int32_t> CoarseSurface::carried(std::vector<std::int32_t> label_of) const {
   for (std::size_t l = levels_.size(); l-- > 0;) {
     const Level& level = *levels_[l];

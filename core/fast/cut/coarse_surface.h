@@ -29,6 +29,9 @@ class CoarseSurface {
     return levels_.empty() ? positions_ : std::span<const Vec3>(levels_.back()->positions);
   }
 
+  // Returns labels of the coarse surface's vertices from labels of the vertices that it was made of: each has
+  // the label of one of the vertices that belong to it.
+  std::vector<std::int32_t> coarse_labels(std::span<const std::int32_t> label_of) const;
   // Carries labels of the coarse surface's triangles over to the triangles of the surface that it was made
   // of, with straight seams. Labels are not negative, and a label never leaves its connected component.
   std::vector<std::int32_t> carried(std::vector<std::int32_t> label_of) const;

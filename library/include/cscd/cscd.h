@@ -104,6 +104,11 @@ class CSCD_EXPORT SelfCollision {
     // faces are known again by the reference positions of their corners, however they are numbered, and what
     // is new is prepared anew. Empty: prepare from nothing.
     std::vector<std::byte> preparation;
+    // The part that each vertex belongs to, such as the bone that it follows most: any integers, at most 1000
+    // different ones. Parts are taken to turn against each other where they meet. A closed mesh that bends at
+    // joints which its reference positions do not show, such as a hand, is then answered in fewer tests;
+    // preparing takes two to three times as long. Answers are the same. Empty, or one entry a vertex.
+    std::vector<int> labels;
   };
 
   struct Contact {

@@ -73,6 +73,9 @@ class SelfCollision(_cscd.SelfCollision):
         other; each rests until place_obstacle() or move_obstacle(). Their vertices and faces are numbered behind the
         mesh's, in contacts and in `exclude`.
     preparation: what preparation() of another object returned.
+    labels: [vertices] int, the part that each vertex belongs to, such as the bone that it follows most; at most 1000
+        different ones. They help the engine with a closed mesh that bends at joints which `reference` does not show, such
+        as a hand, and cost time in preparing. Answers are the same.
 
     A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
     the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
@@ -80,7 +83,7 @@ class SelfCollision(_cscd.SelfCollision):
     """
 
     def __init__(self, faces, reference, *, threads=1, check_positions=True, check_start=True, exclude=None, obstacles=(),
-                 preparation=b""):
+                 preparation=b"", labels=()):
         if exclude is not None and not isinstance(exclude, Exclusions):
             raise ValueError("exclude: give an object of cscd.Exclusions")
         if not isinstance(preparation, (bytes, bytearray, memoryview)):
@@ -93,7 +96,8 @@ class SelfCollision(_cscd.SelfCollision):
                          int(numbers(threads, "threads", INDEX)), flag(check_positions, "check_positions"),
                          flag(check_start, "check_start"), Exclusions() if exclude is None else exclude,
                          [(_faces(corners, f"obstacle {i}, faces"), _positions(where, f"obstacle {i}, positions"))
-                          for i, (corners, where) in enumerate(surfaces)], bytes(preparation))
+                          for i, (corners, where) in enumerate(surfaces)], bytes(preparation),
+                         numbers(labels, "labels", INDEX, "vertices").tolist())
 
     def place_obstacle(self, obstacle, positions):
         """Places an obstacle, counted from 0, where it rests in the steps from then on."""

@@ -51,6 +51,14 @@ class SelfCollision(unittest.TestCase):
         step = self.body.largest_step(self.before, fallen(self.before, 2), safety=1)
         self.assertTrue(0.4999 < step < 0.5)
 
+    def test_labels_change_no_answer(self):
+        after = fallen(self.before, 2)
+        labelled = cscd.SelfCollision(self.faces, self.before, labels=np.repeat([5, -2], 4))
+        self.assertEqual(labelled.all_contacts(self.before, after).times.tolist(),
+                         self.body.all_contacts(self.before, after).times.tolist())
+        with self.assertRaisesRegex(ValueError, "labels: 3 for 8 vertices"):
+            cscd.SelfCollision(self.faces, self.before, labels=[1, 2, 3])
+
     def test_a_start_that_crosses(self):
         inside = fallen(self.before, 1.5)
         answer = self.body.first_contact(inside, inside)
