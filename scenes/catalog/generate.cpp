@@ -64,6 +64,7 @@ Generated run_scene(const Scene& scene, const BeginFrames& begin, const Progress
   Generated generated;
   for (std::size_t i = 0; i < effects.size(); ++i)
     generated.effects.push_back({std::string(effects.name(i)), effects.evaluations(i), clock.ms(i)});
+  generated.bone_names = shape.bone_names;
   generated.digest = digest.text();
   return generated;
 }

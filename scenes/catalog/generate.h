@@ -25,6 +25,7 @@ struct EffectCost {
 // The cost of generating a scene, and the digest of its frames.
 struct Generated {
   std::vector<EffectCost> effects;  // effects of the scene, in its order
+  std::vector<std::string> bone_names;
   std::string digest;
 };
 

@@ -35,26 +35,44 @@ std::optional<std::string> digest_of(const fs::path& file) {
   }
 }
 
-fs::path costs_file(const Scene& scene) {
-  return cache_file(scene).replace_extension(".effects.json");
+// What is known of cached frames, in one file beside them.
+struct CacheNotes {
+  std::vector<EffectCost> effects;
+  std::vector<std::string> bones;
+  std::string digest;    // of the frames when they were generated
+  std::string verified;  // identity_of() the cache when its digest was last found right
+};
+
+fs::path notes_file(const Scene& scene) {
+  return cache_file(scene).replace_extension(".json");
 }
 
-// The file with the digest of the cached frames, for a scene whose own file has none.
-fs::path digest_file(const Scene& scene) {
-  return cache_file(scene).replace_extension(".digest");
-}
-
-void write_whole(const fs::path& path, const std::string& text) {
-  UnfinishedFile file(path, true);
-  file.write(text);
+void write_notes(const Scene& scene, const CacheNotes& notes) {
+  auto effects = nlohmann::ordered_json::array();
+  for (const EffectCost& effect : notes.effects)
+    effects.push_back({{"name", effect.name}, {"evaluations", effect.evaluations}, {"ms", effect.ms}});
+  const nlohmann::ordered_json json{
+      {"effects", effects}, {"bones", notes.bones}, {"digest", notes.digest}, {"verified", notes.verified}};
+  UnfinishedFile file(notes_file(scene), true);
+  file.write(json.dump(1) + "\n");
   file.finish();
 }
 
-void write_costs(const Scene& scene, const Generated& generated) {
-  auto effects = nlohmann::ordered_json::array();
-  for (const EffectCost& effect : generated.effects)
-    effects.push_back({{"name", effect.name}, {"evaluations", effect.evaluations}, {"ms", effect.ms}});
-  write_whole(costs_file(scene), effects.dump(1) + "\n");
+// Returns nullopt where there is no such file, or a damaged one.
+std::optional<CacheNotes> read_notes(const Scene& scene) {
+  CacheNotes notes;
+  try {
+    std::ifstream stream(notes_file(scene));
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    for (const nlohmann::json& effect : json.at("effects"))
+      notes.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
+    json.at("bones").get_to(notes.bones);
+    json.at("digest").get_to(notes.digest);
+    json.at("verified").get_to(notes.verified);
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+  return notes;
 }
 
 // A lock that is held while a cache is checked and generated. The system releases it when the process ends.
@@ -74,13 +92,6 @@ class CacheLock {
   int file_;
 };
 
-std::string first_line(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  return line;
-}
-
 // Identifies a file with its size and the times of its last changes. The system sets the time of status
 // change, so anything that writes to the file changes that time.
 std::string identity_of(const fs::path& path) {
@@ -97,16 +108,14 @@ std::string identity_of(const fs::path& path) {
 // query, so it is done once for each file: a cache whose digest was right once, and which has not been
 // changed since, is complete.
 bool is_whole(const Scene& scene) {
-  std::error_code error;
-  if (!fs::exists(costs_file(scene), error)) return false;
-  const std::string right = scene.expected.digest.value_or(first_line(digest_file(scene)));
-  const fs::path verified = cache_file(scene).replace_extension(".verified");
-  const std::string now = right + " " + identity_of(cache_file(scene));
-  if (right.empty()) return false;
-  if (first_line(verified) == now) return true;
-  if (digest_of(cache_file(scene)) != right) return false;
+  std::optional<CacheNotes> notes = read_notes(scene);
+  if (!notes || notes->digest != scene.expected.digest.value_or(notes->digest)) return false;
+  const std::string now = identity_of(cache_file(scene));
+  if (notes->verified == now && !now.empty()) return true;
+  if (digest_of(cache_file(scene)) != notes->digest) return false;
+  notes->verified = now;
   try {
-    write_whole(verified, now + "\n");
+    write_notes(scene, *notes);
   } catch (const InputError&) {
     // Where nothing can be written, the digest is computed every time.
   }
@@ -116,12 +125,11 @@ bool is_whole(const Scene& scene) {
 void generate_to_cache(const Scene& scene, const Progress& progress) {
   const fs::path file = cache_file(scene);
   std::optional<PointCacheWriter> writer;
-  const Generated generated = run_scene(
+  Generated generated = run_scene(
       scene, [&](ClipHeader header) -> FrameSink& { return writer.emplace(file, std::move(header), true); },
       progress);
   require_expected_digest(scene, generated.digest);
-  write_costs(scene, generated);
-  if (!scene.expected.digest) write_whole(digest_file(scene), generated.digest + "\n");
+  write_notes(scene, {std::move(generated.effects), std::move(generated.bone_names), generated.digest, {}});
   writer->finish();
 }
 
@@ -167,20 +175,8 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
 }
 
 std::vector<std::string> bone_names(const Scene& scene) {
-  const fs::path file = cache_file(scene).replace_extension(".bones.json");
-  try {
-    std::ifstream stream(file);
-    return nlohmann::json::parse(stream).get<std::vector<std::string>>();
-  } catch (const nlohmann::json::exception&) {
-    // There is no such file yet, or it is damaged.
-  }
-  std::vector<std::string> names = make_shape(scene.shape, scene.shape_parameters).bone_names;
-  try {
-    write_whole(file, nlohmann::json(names).dump() + "\n");
-  } catch (const InputError&) {
-    // Where nothing can be written, the shape is built every time.
-  }
-  return names;
+  if (std::optional<CacheNotes> notes = read_notes(scene)) return std::move(notes->bones);
+  return make_shape(scene.shape, scene.shape_parameters).bone_names;
 }
 
 Expected accept_scene(const fs::path& file, const Progress& progress) {
@@ -195,22 +191,16 @@ Expected accept_scene(const fs::path& file, const Progress& progress) {
                        digest.text()};
   std::ifstream stream(target.path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  write_whole(target.path, with_expected(text, found, file.string()));
+  UnfinishedFile out(target.path, true);
+  out.write(with_expected(text, found, file.string()));
+  out.finish();
   return found;
 }
 
 std::vector<EffectCost> effect_costs(const Scene& scene) {
-  const fs::path file = costs_file(scene);
-  std::vector<EffectCost> costs;
-  try {
-    std::ifstream stream(file);
-    for (const nlohmann::json& effect : nlohmann::json::parse(stream))
-      costs.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(file.string() + ": cannot be read (" + error.what() +
-                     "); remove it, and the scene is generated anew");
-  }
-  return costs;
+  if (std::optional<CacheNotes> notes = read_notes(scene)) return std::move(notes->effects);
+  throw InputError(notes_file(scene).string() +
+                   ": cannot be read; remove it, and the scene is generated anew");
 }
 
 }  // namespace cscd::scenes

@@ -28,8 +28,8 @@ std::filesystem::path cache_file(const Scene& scene);
 // while frames are generated.
 std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progress = {});
 
-// Returns the names of the scene's bones, [bones]. They are kept beside the cache of its frames, because to
-// build the shape for their sake can take longer than a query.
+// Returns the names of the scene's bones, [bones]. They are kept beside the cache of its frames, because
+// building the shape for their sake can take longer than a query.
 std::vector<std::string> bone_names(const Scene& scene);
 
 // Generates the scene of a file, whatever the file expects, and returns the actual counts and digest. Writes
