@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "bench/compare/stage_samples.h"
 #include "bench/output/data.h"
 #include "bench/output/schema.h"
 #include "bench/statistics/statistics.h"
+#include "core/base/digest.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -23,12 +25,9 @@ constexpr const char* kEnvironment[] = {"cpu",    "cores", "instruction_set", "c
 
 // What all digests of a row come to: FNV-1a over their texts.
 std::string answers_of(const StrategyRecord& row) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const std::string& digest : row.digests)
-    for (const char c : digest) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  std::uint64_t hash = kDigestOfNothing;
+  for (const std::string& digest : row.digests) hash = digest_of(std::as_bytes(std::span(digest)), hash);
+  return hex_text(hash);
 }
 
 ordered_json estimate_json(const Estimate& estimate) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
+#include <span>
 #include <tuple>
+
+#include "core/base/digest.h"
 
 namespace cscd {
 
@@ -30,10 +32,8 @@ void keep_first(ContactSet& sorted) {
 }
 
 std::string digest(const ContactSet& sorted) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  const auto mix = [&](std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((word >> (8 * byte)) & 0xff)) * 0x100000001b3u;
-  };
+  std::uint64_t hash = kDigestOfNothing;
+  const auto mix = [&](std::uint64_t word) { hash = digest_of(std::as_bytes(std::span(&word, 1)), hash); };
   for (const Contact& contact : sorted.contacts) {
     mix(static_cast<std::uint64_t>(contact.pair.kind));
     mix(static_cast<std::uint64_t>(contact.pair.a));
@@ -41,9 +41,7 @@ std::string digest(const ContactSet& sorted) {
     mix(static_cast<std::uint64_t>(contact.verdict));
     mix(std::bit_cast<std::uint64_t>(contact.time));
   }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  return hex_text(hash);
 }
 
 }  // namespace cscd

@@ -3,15 +3,6 @@
 #include <span>
 
 namespace cscd::scenes {
-namespace {
-
-std::string hex(std::uint64_t value) {
-  std::string text(16, '0');
-  for (std::size_t i = 16; i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
-  return text;
-}
-
-}  // namespace
 
 void FrameDigest::add(const FrameView& frame, const FrameView* predicted) {
   state_ = digest_of(std::as_bytes(frame.bones), digest_of(std::as_bytes(frame.positions), state_));
@@ -19,11 +10,11 @@ void FrameDigest::add(const FrameView& frame, const FrameView* predicted) {
 }
 
 std::string FrameDigest::text() const {
-  return hex(state_);
+  return hex_text(state_);
 }
 
 std::string digest(const std::string& bytes) {
-  return hex(digest_of(std::as_bytes(std::span(bytes))));
+  return hex_text(digest_of(std::as_bytes(std::span(bytes))));
 }
 
 }  // namespace cscd::scenes

@@ -1,8 +1,10 @@
 #include "scenes/hard/disturbance.h"
 
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "core/base/digest.h"
 #include "core/elementary/question/query_scale.h"
 
 namespace cscd::scenes::hard {
@@ -71,11 +73,9 @@ double off_by_ulps(double x, int ulps, Random& random) {
 
 // A generator whose seed is a hash of the arguments.
 Random random_of(const Family& family, Kind kind, std::size_t number, std::uint64_t seed) {
-  std::uint64_t hash = 0xcbf29ce484222325u ^ seed;
-  const auto mix = [&](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3u; };
-  for (const char letter : family.name) mix(static_cast<unsigned char>(letter));
-  mix(static_cast<std::uint64_t>(kind));
-  mix(number + 1);
+  std::uint64_t hash = digest_of(std::as_bytes(std::span(family.name)), kDigestOfNothing ^ seed);
+  hash = digest_step(hash, static_cast<std::uint64_t>(kind));
+  hash = digest_step(hash, number + 1);
   return Random(hash ^ (hash >> 29));
 }
 

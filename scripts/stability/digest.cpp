@@ -3,10 +3,13 @@
 // it.
 //
 //   digest vf.csv ee.csv ...      the kind of a query is in the name of its file
+#include "core/base/digest.h"
+
 #include <array>
 #include <bit>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/detect/compose.h"
@@ -19,26 +22,20 @@ using namespace cscd;
 
 namespace {
 
-struct Fnv {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  void add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte, word >>= 8) hash = (hash ^ (word & 0xff)) * 0x100000001b3u;
-  }
-};
-
 void ask_all(const std::string& name, const std::vector<Query>& queries, bool vertex_face) {
   for (const ElementaryTest& test : elementary_tests()) {
-    Fnv sum;
+    std::uint64_t sum = kDigestOfNothing;
+    const auto add = [&](std::uint64_t word) { sum = digest_of(std::as_bytes(std::span(&word, 1)), sum); };
     int contacts = 0;
     for (const Query& query : queries) {
       const Answer answer =
           vertex_face ? test.vertex_face(as_vertex_face(query)) : test.edge_edge(as_edge_edge(query));
-      sum.add(static_cast<std::uint64_t>(answer.verdict));
-      if (answer.verdict != Verdict::apart) sum.add(std::bit_cast<std::uint64_t>(answer.time + 0.0));
+      add(static_cast<std::uint64_t>(answer.verdict));
+      if (answer.verdict != Verdict::apart) add(std::bit_cast<std::uint64_t>(answer.time + 0.0));
       contacts += answer.verdict == Verdict::contact;
     }
-    std::printf("%s %s %d %016llx\n", name.c_str(), std::string(test.name).c_str(), contacts,
-                static_cast<unsigned long long>(sum.hash));
+    std::printf("%s %s %d %s\n", name.c_str(), std::string(test.name).c_str(), contacts,
+                hex_text(sum).c_str());
   }
 }
 
