@@ -73,7 +73,6 @@ int run(int argc, char** argv) {
   cscd::bench::add_elementary(app);
   cscd::bench::add_export(app);
   cscd::bench::add_clusters(app);
-  cscd::bench::add_nearness(app);
   cscd::bench::add_verify(app);
   cscd::bench::add_hardcases(app);
   cscd::bench::add_benchmark(app);

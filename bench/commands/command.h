@@ -32,7 +32,6 @@ void add_export(CLI::App& app);
 void add_list(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_clusters(CLI::App& app);
-void add_nearness(CLI::App& app);
 void add_hardcases(CLI::App& app);
 void add_benchmark(CLI::App& app);
 void add_accuracy(CLI::App& app);

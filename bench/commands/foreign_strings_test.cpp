@@ -40,8 +40,7 @@ TEST_F(ForeignStrings, DoNotControlATerminal) {
        {"query figure.glb --clip 1", "query figure.glb --clip all", "query figure.glb --clip none",
         "query figure.glb --clip all --strategy drvbc --component largest", "inspect figure.glb",
         "clusters figure.glb --component largest --json clusters.json",
-        "run --smoke --input figure.glb --strategy base,mcd --json run.json", "tables run.json",
-        "nearness figure.glb"}) {
+        "run --smoke --input figure.glb --strategy base,mcd --json run.json", "tables run.json"}) {
     const Ran ran = run("cscd " + command);
     EXPECT_EQ(ran.status, command.ends_with("none") ? 2 : 0) << command << ran.errors;
     for (const std::string& text : {ran.out, ran.errors}) {

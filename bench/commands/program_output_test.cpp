@@ -23,7 +23,7 @@ class ProgramOutput : public Program {
 
 TEST_F(ProgramOutput, TakesStandardOutputForTheAnswerAlone) {
   for (const std::string name : {"-", "/dev/stdout"})
-    for (const std::string command : {"query small", "inspect small", "nearness small", "clusters small",
+    for (const std::string command : {"query small", "inspect small", "clusters small",
                                       "run --smoke --strategy base --scene small"}) {
       const Ran ran = run("cscd " + command + " --json " + name + " | cat; exit ${PIPESTATUS[0]}");
       EXPECT_EQ(ran.status, 0) << ran.errors;

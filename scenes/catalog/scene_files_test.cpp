@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "core/detect/compose.h"
-#include "core/detect/nearness.h"
 #include "core/detect/plain_culler.h"
 #include "core/detect/start/embedding.h"
 #include "core/drvbc/drvbc.h"
 #include "core/elementary/catalogue.h"
+#include "scenes/catalog/nearness.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/catalog/test_tracked.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/vec3.h"
 
-namespace cscd {
+namespace cscd::scenes {
 
 using TriangleCorners = std::array<Vec3, 3>;
 
@@ -12,4 +12,4 @@ using TriangleCorners = std::array<Vec3, 3>;
 // triangles may be degenerate. This is a measure in plain floating point, not a proof.
 double triangle_distance(const TriangleCorners& a, const TriangleCorners& b);
 
-}  // namespace cscd
+}  // namespace cscd::scenes

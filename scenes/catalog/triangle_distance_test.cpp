@@ -1,9 +1,9 @@
-#include "core/geometry/triangle_distance.h"
+#include "scenes/catalog/triangle_distance.h"
 
 #include <gtest/gtest.h>
 #include <random>
 
-namespace cscd {
+namespace cscd::scenes {
 namespace {
 
 const TriangleCorners kFloor{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
@@ -75,4 +75,4 @@ TEST(TriangleDistance, IsThatOfTheNearestPoints) {
 }
 
 }  // namespace
-}  // namespace cscd
+}  // namespace cscd::scenes

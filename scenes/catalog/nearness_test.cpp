@@ -1,14 +1,14 @@
-#include "core/detect/nearness.h"
+#include "scenes/catalog/nearness.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
 #include "core/base/error.h"
-#include "core/geometry/triangle_distance.h"
 #include "core/mesh/test_shapes.h"
+#include "scenes/catalog/triangle_distance.h"
 
-namespace cscd {
+namespace cscd::scenes {
 namespace {
 
 using test::Shape;
@@ -176,4 +176,4 @@ TEST(Nearness, HasNoMeasureOnAPoint) {
 }
 
 }  // namespace
-}  // namespace cscd
+}  // namespace cscd::scenes

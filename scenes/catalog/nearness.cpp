@@ -1,13 +1,13 @@
-#include "core/detect/nearness.h"
+#include "scenes/catalog/nearness.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/geometry/triangle_distance.h"
+#include "scenes/catalog/triangle_distance.h"
 
-namespace cscd {
+namespace cscd::scenes {
 namespace {
 
 constexpr float kUnreached = std::numeric_limits<float>::infinity();
@@ -222,4 +222,4 @@ std::optional<Nearness::Pair> Nearness::closest(std::span<const Vec3> positions)
   return search.best;
 }
 
-}  // namespace cscd
+}  // namespace cscd::scenes

@@ -8,7 +8,7 @@
 #include "core/hierarchy/tree.h"
 #include "core/mesh/triangle_mesh.h"
 
-namespace cscd {
+namespace cscd::scenes {
 
 // Lengths in this file are in mean edge lengths of the reference pose, unless stated otherwise.
 //
@@ -72,4 +72,4 @@ class Nearness {
   std::optional<Pair> last_;           // the answer for the last frame: a first bound for the next
 };
 
-}  // namespace cscd
+}  // namespace cscd::scenes

@@ -1,4 +1,4 @@
-#include "core/geometry/triangle_distance.h"
+#include "scenes/catalog/triangle_distance.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 // Two triangles that do not cross are nearest to each other at a vertex and a face, or at two edges. So
 // their distance is the smallest of six vertex-face and nine edge-edge distances. If they cross, an
 // edge of one pierces the other.
-namespace cscd {
+namespace cscd::scenes {
 namespace {
 
 // Returns whether a point of the triangle's plane lies inside the triangle: on the inner side of
@@ -59,4 +59,4 @@ double triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {
   return std::sqrt(least);
 }
 
-}  // namespace cscd
+}  // namespace cscd::scenes
