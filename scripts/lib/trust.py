@@ -10,7 +10,7 @@ A record is a JSON file named DATE-KIND.json, or DATE-KIND-2.json where that exi
   figures   [[name, number or text], ...]
   tables    [{title, head, rows, text_columns, reasons}, ...]
 
-All but figures and tables are texts, and so are the cells of rows. `reasons` is optional and names a file of the repository
+All but figures and tables are texts, and so are the cells of rows. `reasons` is optional and names a file of scripts/lib
 with a list of {"of": [...], "reason": text}: a row whose first cells are those of `of` gets the reason as its last cell, and a
 row without a reason is shown as such.
 """
@@ -25,10 +25,13 @@ from records import read_json, refuse
 from tracked import ROOT, tracked_files
 
 FOLDER = ROOT / "results" / "trust"
+LIB = ROOT / "scripts" / "lib"
+# Files and folders that have moved since records and reasons were written.
+MOVED = {"core/geometry/triangle_distance": "scenes/catalog/triangle_distance"}
 # What the page adds to every record of a kind.
 NOTES = {
     "mutants": "Survivors that a record lists without a reason are asked again, after tests were written: see *Mutants that were asked "
-               "again*. Those that have got a reason since stand in `core/mutants.json`, and are not asked.",
+               "again*. Those that have got a reason since stand in `scripts/lib/mutants.json`, and are not asked.",
     "sanitizers": "A record that was made with `--from` asks only those tests again that had failed in an older one. The record of the "
                   "whole suite is in the table above.",
     "hostile": "Models are read by a process of its own. Where that process crashes or meets a limit, the program refuses the file in "
@@ -73,11 +76,23 @@ def read_records():
     return sorted(records, key=age)
 
 
+def moved(row):
+    """A row that begins with a file, with the name that the file has today."""
+    for old, new in MOVED.items():
+        if row[0].startswith(old):
+            return [new + row[0].removeprefix(old), *row[1:]]
+    return row
+
+
 def reasons_of(name):
-    return {tuple(entry["of"]): entry["reason"] for entry in read_json(ROOT / name)} if name else {}
+    """The reasons of a file by what they are for. Records name the file by where it was when they were made."""
+    if not name:
+        return {}
+    return {tuple(moved(entry["of"])): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name)}
 
 
 def reason_for(row, reasons):
+    row = moved(row)
     return next((reasons[tuple(row[:n])] for n in range(len(row), 0, -1) if tuple(row[:n]) in reasons), None)
 
 
