@@ -18,7 +18,7 @@
 #include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "bench/answer/surface_names.h"
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "scenes/base/closest_name.h"
 
 namespace cscd::bench {
 namespace {

@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "bench/output/gzip.h"
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
-#include "core/base/joined.h"
+#include "scenes/base/closest_name.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

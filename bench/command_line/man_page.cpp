@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

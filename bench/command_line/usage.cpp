@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "scenes/base/closest_name.h"
 
 namespace cscd::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include "bench/output/output.h"
 #include "bench/rows/catalogue.h"
 #include "bench/statistics/statistics.h"
-#include "core/elementary/queries/query_file.h"
+#include "scenes/queries/query_file.h"
 
 namespace cscd::bench {
 namespace {

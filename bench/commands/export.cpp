@@ -8,7 +8,7 @@
 #include "bench/options/model_options.h"
 #include "bench/output/output_format.h"
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::bench {

@@ -8,8 +8,8 @@
 #include "bench/command_line/man_page.h"
 #include "bench/command_line/version.h"
 #include "bench/commands/command.h"
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "scenes/base/closest_name.h"
 
 namespace cscd::bench {
 namespace {

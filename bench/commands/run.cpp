@@ -24,7 +24,7 @@
 #include "bench/shards/shard.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/sandbox/run_limited.h"
 

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"

@@ -5,7 +5,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 
 namespace cscd::bench {
 namespace {

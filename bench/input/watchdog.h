@@ -5,7 +5,7 @@
 namespace cscd::bench {
 
 // Ends the program if a step takes too long: prints one line, removes unfinished output
-// (core/base/temporaries.h), and exits with status 2. Detection cannot be interrupted in any other way, and
+// (scenes/base/temporaries.h), and exits with status 2. Detection cannot be interrupted in any other way, and
 // an untrusted animation can sweep everything through everything. One at a time.
 class Watchdog {
  public:

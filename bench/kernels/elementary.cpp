@@ -22,8 +22,8 @@
 #include "core/detect/carried_pairs.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/certified/filtered_exact.h"
-#include "core/elementary/queries/query_file.h"
 #include "scenes/catalog/scene.h"
+#include "scenes/queries/query_file.h"
 
 namespace cscd::bench {
 namespace {

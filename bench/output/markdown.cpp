@@ -1,6 +1,6 @@
 #include "bench/output/markdown.h"
 
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 
 namespace cscd::bench {
 

@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
-#include "core/base/joined.h"
+#include "scenes/base/closest_name.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 

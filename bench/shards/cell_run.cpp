@@ -5,7 +5,7 @@
 #include "bench/output/gzip.h"
 #include "bench/output/json_text.h"
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 
 namespace cscd::bench {
 namespace {

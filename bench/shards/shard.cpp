@@ -7,7 +7,7 @@
 
 #include "bench/output/json_text.h"
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/sandbox/run_limited.h"
 
 namespace cscd::bench {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/elementary/queries/query_file.h"
 #include "scenes/hard/family.h"
+#include "scenes/queries/query_file.h"
 
 // The queries of the accuracy study. They come block by block, as there may be millions of them.
 namespace cscd::bench {

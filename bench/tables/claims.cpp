@@ -5,7 +5,7 @@
 #include "bench/output/data.h"
 #include "bench/output/markdown.h"
 #include "bench/tables/paper_tables.h"
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "bench/output/markdown.h"
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include "bench/output/markdown.h"
 #include "bench/tables/provenance.h"
 #include "bench/tables/run_times.h"
-#include "core/base/joined.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/base/closest_name.h"
 #include "core/base/error.h"
+#include "scenes/base/closest_name.h"
 #include "scenes/catalog/plain_name.h"
 #include "scenes/clip/up_axis.h"
 

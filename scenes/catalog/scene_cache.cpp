@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/catalog/expected_text.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/clip/digest.h"

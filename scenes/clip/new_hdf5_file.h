@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/clip/hdf5_handle.h"
 
 namespace cscd::scenes {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/elementary/queries/query_file.h"
+#include "scenes/queries/query_file.h"
 #include "scenes/random/surface.h"
 
 // Families of elementary queries that are hard on purpose. Each family has its own file and a story that

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 #include "scenes/character/report.h"
 #include "scenes/exchange/mesh_sequence.h"
 #include "scenes/import/convert.h"

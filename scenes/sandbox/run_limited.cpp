@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 
 namespace cscd::scenes {
 namespace {

@@ -27,7 +27,10 @@ from tracked import ROOT, tracked_files
 FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
 # Files and folders that have moved since records and reasons were written.
-MOVED = {"core/geometry/triangle_distance": "scenes/catalog/triangle_distance"}
+MOVED = {
+    "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
+    "core/geometry/triangle_distance": "scenes/catalog/triangle_distance",
+}
 # What the page adds to every record of a kind.
 NOTES = {
     "mutants": "Survivors that a record lists without a reason are asked again, after tests were written: see *Mutants that were asked "

@@ -15,8 +15,8 @@
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/catalogue.h"
-#include "core/elementary/queries/query_file.h"
 #include "core/hierarchy/bounds.h"
+#include "scenes/queries/query_file.h"
 
 using namespace cscd;
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 
 namespace cscd {
 

@@ -1,4 +1,4 @@
-#include "core/base/closest_name.h"
+#include "scenes/base/closest_name.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "core/elementary/queries/query_file.h"
+#include "scenes/queries/query_file.h"
 
 #include <algorithm>
 #include <cctype>

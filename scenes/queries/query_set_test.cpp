@@ -15,7 +15,7 @@
 
 #include "core/elementary/certified/filtered_exact.h"
 #include "core/elementary/exact/exact.h"
-#include "core/elementary/queries/query_file.h"
+#include "scenes/queries/query_file.h"
 
 namespace cscd {
 namespace {

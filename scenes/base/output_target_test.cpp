@@ -1,4 +1,4 @@
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 
 #include <cerrno>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "core/base/temporaries.h"
+#include "scenes/base/temporaries.h"
 
 #include <atomic>
 #include <cerrno>
