@@ -35,12 +35,12 @@ class RvbcCuller : public Culler {
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }
 
-  bool classify(const Motion& motion, const Rig::Interval* bones) override {
-    table_.update(motion);
+  bool classify(const Step& step) override {
+    table_.update(step.motion);
     observers_.clear();
     for (std::size_t c = 0; c < kinds_.size(); ++c) {
       const std::size_t bone = +clusters_.clusters[c].bone;
-      observers_.push_back(radial::observer(kinds_[c], bones->start[bone], bones->end[bone]));
+      observers_.push_back(radial::observer(kinds_[c], step.bones->start[bone], step.bones->end[bone]));
       table_.classify(c, observers_.back(), hierarchy_.classes(c));
     }
     radial_ = hierarchy_.finish_classes();

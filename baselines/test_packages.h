@@ -24,8 +24,7 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
     const auto package = make(setup).detector, boxes = make_aabb(setup).detector;
     for (const Motion& motion : {there, back, there}) {
       ContactSet found[2];
-      const Report a = package->detect(motion, nullptr, found[0]),
-                   b = boxes->detect(motion, nullptr, found[1]);
+      const Report a = package->detect({motion}, found[0]), b = boxes->detect({motion}, found[1]);
       for (ContactSet& set : found) set.sort();
       EXPECT_EQ(a.cull.pctp, b.cull.pctp) << "seed " << seed;
       EXPECT_EQ(a.pairs.adjacent_pctp, b.pairs.adjacent_pctp) << "seed " << seed;
@@ -48,8 +47,8 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std:
   const TriangleMesh mesh(triangles, corners.size());
   const Setup setup{mesh, corners, nullptr, *find_elementary_test("newton")};
   ContactSet found, expected;
-  const Report a = make(setup).detector->detect(Motion(corners, corners), nullptr, found),
-               b = make_aabb(setup).detector->detect(Motion(corners, corners), nullptr, expected);
+  const Report a = make(setup).detector->detect({Motion(corners, corners)}, found),
+               b = make_aabb(setup).detector->detect({Motion(corners, corners)}, expected);
   found.sort(), expected.sort();
   EXPECT_GT(b.cull.pctp, 100u);
   EXPECT_EQ(a.cull.pctp, b.cull.pctp);

@@ -21,7 +21,7 @@ constexpr int kAsked = 3;  // the second and third time, clusters have been cut 
 
 ContactSet sorted_contacts(Detector& detector, const Motion& motion) {
   ContactSet found;
-  detector.detect(motion, nullptr, found);
+  detector.detect({motion}, found);
   found.sort();
   return found;
 }
@@ -94,7 +94,8 @@ void target(Bytes bytes) {
       broken("drvbc_fast_complete has other contacts than all pairs");
   ContactSet again;
   Crossings crossings;
-  complete.detector->detect_and_see_start(motion, nullptr, again, kMostCrossings, crossings);
+  complete.detector->detect({.motion = motion, .crossings = &crossings, .most_crossings = kMostCrossings},
+                            again);
   again.sort();
   if (digest(again) != digest(truth)) broken("seeing the start changes the contacts");
   const Crossings plain = EmbeddingTest(mesh, reference).find_all(start, kMostCrossings);

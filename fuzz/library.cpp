@@ -189,7 +189,7 @@ ContactSet all_pairs(const Surface& surface, const ByRow<double>& start, const B
   const Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
   const Motion motion(from, to);
   ContactSet found;
-  make_brute(setup).detector->detect(motion, nullptr, found);
+  make_brute(setup).detector->detect({motion}, found);
   found.sort();
   return found;
 }

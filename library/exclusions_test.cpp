@@ -9,6 +9,7 @@ namespace cscd {
 namespace {
 
 using namespace test;
+using test::Step;  // not the step of a detector
 
 // What is left out, as the library is told and as the search of all pairs is told.
 struct Filter {

@@ -8,6 +8,7 @@ namespace cscd {
 namespace {
 
 using namespace test;
+using test::Step;  // not the step of a detector
 
 // Mutations: obstacles are held against themselves; the bounds of an obstacle are those of the step before;
 // a step that starts elsewhere is taken to start free; triangles of obstacles are numbered from 0.

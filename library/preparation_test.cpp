@@ -10,6 +10,7 @@ namespace cscd {
 namespace {
 
 using namespace test;
+using test::Step;  // not the step of a detector
 
 // Mutation: the observers of the second cover are those of the first.
 TEST(SelfCollision, AnswersTheSameFromASavedPreparation) {

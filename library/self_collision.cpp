@@ -22,22 +22,8 @@ namespace {
 using Positions = SelfCollision::Positions;
 using Faces = SelfCollision::Faces;
 
-Prepared make_first(const Setup& setup) {
-  return make_drvbc_fast(setup);
-}
-Prepared make_complete(const Setup& setup) {
-  return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-}
 constexpr int kMostThreads = 1024;  // each has memory of its own
 constexpr std::size_t kMostLabels = 1000;
-const Strategy kFirst{"drvbc_fast", "", Guarantee::first_contact, {.closed_mesh = true}, make_first};
-const Strategy kComplete{.name = "drvbc_fast_complete",
-                         .source = "",
-                         .guarantee = Guarantee::complete,
-                         .needs = {},
-                         .make = make_complete,
-                         .sees_start = true,
-                         .looks_by_signs = true};
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -274,8 +260,8 @@ class SelfCollision::Engine {
                                  .keep_rest_crossings = true,
                                  .ignore_starts = !options_.check_start,
                                  .check_finite = options_.check_positions};
-    return wanted.emplace("reference positions", setup(first, exclusions), strategy, kComplete, reference_,
-                          options);
+    return wanted.emplace("reference positions", setup(first, exclusions), strategy, kDrvbcFastComplete,
+                          reference_, options);
   }
   // The session of a complete strategy finds out how a step starts, and tells the strategy where nothing
   // crosses, which makes that step quick. With check_start off, a session finds out and tells nothing. Then
@@ -283,7 +269,8 @@ class SelfCollision::Engine {
   // as the caller does. With exclusions, though, a caller may let excluded pairs cross.
   Session& plain(Question& question) {
     const bool for_granted = !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty();
-    return made(question.plain, question.first, question.first && for_granted ? kFirst : kComplete, nullptr);
+    return made(question.plain, question.first,
+                question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete, nullptr);
   }
 
   void step_itself(Question& question, const Motion& motion) {
@@ -294,7 +281,7 @@ class SelfCollision::Engine {
       if (left_out > 0) question.filtered_steps = kFilteredSteps;
       if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
     }
-    made(question.filtered, question.first, kComplete, &exclusions_).step(motion, nullptr, answer_);
+    made(question.filtered, question.first, kDrvbcFastComplete, &exclusions_).step(motion, nullptr, answer_);
     --question.filtered_steps;
   }
 

@@ -13,6 +13,7 @@ namespace cscd {
 namespace {
 
 using namespace test;
+using test::Step;  // not the step of a detector
 
 TEST(SelfCollision, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {
   std::size_t free = 0, crossing = 0;

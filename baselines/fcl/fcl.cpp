@@ -3,6 +3,7 @@
 #define EIGEN_MAX_ALIGN_BYTES 16
 #include "baselines/fcl/fcl.h"
 
+#include <cassert>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/kDOP.h>
 #include <fcl/math/bv/utility.h>
@@ -74,7 +75,9 @@ class FclDetector : public Detector {
     request_.num_max_contacts = std::numeric_limits<std::size_t>::max();
   }
 
-  Report detect(const Motion& motion, const Rig::Interval*, ContactSet& out) override {
+  Report detect(const Step& step, ContactSet& out) override {
+    assert(step.crossings == nullptr);
+    const Motion& motion = step.motion;
     out.clear();
     for (const std::span<const Vec3> end : {motion.start(), motion.end()})
       for (const Vec3& p : end)

@@ -25,14 +25,14 @@ TEST(Fcl, FindsWhatIsPlainToSee) {
   ContactSet found, truth;
   const auto fcl = make_fcl(setup).detector, base = make_base(setup).detector;
   for (int visit = 0; visit < 2; ++visit) {
-    const Report report = fcl->detect(Motion(shape.positions, end), nullptr, found);
-    base->detect(Motion(shape.positions, end), nullptr, truth);
+    const Report report = fcl->detect({Motion(shape.positions, end)}, found);
+    base->detect({Motion(shape.positions, end)}, truth);
     found.sort(), truth.sort();
     ASSERT_FALSE(found.contacts.empty());
     EXPECT_NEAR(found.contacts[0].time, truth.contacts[0].time, 1e-3);
     EXPECT_GT(*report.cull.bvot, report.cull.pctp);
     // The way back leaves no contact of the interval before.
-    fcl->detect(Motion(shape.positions, shape.positions), nullptr, found);
+    fcl->detect({Motion(shape.positions, shape.positions)}, found);
     EXPECT_TRUE(found.contacts.empty());
   }
 }
@@ -44,7 +44,7 @@ TEST(Fcl, RefusesWhatOverflows) {
   const TriangleMesh mesh = shape.mesh();
   const auto fcl = make_fcl({mesh, shape.positions, nullptr, *find_elementary_test("exact")}).detector;
   ContactSet found;
-  EXPECT_THROW(fcl->detect(Motion(shape.positions, shape.positions), nullptr, found), InputError);
+  EXPECT_THROW(fcl->detect({Motion(shape.positions, shape.positions)}, found), InputError);
 }
 
 // FCL promises nothing. The test records what it does on random intervals, so that a change is noticed: it
@@ -58,8 +58,8 @@ TEST(Fcl, FindsMostContactsOfRandomIntervals) {
     const Motion motion = random.clip.interval(0).motion;
     const cscd::Setup setup{mesh, motion.start(), nullptr, exact};
     ContactSet found, truth;
-    make_fcl(setup).detector->detect(motion, nullptr, found);
-    make_base(setup).detector->detect(motion, nullptr, truth);
+    make_fcl(setup).detector->detect({motion}, found);
+    make_base(setup).detector->detect({motion}, truth);
     expected += truth.contacts.size();
     for (const Contact& contact : found.contacts) {
       const bool real = std::any_of(truth.contacts.begin(), truth.contacts.end(),

@@ -52,9 +52,9 @@ class McdCuller : public Culler {
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
 
-  bool classify(const Motion& motion, const Rig::Interval*) override {
-    cones_.update(tree_, motion);
-    motion_ = motion;
+  bool classify(const Step& step) override {
+    cones_.update(tree_, step.motion);
+    motion_ = step.motion;
     return true;
   }
 

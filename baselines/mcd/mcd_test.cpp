@@ -278,7 +278,7 @@ const ElementaryTest& exact() {
 
 std::string contacts(Prepared prepared, const Motion& motion, Report& report) {
   ContactSet found;
-  report = prepared.detector->detect(motion, nullptr, found);
+  report = prepared.detector->detect({motion}, found);
   found.sort();
   return digest(found) + " " + std::to_string(found.contacts.size());
 }

@@ -53,7 +53,7 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
     ASSERT_EQ(answer.start.pairs, start.pairs) << i;
 
     ContactSet expected;
-    reference->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, expected);
+    reference->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, expected);
     std::erase_if(expected.contacts, [&](const Contact& contact) { return rest.explains(contact.pair); });
     expected.sort();
     ASSERT_TRUE(answer.proven);

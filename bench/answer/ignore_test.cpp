@@ -114,7 +114,7 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
     ASSERT_EQ(answer.start.pairs, start.pairs) << i;
 
     ContactSet all, ignored, kept;
-    reference->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, all);
+    reference->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, all);
     for (const Contact& contact : all.contacts) {
       const bool out = oracle.ignores(contact.pair);
       if (out) ignored.contacts.push_back(contact);

@@ -24,11 +24,11 @@ class Silent : public Detector {
   explicit Silent(const Setup& setup)
       : detector_(complete_reference().make(setup).detector), start_test_(setup.mesh, setup.reference) {}
 
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    const Report report = detector_->detect(motion, bones, out);
+  Report detect(const Step& step, ContactSet& out) override {
+    const Report report = detector_->detect(step, out);
     const bool silent =
-        kReports == Reports::nothing ||
-        (kReports == Reports::nothing_from_a_start_that_crosses && !start_test_.embedded(motion.start()));
+        kReports == Reports::nothing || (kReports == Reports::nothing_from_a_start_that_crosses &&
+                                         !start_test_.embedded(step.motion.start()));
     const std::size_t most = silent ? 0 : kReports == Reports::one_contact ? 1 : out.contacts.size();
     out.contacts.resize(std::min(most, out.contacts.size()));
     return report;
@@ -123,10 +123,10 @@ TEST(KnownStarts, NeedAnswersWithoutAnythingUndecided) {
 class Trusting : public Silent<Reports::nothing_from_a_start_that_crosses> {
  public:
   explicit Trusting(const Setup& setup) : Silent(setup), start_test_(setup.mesh, setup.reference) {}
-  Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    ++told;
-    EXPECT_TRUE(start_test_.embedded(motion.start()));
-    return detect(motion, bones, out);
+  Report detect(const Step& step, ContactSet& out) override {
+    told += step.starts_embedded;
+    EXPECT_TRUE(!step.starts_embedded || start_test_.embedded(step.motion.start()));
+    return Silent::detect(step, out);
   }
   static inline int told = 0;
 
@@ -168,13 +168,9 @@ TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
 class Looking : public Detector {
  public:
   explicit Looking(const Setup& setup) : detector_(complete_reference().make(setup).detector) {}
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    return detector_->detect(motion, bones, out);
-  }
-  Report detect_and_see_start(const Motion& motion, const Rig::Interval* bones, ContactSet& out,
-                              std::size_t most, Crossings& start) override {
-    ++asked;
-    return detector_->detect_and_see_start(motion, bones, out, most, start);
+  Report detect(const Step& step, ContactSet& out) override {
+    asked += step.crossings != nullptr;
+    return detector_->detect(step, out);
   }
   static inline int asked = 0;
 

@@ -43,7 +43,7 @@ class Asked {
     // Intervals of a scene do not follow each other, and each repetition answers as the first.
     for (int i = 0; i < repetitions; ++i) {
       detector_->forget();
-      milliseconds.push_back(detector_->detect(motion, bones, found).ms.total());
+      milliseconds.push_back(detector_->detect({motion, bones}, found).ms.total());
     }
     found.sort();
     if (row_.first) keep_first(found);
@@ -63,7 +63,8 @@ class Asked {
     Crossings start;
     if (row_.strategy->sees_start) {
       ContactSet ignored;
-      detector_->detect_and_see_start(motion, bones, ignored, kAll, start);
+      detector_->detect({.motion = motion, .bones = bones, .crossings = &start, .most_crossings = kAll},
+                        ignored);
     } else if (embedding_) {
       start = embedding_->find_all(motion.start(), kAll);
     } else {

@@ -51,7 +51,7 @@ IntervalTruth find_truth(const TriangleMesh& mesh, const scenes::PosedMesh& pose
   const Strategy& strategy = mesh.triangle_count() <= kMostForAllPairs ? all_pairs() : complete_reference();
   ContactSet found;
   strategy.make({mesh, posed.reference.positions, nullptr, elementary_test_named("exact")})
-      .detector->detect(motion, nullptr, found);
+      .detector->detect({motion}, found);
   IntervalTruth truth;
   for (const Contact& contact : found.contacts)
     truth.contacts.push_back({PairName::of(mesh, contact.pair), enclosure(mesh, motion, contact.pair)});

@@ -38,7 +38,7 @@ void clusters(const ClusterOptions& options) {
     throw InputError("strategy " + std::string(strategy->name) + " has no clusters; choose a radial one");
   const scenes::ClipInterval interval = input.clip->load(options.frame);
   ContactSet ignored;
-  prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, ignored);
+  prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, ignored);
 
   const RadialView view = prepared.detector->radial_view();
 

@@ -31,8 +31,8 @@ TEST(FirstOnly, EveryStrategyKeepsItsContactsOfTheEarliestTime) {
       }
       const auto first = strategy.make(setup).detector;
       ContactSet expected, found;
-      all->detect(interval.motion, &*interval.bones, expected);
-      first->detect(interval.motion, &*interval.bones, found);
+      all->detect({interval.motion, &*interval.bones}, expected);
+      first->detect({interval.motion, &*interval.bones}, found);
       for (ContactSet* set : {&expected, &found}) {
         set->sort();
         keep_first(*set);

@@ -44,7 +44,7 @@ class Characters : public testing::TestWithParam<const char*> {
 // The time of the first decided contact.
 std::optional<double> first_contact(Detector& detector, const scenes::ClipInterval& interval) {
   ContactSet found;
-  detector.detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+  detector.detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
   found.sort();
   for (const Contact& contact : found.contacts)
     if (contact.verdict == Verdict::contact) return contact.time;

@@ -22,7 +22,7 @@ struct Answered {
 
 Answered answered(const Strategy& strategy, const Setup& setup, const scenes::ClipInterval& interval) {
   Answered out;
-  out.report = strategy.make(setup).detector->detect(interval.motion, &*interval.bones, out.found);
+  out.report = strategy.make(setup).detector->detect({interval.motion, &*interval.bones}, out.found);
   out.found.sort();
   return out;
 }

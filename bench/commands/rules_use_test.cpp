@@ -177,7 +177,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
     EmbeddingTest embedding(mesh, first.positions);
     const auto judged = [&](std::size_t from, std::size_t to) {
       ContactSet truth;
-      reference->detect(Motion(poses[from], poses[to]), nullptr, truth);
+      reference->detect({Motion(poses[from], poses[to])}, truth);
       truth.sort();
       return std::pair{embedding.embedded(poses[from]), truth};
     };
@@ -187,7 +187,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
       const auto ask = [&](Detector& detector, std::size_t from, std::size_t to) {
         const Rig::Interval pose{bones[from], bones[to]};
         ContactSet found;
-        const Report report = detector.detect(Motion(poses[from], poses[to]), &pose, found);
+        const Report report = detector.detect({Motion(poses[from], poses[to]), &pose}, found);
         found.sort();
         return std::pair{digest(found), counters(report)};
       };
@@ -201,7 +201,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
           const auto [embedded, truth] = judged(from, to);
           ContactSet found;
           const Rig::Interval pose{bones[from], bones[to]};
-          used->detect(Motion(poses[from], poses[to]), &pose, found);
+          used->detect({Motion(poses[from], poses[to]), &pose}, found);
           found.sort();
           kept += embedded && !truth.contacts.empty();
           EXPECT_TRUE(verify(truth, found, strategy.guarantee, embedded).ok)

@@ -137,7 +137,7 @@ class Marker {
     for (const CrossingPair& pair : answer.start.pairs)
       marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
     ContactSet ignored;
-    observer_.detector->detect(moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr,
+    observer_.detector->detect({moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr},
                                ignored);
     const RadialView view = observer_.detector->radial_view();
     marks.cluster.assign(view.cluster.begin(), view.cluster.end());

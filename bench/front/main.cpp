@@ -131,7 +131,7 @@ void front_over_detector(const std::string& name, const Way& way, int rounds) {
       make_drvbc_fast(setup, {.complete = !mesh.closed_and_oriented()}).detector;
   ContactSet found;
   const Ask ask_detector = [&](const Rows& start, const Rows& end) {
-    detector->detect({points(start), points(end)}, nullptr, found);
+    detector->detect({Motion(points(start), points(end))}, found);
   };
   SelfCollision::Answer answer;
   compare(name + ": detect(), then is_free()", way, rounds, ask_detector,

@@ -92,7 +92,7 @@ Queries of_scene(const std::string& scene, Source source) {
       culler.cull(sink);
       sink.flush();
     } else {
-      prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, contacts);
+      prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, contacts);
     }
   }
   return result;

@@ -30,7 +30,7 @@ struct Step : test::RandomStep {
   }
   ContactSet ask(const Prepared& prepared, Report* report = nullptr) const {
     ContactSet found;
-    const Report own = prepared.detector->detect(motion(), nullptr, found);
+    const Report own = prepared.detector->detect({motion()}, found);
     if (report != nullptr) *report = own;
     found.sort();
     return found;

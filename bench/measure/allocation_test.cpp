@@ -33,7 +33,7 @@ TEST(Allocation, ADetectorThatSettlesAllocatesNothingOnceItIsWarm) {
       ContactSet found;
       const auto allocations = [&] {
         const std::size_t before = g_allocations;
-        detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+        detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
         return g_allocations - before;
       };
       first_allocations += allocations();

@@ -15,7 +15,7 @@ namespace {
 class Hoarder final : public Detector {
  public:
   Hoarder() : held_(64 << 20, 'x') {}
-  Report detect(const Motion&, const Rig::Interval*, ContactSet& out) override {
+  Report detect(const Step&, ContactSet& out) override {
     out.contacts.clear();
     return {};
   }

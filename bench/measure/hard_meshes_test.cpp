@@ -43,12 +43,12 @@ Found hold_to_promises(const Shape& shape, const std::vector<Vec3>& end, const V
   ContactSet truth;
   const Setup judged{mesh, shape.positions, &rig, exact}, asked{mesh, shape.positions, &rig, ours},
       boneless{mesh, shape.positions, nullptr, ours};
-  all_pairs().make(judged).detector->detect(motion, &bones, truth);
+  all_pairs().make(judged).detector->detect({motion, &bones}, truth);
   truth.sort();
   for (const Strategy& strategy : strategies()) {
     if (strategy.guarantee == Guarantee::heuristic || (strategy.needs.bones && !with_bones)) continue;
     ContactSet answer;
-    strategy.make(with_bones ? asked : boneless).detector->detect(motion, &bones, answer);
+    strategy.make(with_bones ? asked : boneless).detector->detect({motion, &bones}, answer);
     answer.sort();
     const Verification judgement = verify(truth, answer, strategy.guarantee, embedded);
     EXPECT_TRUE(judgement.ok) << strategy.name << ": " << judgement.failure;
@@ -158,7 +158,7 @@ TEST(HardMeshes, AFilterInSinglePrecisionDropsNothingOfHugeTriangles) {
     ContactSet found;
     complete_reference()
         .make({mesh, start, nullptr, elementary_test_named(test)})
-        .detector->detect(Motion(start, end), nullptr, found);
+        .detector->detect({Motion(start, end)}, found);
     EXPECT_EQ(found.contacts.size(), 1u) << test;
   }
 }
@@ -181,9 +181,7 @@ TEST(HardMeshes, ScaleChangesNoAnswerOfRandomMeshes) {
     const auto answer = [&](const char* name, const ElementaryTest& test, double scale) {
       const std::vector<Vec3> start = at(0, scale), end = at(1, scale);
       ContactSet found;
-      strategy_named(name)
-          .make({mesh, start, nullptr, test})
-          .detector->detect(Motion(start, end), nullptr, found);
+      strategy_named(name).make({mesh, start, nullptr, test}).detector->detect({Motion(start, end)}, found);
       found.sort();
       return found;
     };

@@ -43,7 +43,7 @@ struct Subject {
   ContactSet ask(const Prepared& prepared) const {
     ContactSet found;
     const scenes::ClipInterval interval = input.clip->load(0);
-    prepared.detector->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+    prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
     found.sort();
     return found;
   }

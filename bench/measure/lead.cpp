@@ -10,7 +10,7 @@ void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& c
   ContactSet ignored;
   for (std::size_t i = interval - std::min(interval, kLead); i < interval; ++i) {
     const scenes::ClipInterval before = clip.load(i);
-    detector.detect(before.motion, before.bones ? &*before.bones : nullptr, ignored);
+    detector.detect({before.motion, before.bones ? &*before.bones : nullptr}, ignored);
   }
 }
 

@@ -48,8 +48,9 @@ TEST(Parts, KeepEveryContactOfLongSteps) {
       const auto detector =
           step.prepared({.follows = false, .long_descent = in_two ? kAlways : kNever, .complete = true})
               .detector;
-      report[in_two] =
-          detector->detect_and_see_start(step.motion(), nullptr, found[in_two], 1 << 20, crossing[in_two]);
+      report[in_two] = detector->detect(
+          {.motion = step.motion(), .crossings = &crossing[in_two], .most_crossings = 1 << 20},
+          found[in_two]);
       found[in_two].sort();
       std::ranges::sort(crossing[in_two].pairs);
     }
@@ -72,12 +73,12 @@ TEST(Parts, KeepTheFirstContactOfLongSteps) {
     const Step step(seed);
     if (!step.mesh.closed_and_oriented() || !step.starts_embedded()) continue;
     ContactSet whole, found;
-    step.prepared({.long_descent = kNever, .complete = true}).detector->detect(step.motion(), nullptr, whole);
-    const Report in = step.prepared({.follows = false, .long_descent = kAlways})
-                          .detector->detect(step.motion(), nullptr, found);
+    step.prepared({.long_descent = kNever, .complete = true}).detector->detect({step.motion()}, whole);
+    const Report in =
+        step.prepared({.follows = false, .long_descent = kAlways}).detector->detect({step.motion()}, found);
     ContactSet unsplit;
-    const Report out = step.prepared({.follows = false, .long_descent = kNever})
-                           .detector->detect(step.motion(), nullptr, unsplit);
+    const Report out =
+        step.prepared({.follows = false, .long_descent = kNever}).detector->detect({step.motion()}, unsplit);
     whole.sort(), found.sort();
     keep_first(whole), keep_first(found);
     EXPECT_EQ(whole.contacts.empty(), found.contacts.empty()) << "seed " << seed;
@@ -98,11 +99,11 @@ TEST(Parts, AreTheSameOnAnyNumberOfThreads) {
     const Step step(seed);
     ContactSet alone, both, whole;
     const Report one = step.prepared({.long_descent = kAlways, .complete = true}, 1)
-                           .detector->detect(step.motion(), nullptr, alone);
-    const Report two = step.prepared({.long_descent = kAlways, .complete = true}, 2)
-                           .detector->detect(step.motion(), nullptr, both);
-    const Report other = step.prepared({.long_descent = kNever, .complete = true})
-                             .detector->detect(step.motion(), nullptr, whole);
+                           .detector->detect({step.motion()}, alone);
+    const Report two =
+        step.prepared({.long_descent = kAlways, .complete = true}, 2).detector->detect({step.motion()}, both);
+    const Report other =
+        step.prepared({.long_descent = kNever, .complete = true}).detector->detect({step.motion()}, whole);
     EXPECT_EQ(one.cull.bvot, two.cull.bvot) << "seed " << seed;
     EXPECT_EQ(one.cull.pctp, two.cull.pctp) << "seed " << seed;
     expect_same(alone, both, seed);
@@ -121,7 +122,7 @@ TEST(Parts, AreMadeOfStepsThatMoveFar) {
     Report report[2];
     for (const bool in_two : {false, true})
       report[in_two] = step.prepared({.long_descent = in_two ? kAlways : kNever, .complete = true})
-                           .detector->detect(step.motion(), nullptr, found);
+                           .detector->detect({step.motion()}, found);
     EXPECT_EQ(report[0].cull.bvot, report[1].cull.bvot) << "seed " << seed;
   }
 }
@@ -144,7 +145,7 @@ TEST(Parts, KeepAContactThatRoundingHides) {
     ContactSet found;
     make_drvbc_fast({mesh, start, nullptr, elementary_test_named("exact")},
                     {.long_descent = long_descent, .complete = true})
-        .detector->detect(Motion(start, end), nullptr, found);
+        .detector->detect({Motion(start, end)}, found);
     EXPECT_EQ(found.contacts.size(), 3u) << "with the face, and of two edges at the vertex with the edge";
     for (const Contact& contact : found.contacts) EXPECT_EQ(contact.time, 0.5);
   }
@@ -165,7 +166,7 @@ TEST(Parts, AreGivenUpWhereRoundingHidesTheSurface) {
       ContactSet found;
       const Report report = make_drvbc_fast({mesh, start, nullptr, elementary_test_named("exact")},
                                             {.long_descent = long_descent, .complete = true})
-                                .detector->detect(Motion(start, end), nullptr, found);
+                                .detector->detect({Motion(start, end)}, found);
       EXPECT_LT(report.cull.pctp, mesh.triangle_count() * 30) << far << ", " << long_descent;
     }
   }

@@ -30,8 +30,8 @@ Input random_input(std::uint64_t seed) {
 class LateDetector : public Detector {
  public:
   explicit LateDetector(const Setup& setup) : inner_(test::make_plain<Flaw::none>(setup).detector) {}
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    const Report report = inner_->detect(motion, bones, out);
+  Report detect(const Step& step, ContactSet& out) override {
+    const Report report = inner_->detect(step, out);
     out.sort();
     if (!out.contacts.empty()) out.contacts.back().time = std::nextafter(out.contacts.back().time, 2.0);
     return report;

@@ -104,7 +104,7 @@ TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
     const auto detector = strategy.make({mesh, reference, &*rig, elementary_test_named("exact")}).detector;
     const scenes::ClipInterval interval = reader.load(0);
     ContactSet found;
-    detector->detect(interval.motion, &*interval.bones, found);
+    detector->detect({interval.motion, &*interval.bones}, found);
     found.sort();
     return found;
   };

@@ -77,12 +77,11 @@ struct Subject {
     if (row.strategy->follows)
       for (std::uint64_t k = 0; k < seed % 5; ++k)
         detector->detect(
-            k % 2 == 1 ? Motion(interval.motion.start(), interval.motion.start()) : interval.motion, bones,
+            {k % 2 == 1 ? Motion(interval.motion.start(), interval.motion.start()) : interval.motion, bones},
             result.passed_on);
-    result.report =
-        row.strategy->sees_start
-            ? detector->detect_and_see_start(interval.motion, bones, result.passed_on, kAll, result.start)
-            : detector->detect(interval.motion, bones, result.passed_on);
+    Step step{interval.motion, bones};
+    if (row.strategy->sees_start) step.crossings = &result.start, step.most_crossings = kAll;
+    result.report = detector->detect(step, result.passed_on);
     for (const Contact& contact : result.passed_on.contacts) {
       const auto [entry, fresh] = answers.try_emplace(contact.pair);
       if (fresh) entry->second = ask(referee, mesh, interval.motion, contact.pair);

@@ -53,7 +53,7 @@ TEST(Rules, OutwardRoundingBodiesThatTouchExactlyAreFound) {
     for (const auto& [strategy, set] :
          {std::pair{&all_pairs(), &truth}, std::pair{&complete_reference(), &found}}) {
       strategy->make({mesh, start, nullptr, exact()})
-          .detector->detect(random.clip.interval(0).motion, nullptr, *set);
+          .detector->detect({random.clip.interval(0).motion}, *set);
       set->sort();
     }
     EXPECT_EQ(digest(found), digest(truth)) << "seed " << seed;
@@ -95,8 +95,7 @@ ContactSet contacts_of_two(const std::vector<Vec3>& start, const std::vector<Vec
   ContactSet found[2];
   int which = 0;
   for (const Strategy* strategy : {&all_pairs(), &complete_reference()}) {
-    strategy->make({mesh, start, nullptr, exact()})
-        .detector->detect(Motion(start, end), nullptr, found[which]);
+    strategy->make({mesh, start, nullptr, exact()}).detector->detect({Motion(start, end)}, found[which]);
     found[which++].sort();
   }
   EXPECT_EQ(digest(found[0]), digest(found[1]));

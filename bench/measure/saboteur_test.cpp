@@ -62,10 +62,10 @@ TEST(Saboteurs, ACullerThatLosesOneTrianglePairIn10000IsCaught) {
 
     const cscd::Setup setup{mesh, motion.start(), nullptr, elementary_test_named("newton")};
     ContactSet found[3];
-    base += complete_reference().make(setup).detector->detect(motion, nullptr, found[0]).cull.pctp;
-    sound += test::make_plain<Flaw::none>(setup).detector->detect(motion, nullptr, found[1]).cull.pctp;
+    base += complete_reference().make(setup).detector->detect({motion}, found[0]).cull.pctp;
+    sound += test::make_plain<Flaw::none>(setup).detector->detect({motion}, found[1]).cull.pctp;
     forgetful += test::make_plain<Flaw::one_triangle_pair_in_10000_lost>(setup)
-                     .detector->detect(motion, nullptr, found[2])
+                     .detector->detect({motion}, found[2])
                      .cull.pctp;
     for (ContactSet& set : found) set.sort();
     contacts_differ += digest(found[2]) != digest(found[0]);
@@ -88,7 +88,7 @@ TEST(Saboteurs, NormalConesWithoutTheContourTestLoseAnOpenSpiral) {
     const cscd::Setup setup{mesh, shape.positions, nullptr, elementary_test_named("exact")};
     const auto contacts = [&](Prepared (*make)(const cscd::Setup&)) {
       ContactSet found;
-      make(setup).detector->detect(Motion(shape.positions, end), nullptr, found);
+      make(setup).detector->detect({Motion(shape.positions, end)}, found);
       found.sort();
       return found;
     };

@@ -42,7 +42,7 @@ struct Answer {
 // Sorting and digesting happen outside the detector's clock.
 Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, ContactSet& found) {
   const Report report =
-      contestant.timed->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+      contestant.timed->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
   found.sort();
   const auto first = found.contacts.empty() ? std::nullopt : std::optional(found.contacts.front().time);
   return {report, digest(found), first};
@@ -111,12 +111,15 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
       const Strategy& strategy = *contestants[c].strategy;
       if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken.count(), records[c].ms, repetition);
-      if (strategy.role != Role::stand_in) continue;
+      if (&strategy != &complete_stand_in()) continue;
       lead_up(strategy, *contestants[c].timed, *input.clip, i);
       interval = input.clip->load(i);
       stream_positions(interval.motion);
-      const Report report = contestants[c].timed->detect_and_see_start(
-          interval.motion, interval.bones ? &*interval.bones : nullptr, found, 0, start);
+      const Report report =
+          contestants[c].timed->detect({.motion = interval.motion,
+                                        .bones = interval.bones ? &*interval.bones : nullptr,
+                                        .crossings = &start},
+                                       found);
       found.sort();
       if (digest(found) != records[c].digests[place_of(i, warm_up.counted)])
         throw std::logic_error("interval " + std::to_string(i) + " of " + input.name + ": " +

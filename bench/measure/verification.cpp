@@ -158,7 +158,7 @@ void Verifier::judge_one(std::size_t i) {
   if (!starts_embedded) record_.unembedded.push_back(i);
 
   ContactSet truth, answer;
-  const Report expected = reference_->used->judged->detect(interval.motion, bones, truth);
+  const Report expected = reference_->used->judged->detect({interval.motion, bones}, truth);
   truth.sort();
   if (!truth.contacts.empty()) record_.colliding.push_back(i);
   std::vector<Report>& reports = reports_[i];
@@ -168,7 +168,7 @@ void Verifier::judge_one(std::size_t i) {
     lead_up(strategy, *contestants_[c].judged, *input_.clip, i);
     interval = input_.clip->load(i);
     bones = interval.bones ? &*interval.bones : nullptr;
-    reports.push_back(itself ? expected : contestants_[c].judged->detect(interval.motion, bones, answer));
+    reports.push_back(itself ? expected : contestants_[c].judged->detect({interval.motion, bones}, answer));
     answer.sort();
     if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
       own->second->compare(input_.mesh, i, truth, answer);
@@ -178,7 +178,7 @@ void Verifier::judge_one(std::size_t i) {
         promises(strategy.guarantee, starts_embedded, truth), i, record_.strategies[c]);
   }
   record_.accuracy_tests +=
-      reference_->used->timed->detect(interval.motion, bones, answer).pairs.elementary_tests;
+      reference_->used->timed->detect({interval.motion, bones}, answer).pairs.elementary_tests;
   record_.accuracy.add(compare_elementary(truth, answer));
 }
 

@@ -37,7 +37,7 @@ Input colliding_input() {
     const scenes::ClipInterval interval = input.clip->load(0);
     if (!EmbeddingTest(input.mesh, input.reference).embedded(interval.motion.start())) continue;
     ContactSet found;
-    complete_reference().make(input.setup(exact())).detector->detect(interval.motion, nullptr, found);
+    complete_reference().make(input.setup(exact())).detector->detect({interval.motion}, found);
     found.sort();
     if (!found.contacts.empty() && found.contacts.front().time < found.contacts.back().time) return input;
   }
@@ -50,8 +50,8 @@ class Saboteur : public Detector {
  public:
   Saboteur(const Setup& setup, Spoil spoil)
       : setup_(setup), honest_(complete_reference().make(setup).detector), spoil_(spoil) {}
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    Report report = honest_->detect(motion, bones, out);
+  Report detect(const Step& step, ContactSet& out) override {
+    Report report = honest_->detect(step, out);
     out.sort();
     spoil_(setup_, ++call_, report, out);
     return report;

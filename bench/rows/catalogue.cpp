@@ -1,6 +1,5 @@
 #include "bench/rows/catalogue.h"
 
-#include <algorithm>
 #include <array>
 
 #include "baselines/aabb.h"
@@ -34,7 +33,6 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::complete,
         .needs = kAnySurface,
         .make = make_base,
-        .role = Role::reference,
         .sees_start = true,
         .published = true,
     },
@@ -45,7 +43,6 @@ constexpr std::array kStrategies = {
         .needs = kAnySurface,
         .make = make_brute,
         .group = "oracle",
-        .role = Role::oracle,
         .sees_start = true,
         .published = true,
     },
@@ -110,28 +107,8 @@ constexpr std::array kStrategies = {
         .make = [](const Setup& setup) { return make_drvbc(setup); },
         .published = true,
     },
-    Strategy{
-        .name = "drvbc_fast",
-        .source = "radial view based culling with overlapping covers",
-        .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
-        .make = [](const Setup& setup) { return make_drvbc_fast(setup); },
-        .follows = true,
-    },
-    Strategy{
-        .name = "drvbc_fast_complete",
-        .source = "drvbc_fast with a contour test of capped clusters",
-        .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
-        .make =
-            [](const Setup& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
-            },
-        .role = Role::stand_in,
-        .follows = true,
-        .sees_start = true,
-        .looks_by_signs = true,
-    },
+    kDrvbcFast,
+    kDrvbcFastComplete,
     Strategy{
         .name = "drvbc_fast_all",
         .source = "drvbc_fast_complete from starts that are known to be embedded",
@@ -376,11 +353,6 @@ constexpr std::array kStrategies = {
     },
 };
 
-const Strategy& playing(Role role) {
-  return *std::find_if(kStrategies.begin(), kStrategies.end(),
-                       [&](const Strategy& s) { return s.role == role; });
-}
-
 }  // namespace
 
 std::span<const Strategy> strategies() {
@@ -407,15 +379,15 @@ std::vector<const Strategy*> strategies_in(std::string_view group) {
 }
 
 const Strategy& complete_reference() {
-  return playing(Role::reference);
+  return strategy_named("base");
 }
 
 const Strategy& all_pairs() {
-  return playing(Role::oracle);
+  return strategy_named("brute");
 }
 
 const Strategy& complete_stand_in() {
-  return playing(Role::stand_in);
+  return strategy_named(kDrvbcFastComplete.name);
 }
 
 }  // namespace cscd::bench

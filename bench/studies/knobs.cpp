@@ -118,14 +118,14 @@ nlohmann::ordered_json study_knobs(const std::string& scene, const KnobStudy& st
     const scenes::ClipInterval interval = input.clip->load(i);
     const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
     const bool embedded = embedding.embedded(interval.motion.start());
-    reference->detect(interval.motion, bones, truth);
+    reference->detect({interval.motion, bones}, truth);
     truth.sort();
     const std::set<FeaturePair> expected = pairs_of(truth);
     contacts += expected.size();
     colliding += !expected.empty();
     embedded_colliding += embedded && !expected.empty();
     for (Subject& subject : subjects) {
-      subject.detector->detect(interval.motion, bones, answer);
+      subject.detector->detect({interval.motion, bones}, answer);
       const std::set<FeaturePair> found = pairs_of(answer);
       for (const FeaturePair& pair : found) ++(expected.contains(pair) ? subject.contacts : subject.invented);
       const bool has_first = std::any_of(truth.contacts.begin(), truth.contacts.end(), [&](const Contact& c) {
@@ -137,7 +137,7 @@ nlohmann::ordered_json study_knobs(const std::string& scene, const KnobStudy& st
     for (int repetition = 0; repetition < study.repetitions; ++repetition) {
       shuffle(order, random);
       for (const std::size_t k : order)
-        samples[k].push_back(subjects[k].detector->detect(interval.motion, bones, answer).ms.total());
+        samples[k].push_back(subjects[k].detector->detect({interval.motion, bones}, answer).ms.total());
     }
     for (std::size_t k = 0; k < subjects.size(); ++k) subjects[k].ms.push_back(median(samples[k]));
   }

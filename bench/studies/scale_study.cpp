@@ -47,7 +47,7 @@ struct Entrant {
 
 Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet& found) {
   const Report report = entrant.made.prepared.detector->detect(
-      interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+      {interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
   found.sort();
   if (entrant.row.first) keep_first(found);
   return report;

@@ -55,7 +55,7 @@ class ScenePairs {
     g_vertex_face = kind_ == Kind::vertex_face ? &waiting_ : nullptr;
     g_edge_edge = kind_ == Kind::edge_edge ? &waiting_ : nullptr;
     ContactSet found;
-    detector_->detect(interval.motion, interval.bones ? &*interval.bones : nullptr, found);
+    detector_->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
     interval_ += every_;
   }
 

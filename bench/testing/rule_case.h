@@ -49,7 +49,7 @@ struct Case {
   ContactSet ask(Detector& detector) const {
     const Rig::Interval bones{rig.reference, bones_end};
     ContactSet found;
-    detector.detect(Motion(start, end), &bones, found);
+    detector.detect({Motion(start, end), &bones}, found);
     found.sort();
     return found;
   }

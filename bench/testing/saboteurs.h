@@ -151,15 +151,16 @@ class RadialCuller : public Culler {
     if (flaw != Flaw::observers_mixed) std::iota(labels_.begin(), labels_.end(), 0);
   }
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }
-  bool classify(const Motion& motion, const Rig::Interval* bones) override {
-    table_.update(motion);
+  bool classify(const Step& step) override {
+    table_.update(step.motion);
     for (std::size_t c = 0; c < kinds_.size(); ++c) {
       const std::size_t bone = +clusters_.clusters[c].bone;
-      const radial::Observer observer = radial::observer(kinds_[c], bones->start[bone], bones->end[bone]);
+      const radial::Observer observer =
+          radial::observer(kinds_[c], step.bones->start[bone], step.bones->end[bone]);
       const std::span<radial::Orientation> classes = hierarchy_.classes(c);
       table_.classify(c, observer, classes);
       for (std::size_t member = 0; member < classes.size(); ++member)
-        spoil(classes[member], motion, hierarchy_.groups()[c][member], observer);
+        spoil(classes[member], step.motion, hierarchy_.groups()[c][member], observer);
     }
     radial_ = hierarchy_.finish_classes();
     return true;
@@ -204,7 +205,8 @@ class ManyCoversCuller : public Culler {
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
-  bool classify(const Motion& motion, const Rig::Interval*) override {
+  bool classify(const Step& step) override {
+    const Motion& motion = step.motion;
     by_.assign(mesh_.triangle_count(), {});
     std::mt19937 random(14);
     for (int cover = 0; cover < kManyCovers; ++cover) {
@@ -275,11 +277,11 @@ class RepresentativeDetector : public Detector {
   RepresentativeDetector(std::unique_ptr<Culler> culler, const Setup& setup)
       : culler_(std::move(culler)), mesh_(setup.mesh), test_(setup.elementary) {}
 
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
+  Report detect(const Step& step, ContactSet& out) override {
     out.clear();
-    Sink sink(*this, motion, out);
-    culler_->refit(motion);
-    culler_->classify(motion, bones);
+    Sink sink(*this, step.motion, out);
+    culler_->refit(step.motion);
+    culler_->classify(step);
     Report report;
     report.cull = culler_->cull(sink);
     sink.flush();
@@ -328,9 +330,9 @@ class RepresentativeDetector : public Detector {
 class ForgetfulDetector : public Detector {
  public:
   explicit ForgetfulDetector(std::unique_ptr<Detector> inner) : inner_(std::move(inner)) {}
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    const Report report = inner_->detect(motion, bones, out);
-    const std::uint64_t salt = std::bit_cast<std::uint64_t>(motion.start()[0].x());
+  Report detect(const Step& step, ContactSet& out) override {
+    const Report report = inner_->detect(step, out);
+    const std::uint64_t salt = std::bit_cast<std::uint64_t>(step.motion.start()[0].x());
     std::erase_if(out.contacts, [&](const Contact& contact) {
       std::uint64_t hash = salt;
       for (const std::int32_t id : {contact.pair.a, contact.pair.b})

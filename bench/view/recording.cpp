@@ -142,7 +142,7 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   ContactSet ignored;
   prepared_.detector->forget();
   const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
-  const Report report = prepared_.detector->detect(interval.motion, bones, ignored);
+  const Report report = prepared_.detector->detect({interval.motion, bones}, ignored);
   const RadialView view = prepared_.detector->radial_view();
   clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
 

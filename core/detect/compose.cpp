@@ -52,12 +52,12 @@ class PairTester : public TrianglePairSink {
     if (setup.pipeline == Pipeline::published) options_.filter = PairFilter::plain_sign;
   }
 
-  // `start`, where it is not null, takes up to `most` pairs that cross at the start.
-  void start_interval(const Motion& motion, ContactSet& out, std::size_t most, Crossings* start) {
+  void start_interval(const Step& step, ContactSet& out) {
     restart();
-    motion_ = &motion;
-    start_ = start;
-    most_ = most;
+    motion_ = &step.motion;
+    start_ = step.crossings;
+    most_ = step.most_crossings;
+    if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
     out_ = &out;
     counts_ = {};
     met_.start_interval();
@@ -256,37 +256,19 @@ class ComposedDetector : public Detector {
         culler_(std::move(culler)),
         tester_(setup, std::move(options), clock_) {}
 
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    return run(motion, bones, out, starts_embedded_, 0, nullptr);
-  }
-  Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    return run(motion, bones, out, true, 0, nullptr);
-  }
-  Report detect_and_see_start(const Motion& motion, const Rig::Interval* bones, ContactSet& out,
-                              std::size_t most, Crossings& start) override {
-    start.pairs.clear();
-    start.total = 0;
-    const Report report = run(motion, bones, out, false, most, &start);
-    std::ranges::sort(start.pairs);
-    return report;
-  }
-  void forget() override { culler_->forget(); }
-  std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
-  RadialView radial_view() const override { return culler_->radial_view(); }
-
- private:
-  Report run(const Motion& motion, const Rig::Interval* bones, ContactSet& out, bool embedded,
-             std::size_t most, Crossings* start) {
+  Report detect(const Step& step, ContactSet& out) override {
     out.clear();
-    // The first contact may be an excluded one, and then says nothing of the others.
-    culler_->start_is_embedded(embedded && !excludes_);
-    tester_.start_interval(motion, out, most, start);
+    Step known = step;
+    // A start that is to be looked at is not taken for granted. The first contact may be an excluded one, and
+    // then says nothing of the others.
+    known.starts_embedded = (step.starts_embedded || starts_embedded_) && !step.crossings && !excludes_;
+    tester_.start_interval(step, out);
     clock_.reset();
 
     clock_.enter(Stage::refit);
-    culler_->refit(motion);
+    culler_->refit(step.motion);
     clock_.enter(Stage::rv_update);
-    const bool classified = culler_->classify(motion, bones);
+    const bool classified = culler_->classify(known);
     clock_.enter(Stage::traversal);
     Report report;
     report.cull = culler_->cull(tester_);
@@ -305,9 +287,14 @@ class ComposedDetector : public Detector {
     report.ms.traversal = clock_.milliseconds(Stage::traversal);
     report.ms.elementary = clock_.milliseconds(Stage::elementary);
     report.start_ms = clock_.milliseconds(Stage::start);
+    if (step.crossings) std::ranges::sort(step.crossings->pairs);
     return report;
   }
+  void forget() override { culler_->forget(); }
+  std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
+  RadialView radial_view() const override { return culler_->radial_view(); }
 
+ private:
   const bool starts_embedded_, excludes_, first_only_;
   StageClock clock_;
   std::unique_ptr<Culler> culler_;

@@ -22,7 +22,7 @@ struct PairOptions {
   // The threads that filter and test, for a strategy whose culler uses as many. Contacts, their order and all
   // counters are the same on any number.
   int threads = 1;
-  // detect() takes every start for embedded, as detect_from_embedded() does.
+  // Every step is taken for one that starts embedded, unless its crossings are wanted.
   bool starts_embedded = false;
 };
 

@@ -20,7 +20,7 @@ class ListCuller : public Culler {
   explicit ListCuller(std::vector<TrianglePair> pairs, bool classifies = false)
       : pairs_(std::move(pairs)), classifies_(classifies) {}
   void refit(const Motion&) override {}
-  bool classify(const Motion&, const Rig::Interval*) override { return classifies_; }
+  bool classify(const Step&) override { return classifies_; }
   CullCounts cull(TrianglePairSink& sink) override {
     for (const TrianglePair& pair : pairs_) sink.add(pair.a, pair.b);
     return {};
@@ -81,7 +81,7 @@ Report run(const TriangleMesh& mesh, const std::vector<Vec3>& start, const std::
            PairOptions options = {}) {
   const auto detector = compose(std::make_unique<ListCuller>(std::move(pairs)),
                                 cscd::Setup{mesh, start, nullptr, test}, std::move(options));
-  const Report report = detector->detect(Motion(start, end), nullptr, out);
+  const Report report = detector->detect({Motion(start, end)}, out);
   out.sort();
   return report;
 }
@@ -248,7 +248,7 @@ TEST(Compose, KeepsNothingBetweenIntervals) {
   for (int i = 0; i < 12; ++i) {
     const bool second = random() % 2;
     const Crumple& c = second ? b : a;
-    const Report report = detector->detect(Motion(c.shape.positions, c.end), nullptr, out);
+    const Report report = detector->detect({Motion(c.shape.positions, c.end)}, out);
     out.sort();
     EXPECT_EQ(digest(out), expected[second]);
     if (tests[second] == 0) tests[second] = report.pairs.elementary_tests;
@@ -297,7 +297,7 @@ TEST(Compose, StagesThatDoNotExistAreAbsent) {
         compose(std::make_unique<ListCuller>(std::vector<TrianglePair>{pair_of(0, 1)}, classifies),
                 cscd::Setup{mesh, x, nullptr, kRecorder});
     ContactSet out;
-    const Report report = detector->detect(Motion(x, x), nullptr, out);
+    const Report report = detector->detect({Motion(x, x)}, out);
     EXPECT_EQ(report.ms.rv_update.has_value(), classifies);
     EXPECT_FALSE(report.cull.radial.has_value());
     EXPECT_GT(report.ms.elementary, 0);

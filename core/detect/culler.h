@@ -8,8 +8,7 @@
 #include "core/base/ids.h"
 #include "core/detect/counts.h"
 #include "core/detect/radial_view.h"
-#include "core/mesh/motion.h"
-#include "core/mesh/rig.h"
+#include "core/detect/step.h"
 
 namespace cscd {
 
@@ -64,14 +63,12 @@ class Culler {
   // Computes the bounds of this interval. Stage `refit`.
   virtual void refit(const Motion& motion) = 0;
   // Computes orientation classes and clusters. Stage `rv_update`; returns false where the strategy has no
-  // such stage. `bones` is null for a mesh without a rig.
-  virtual bool classify(const Motion& /*motion*/, const Rig::Interval* /*bones*/) { return false; }
+  // such stage. Where the step starts embedded, cull() may look for the first contact alone, and cull_rest()
+  // then passes on the others.
+  virtual bool classify(const Step& /*step*/) { return false; }
   // Passes every triangle pair that is not proven apart to `sink` and returns the culling counters, except
   // pctp, which the caller takes from the sink. Stage `traversal`.
   virtual CullCounts cull(TrianglePairSink& sink) = 0;
-  // Says of the intervals from here on whether their starts are known to be embedded. Where they are, cull()
-  // may look for the first contact alone, and cull_rest() then passes on the others.
-  virtual void start_is_embedded(bool /*known*/) {}
   // Called after cull() has passed on a pair that touches: passes on all pairs that cull() may have left out
   // because it looked for the first contact alone. Returns the number of overlap tests; nothing where cull()
   // has kept all contacts. Stage `traversal`.

@@ -1,17 +1,13 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <optional>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
-#include "core/base/ids.h"
 #include "core/detect/contact.h"
 #include "core/detect/counts.h"
 #include "core/detect/radial_view.h"
-#include "core/mesh/motion.h"
-#include "core/mesh/rig.h"
+#include "core/detect/step.h"
 
 namespace cscd {
 
@@ -23,19 +19,6 @@ struct StageTimes {
   double traversal = 0;
   double elementary = 0;
   double total() const { return refit + rv_update.value_or(0) + traversal + elementary; }
-};
-
-// Two different triangles of one mesh, the smaller index first.
-using CrossingPair = std::pair<TriangleId, TriangleId>;
-
-// The triangle pairs that cross in one pose. Two triangles *cross* if they meet outside the vertices and
-// edges that they share.
-struct Crossings {
-  std::vector<CrossingPair> pairs;  // sorted; incomplete if more pairs cross than the caller wanted to keep
-  std::size_t total = 0;            // number of all pairs that cross
-
-  bool all_kept() const { return pairs.size() == total; }
-  bool contains(const CrossingPair& pair) const { return std::ranges::binary_search(pairs, pair); }
 };
 
 struct Report {
@@ -52,23 +35,9 @@ class Detector {
  public:
   virtual ~Detector() = default;
   // Replaces the content of `out` by the contacts and undecided feature pairs of one interval, unsorted, and
-  // returns counters and times. All positions must be finite. `bones` holds the skeleton at both ends of the
-  // interval; it is null for a mesh without a rig. A detector logs nothing; it throws only where a package
-  // that it calls fails or refuses the positions (baselines/embree, baselines/fcl).
-  virtual Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) = 0;
-  // Does what detect() does, for an interval whose start the caller knows to be embedded (rule
-  // embedded-start, core/soundness.md). A complete strategy may then take less time, and finds the same
-  // contacts.
-  virtual Report detect_from_embedded(const Motion& motion, const Rig::Interval* bones, ContactSet& out) {
-    return detect(motion, bones, out);
-  }
-  // Does what detect() does, and also finds which triangles cross at the start: it tests exactly, in that
-  // pose, the pairs of triangles that the culling passes on. At most `most` crossing pairs are kept. Throws
-  // std::logic_error where the strategy does not promise it (Strategy::sees_start).
-  virtual Report detect_and_see_start(const Motion& /*motion*/, const Rig::Interval* /*bones*/,
-                                      ContactSet& /*out*/, std::size_t /*most*/, Crossings& /*start*/) {
-    throw std::logic_error("this detector does not see what crosses at a start");
-  }
+  // returns counters and times. A detector logs nothing; it throws only where a package that it calls fails
+  // or refuses the positions (baselines/embree, baselines/fcl).
+  virtual Report detect(const Step& step, ContactSet& out) = 0;
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
   // that follow the surface (Strategy::follows) have anything to forget.
   virtual void forget() {}

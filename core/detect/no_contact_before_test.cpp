@@ -52,7 +52,7 @@ struct Crash {
 
 ContactSet sorted_answer(Detector& detector, const Crash& crash, std::uint64_t* asked = nullptr) {
   ContactSet found;
-  const Report report = detector.detect(crash.motion(), nullptr, found);
+  const Report report = detector.detect({crash.motion()}, found);
   if (asked != nullptr) *asked += report.pairs.elementary_tests;
   found.sort();
   return found;

@@ -87,14 +87,6 @@ struct Needs {
   bool bones = false, closed_mesh = false;
 };
 
-// The part that a strategy plays in the harness beside being measured.
-enum class Role {
-  none,
-  reference,  // the simplest complete strategy that is not quadratic: the others are verified against it
-  oracle,     // all pairs of triangles: judges the reference on small meshes
-  stand_in,   // the fastest complete strategy for any surface: answers where the chosen one promises nothing
-};
-
 // One row of the catalogue of strategies.
 struct Strategy {
   std::string_view name;
@@ -106,7 +98,6 @@ struct Strategy {
   // input allows it.
   std::string_view group = "";
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
-  Role role = Role::none;
   // Whether a detector allocates no memory once it has seen its largest interval. Strategies that hand the
   // work to a library do not promise it. One that follows the surface allocates while it cuts clusters anew.
   bool settles = true;
@@ -114,13 +105,13 @@ struct Strategy {
   // not depend on the intervals that a detector has answered before; its counters do, and so do contacts
   // later than the first where no more than that is promised (rule fresh-detector, core/soundness.md).
   bool follows = false;
-  // Whether its detectors say which triangles cross at the start (Detector::detect_and_see_start). For that,
+  // Whether its detectors say which triangles cross at the start (Step::crossings). For that,
   // a pair of triangles may be dropped only by a proof that, at any time of the interval, the two meet
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
   // edge can pierce a face.
   bool sees_start = false;
   // Whether its detectors, told that a start of a closed mesh is embedded, drop pairs by the orientation of
-  // triangles alone (Detector::detect_from_embedded), which takes less than half the time.
+  // triangles alone (Step::starts_embedded), which takes less than half the time.
   bool looks_by_signs = false;
   // Whether the strategy can be made in the pipeline `published`: the paper's method and those that the paper
   // compares it with.

@@ -38,9 +38,9 @@ class DrvbcCuller : public Culler {
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }
 
-  bool classify(const Motion& motion, const Rig::Interval* bones) override {
-    table_.update(motion);
-    mega_.regrow(table_, *bones, hierarchy_);
+  bool classify(const Step& step) override {
+    table_.update(step.motion);
+    mega_.regrow(table_, *step.bones, hierarchy_);
     radial_ = hierarchy_.finish_classes();
     radial_.clusters = mega_.count();
     return true;

@@ -12,4 +12,27 @@ namespace cscd {
 // and the options do not say `complete`, or say that starts are embedded.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
 
+// The two rows of the engine that the library asks, too.
+inline constexpr Strategy kDrvbcFast{
+    .name = "drvbc_fast",
+    .source = "radial view based culling with overlapping covers",
+    .guarantee = Guarantee::first_contact,
+    .needs = {.closed_mesh = true},
+    .make = [](const Setup& setup) { return make_drvbc_fast(setup); },
+    .follows = true,
+};
+inline constexpr Strategy kDrvbcFastComplete{
+    .name = "drvbc_fast_complete",
+    .source = "drvbc_fast with a contour test of capped clusters",
+    .guarantee = Guarantee::complete,
+    .needs = {},
+    .make =
+        [](const Setup& setup) {
+          return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
+        },
+    .follows = true,
+    .sees_start = true,
+    .looks_by_signs = true,
+};
+
 }  // namespace cscd

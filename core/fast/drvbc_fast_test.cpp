@@ -52,7 +52,7 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
       const std::unique_ptr<Detector> detector =
           make_drvbc_fast(scene.setup(threads), {.complete = complete}).detector;
       for (int again = 0; again < 2; ++again) {
-        const Report now = detector->detect(scene.motion(), nullptr, found);
+        const Report now = detector->detect({scene.motion()}, found);
         if (threads == 1) alone[again] = found, reports[again] = now;
         const Report& report = reports[again];
         EXPECT_EQ(now.cull.bvot, report.cull.bvot) << threads << " threads";
@@ -81,17 +81,15 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
 TEST(DrvbcFast, FindsTheSameWithoutAnyOfItsIdeas) {
   const Scene scene(0.1);
   ContactSet all;
-  const std::uint64_t passed_on = make_drvbc_fast(scene.setup(1), {.complete = true})
-                                      .detector->detect(scene.motion(), nullptr, all)
-                                      .cull.pctp;
+  const std::uint64_t passed_on =
+      make_drvbc_fast(scene.setup(1), {.complete = true}).detector->detect({scene.motion()}, all).cull.pctp;
   all.sort();
   ASSERT_FALSE(all.contacts.empty());
   for (const DrvbcFastOptions& options : {DrvbcFastOptions{.time_linear = false, .complete = true},
                                           DrvbcFastOptions{.stars = false, .complete = true},
                                           DrvbcFastOptions{.planes = false, .complete = true}}) {
     ContactSet found;
-    const Report report =
-        make_drvbc_fast(scene.setup(1), options).detector->detect(scene.motion(), nullptr, found);
+    const Report report = make_drvbc_fast(scene.setup(1), options).detector->detect({scene.motion()}, found);
     found.sort();
     EXPECT_GT(report.cull.pctp, passed_on);
     ASSERT_EQ(found.contacts.size(), all.contacts.size());

@@ -99,11 +99,11 @@ TEST(FastEmbedding, AQuerySeesAtItsStartWhatThePlainTestSees) {
       std::vector<Vec3> to = from;  // a long step would spend the time on contacts
       for (std::size_t v = 0; v < to.size(); ++v) to[v] += 0.01 * (toward[v] - from[v]);
       const Motion motion(from, to);
-      complete->detect_and_see_start(motion, nullptr, found, kAll, start);
+      complete->detect({.motion = motion, .crossings = &start, .most_crossings = kAll}, found);
       ASSERT_EQ(start.pairs, plain.find_all(from, kAll).pairs) << i;
       EXPECT_EQ(start.total, start.pairs.size());
       seen += start.total;
-      complete->detect(motion, nullptr, alone);
+      complete->detect({motion}, alone);
       found.sort(), alone.sort();
       EXPECT_EQ(digest(found), digest(alone)) << i;
     }

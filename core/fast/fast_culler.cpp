@@ -46,8 +46,9 @@ void FastCuller::refit(const Motion& motion) {
   grid_ = Grid(positions_.error());
 }
 
-bool FastCuller::classify(const Motion& motion, const Rig::Interval*) {
-  look_at(motion);
+bool FastCuller::classify(const Step& step) {
+  by_signs_ = step.starts_embedded && signs_suffice_;
+  look_at(step.motion);
   return true;
 }
 

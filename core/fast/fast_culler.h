@@ -45,12 +45,11 @@ class FastCuller : public Culler {
 
   void refit(const Motion& motion) override;
   // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded
-  // once for its bounds and its orientations. Returns true.
-  bool classify(const Motion& motion, const Rig::Interval* bones) override;
+  // once for its bounds and its orientations. Only a complete culler of a closed and consistently oriented
+  // mesh makes use of an embedded start: signs alone certify until something touches, and capped clusters
+  // only then. Returns true.
+  bool classify(const Step& step) override;
   CullCounts cull(TrianglePairSink& sink) override;
-  // Only a complete culler of a closed and consistently oriented mesh makes use of an embedded start: signs
-  // alone certify until something touches, and capped clusters only then.
-  void start_is_embedded(bool known) override { by_signs_ = known && signs_suffice_; }
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
   void forget() override;
   // Returns nothing after an exception has broken off a change of clusters, until the next interval.

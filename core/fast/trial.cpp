@@ -59,13 +59,12 @@ std::size_t most_triangles_for_clusters(std::size_t triangles, bool with_caps) {
 // above `most`, once the work is more than `most`.
 std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, bool by_signs, std::uint64_t most) {
   std::uint64_t tests = 0;
-  culler.start_is_embedded(by_signs);
   for (const Trial& trial : trials) {
     if (tests > most) break;
     CountingSink sink;
     const Motion motion(trial[0], trial[1]);
     culler.refit(motion);
-    culler.classify(motion, nullptr);
+    culler.classify({.motion = motion, .starts_embedded = by_signs});
     const CullCounts counts = culler.cull(sink);
     tests += kTestsOfPatch * culler.patch_count() + kTestsOfLook * culler.looks_per_interval() +
              kTestsOfObserver * counts.radial->clusters + *counts.bvot + kTestsOfPair * sink.count();

@@ -76,7 +76,7 @@ TEST(Trial, DecidesHowManyCoversAreUsed) {
     const cscd::Setup setup{mesh, shape.positions, &rig, elementary_tests().front()};
     ContactSet found;
     return make_drvbc_fast(setup, options)
-        .detector->detect(Motion(shape.positions, shape.positions), nullptr, found)
+        .detector->detect({Motion(shape.positions, shape.positions)}, found)
         .cull.radial->clusters;
   };
   const Spikes spikes(7);

@@ -77,7 +77,7 @@ void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePai
   }
   CandidateSink sink(set_, motion, 0, out);
   culler_->refit(motion);
-  culler_->classify(motion, nullptr);
+  culler_->classify({motion});
   culler_->cull(sink);
   sink.flush();
 }

@@ -214,7 +214,7 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
         return exclusions_->excludes(together_, TrianglePair{pair.first, pair.second});
       });
   }
-  (first ? first_ : all_)->detect(motion(), nullptr, found);
+  (first ? first_ : all_)->detect({motion()}, found);
   found.sort();
   if (first) keep_first(found);
   // With exclusions two triangles may come to cross by a contact that is left out.

@@ -106,8 +106,11 @@ void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bo
     Row& row = by_main ? main_ : stand_in();
     std::optional<Rig::Interval> rest;
     if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
-    row.detector->detect_and_see_start(Motion(pose, pose), rest ? &*rest : nullptr, touched_, poses_.most(),
-                                       seen_);
+    row.detector->detect({.motion = Motion(pose, pose),
+                          .bones = rest ? &*rest : nullptr,
+                          .crossings = &seen_,
+                          .most_crossings = poses_.most()},
+                         touched_);
     poses_.know(pose, seen_);
   } else {
     poses_.find(pose);
@@ -126,10 +129,7 @@ bool Session::follow_to(std::span<const Vec3> start, const Rig::Interval* bones)
   std::optional<Rig::Interval> way;
   if (bones != nullptr && setup_.rig != nullptr) way = Rig::Interval{pose_bones_, bones->start};
   const Motion motion(poses_.positions(), start);
-  if (embedded)
-    main_.detector->detect_from_embedded(motion, way ? &*way : nullptr, touched_);
-  else
-    main_.detector->detect(motion, way ? &*way : nullptr, touched_);
+  main_.detector->detect({motion, way ? &*way : nullptr, embedded}, touched_);
   const bool all_known = touched_.contacts.empty() || finds_all(main_);
   if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
   poses_.follow(start, touched_);
@@ -170,18 +170,19 @@ void Session::leave_out(StepAnswer& out) const {
 
 // Asks a row, which finds what crosses at the start where that is not known.
 void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
-  const Rig::Interval* const used = setup_.rig != nullptr ? bones : nullptr;
+  Step asked{motion, setup_.rig != nullptr ? bones : nullptr};
   out.strategy = row.strategy;
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
     // touches. After a step in which something did, that is likely again, and one look for all is quicker.
     // For the first contact alone there is one look in either case.
     const bool embedded = !options_.ignore_starts && poses_.crossings().total == 0 && can_follow();
-    out.report = embedded && (!touched_last_ || first_only())
-                     ? row.detector->detect_from_embedded(motion, used, out.found)
-                     : row.detector->detect(motion, used, out.found);
+    asked.starts_embedded = embedded && (!touched_last_ || first_only());
+    out.report = row.detector->detect(asked, out.found);
   } else {
-    out.report = row.detector->detect_and_see_start(motion, used, out.found, poses_.most(), seen_);
+    asked.crossings = &seen_;
+    asked.most_crossings = poses_.most();
+    out.report = row.detector->detect(asked, out.found);
     poses_.know(motion.start(), seen_);
     start_known_ = true;
     out.embedding_ms += out.report.start_ms;

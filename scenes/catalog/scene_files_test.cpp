@@ -174,7 +174,7 @@ TEST_P(SceneFiles, TouchesItselfNowhereUnlessItResponds) {
       compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});
   ContactSet found;
   for (std::size_t i = 0; i < clip.interval_count(); i += stride()) {
-    detector->detect(clip.interval(i).motion, nullptr, found);
+    detector->detect({clip.interval(i).motion}, found);
     EXPECT_TRUE(found.contacts.empty()) << "interval " << i;
   }
 }
@@ -200,11 +200,11 @@ TEST_P(SceneFiles, MeetsItselfInATenthOfItsIntervalsWhereItResponds) {
     corrected += differs;
     if (i % 8 != 0) continue;
     const Rig::Interval* bones = boned ? &*interval.bones : nullptr;
-    detector->detect(interval.motion, bones, found);
+    detector->detect({interval.motion, bones}, found);
     EXPECT_EQ(differs, !found.contacts.empty())
         << "interval " << i << ": corrected where it collides, nowhere else";
     const Motion taken(interval.motion.start(), clip.frame(i + 1).positions);
-    detector->detect(taken, bones, found);
+    detector->detect({taken, bones}, found);
     EXPECT_TRUE(found.contacts.empty()) << "interval " << i << ": the way to the next start is free";
   }
   RecordProperty("contact_share", std::to_string(corrected) + " of " + std::to_string(clip.interval_count()));

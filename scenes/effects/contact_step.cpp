@@ -78,7 +78,7 @@ ContactStep::ContactStep(const TriangleMesh& mesh, std::span<const Vec3> referen
 
 bool ContactStep::is_free(std::span<const Vec3> start, const std::vector<Vec3>& end,
                           const Rig::Interval& bones) {
-  first_->detect(Motion(start, end), &bones, found_);
+  first_->detect({Motion(start, end), &bones}, found_);
   return found_.contacts.empty();
 }
 
@@ -88,7 +88,7 @@ void ContactStep::resolve(std::span<const Vec3> start, std::vector<Vec3>& end, c
   ++counts_.colliding;
   for (int round = 0; round < options_.rounds; ++round) {
     ++counts_.rounds;
-    all_->detect(Motion(start, end), &bones, found_);
+    all_->detect({Motion(start, end), &bones}, found_);
     correct(start, end);
     if (is_free(start, end, bones)) return;
   }

@@ -17,7 +17,8 @@ namespace {
 class AllPairs final : public Detector {
  public:
   explicit AllPairs(const TriangleMesh& mesh) : mesh_(mesh) {}
-  Report detect(const Motion& motion, const Rig::Interval*, ContactSet& out) override {
+  Report detect(const Step& step, ContactSet& out) override {
+    const Motion& motion = step.motion;
     out.clear();
     const auto look = [&](const FeaturePair& pair) {
       const Answer answer = ask(*find_elementary_test("exact"), mesh_, motion, pair);
@@ -61,7 +62,7 @@ class TwoBalls : public testing::Test {
   }
   bool free(const std::vector<Vec3>& end) {
     ContactSet found;
-    AllPairs(mesh).detect(Motion(balls.positions, end), nullptr, found);
+    AllPairs(mesh).detect({Motion(balls.positions, end)}, found);
     return found.contacts.empty();
   }
   test::Shape balls;
@@ -172,8 +173,8 @@ std::unique_ptr<Detector> own(const Setup& setup) {
 class Forgetful final : public Detector {
  public:
   Forgetful(std::unique_ptr<Detector> detector, int every) : detector_(std::move(detector)), every_(every) {}
-  Report detect(const Motion& motion, const Rig::Interval* bones, ContactSet& out) override {
-    const Report report = detector_->detect(motion, bones, out);
+  Report detect(const Step& step, ContactSet& out) override {
+    const Report report = detector_->detect(step, out);
     if (!out.contacts.empty() && ++found_ % every_ == 0) out.clear();
     return report;
   }

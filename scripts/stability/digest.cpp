@@ -57,7 +57,7 @@ void detect(const std::string& name, const std::vector<Query>& queries) {
   options.relative_boxes = true;
   const auto detector = compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, std::move(options));
   ContactSet contacts;
-  const Report report = detector->detect(Motion(start, end), nullptr, contacts);
+  const Report report = detector->detect({Motion(start, end)}, contacts);
   contacts.sort();
   std::printf("%s mesh %zu contacts of %llu pairs %s\n", name.c_str(), contacts.contacts.size(),
               static_cast<unsigned long long>(report.pairs.elementary_tests), digest(contacts).c_str());

@@ -47,7 +47,7 @@ void EmbeddingTest::search(std::span<const Vec3> positions,
   const Motion at_rest(positions, positions);
   ExactTester tester(*mesh_, positions, found);
   culler_->refit(at_rest);
-  culler_->classify(at_rest, nullptr);
+  culler_->classify({at_rest});
   culler_->cull(tester);
   tester.flush();
   pairs_tested_ = tester.count();
