@@ -8,13 +8,9 @@
 namespace cscd {
 namespace {
 
-// The most crossing pairs that are kept of one pose, eight bytes each. A surface with more has collapsed.
-constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 // Each pair that crosses at rest explains its neighbourhood, which takes a few hundred bytes.
 constexpr std::size_t kMostLeftOut = 500'000;
-// From more contacts than this it is quicker to look at the whole surface again.
-constexpr std::size_t kMostFollowed = 20'000;
-// Preparing the stand-in takes about as long as this many plain searches for crossings, or twice as many.
+// Preparing the fallback takes about as long as this many plain searches for crossings, or twice as many.
 constexpr std::size_t kPlainSearches = 16;
 
 }  // namespace
@@ -25,11 +21,11 @@ std::optional<double> StepAnswer::time() const {
 }
 
 Session::Session(const std::string& name, const Setup& setup, const Strategy& strategy,
-                 const Strategy& stand_in, std::span<const Vec3> rest, const SessionOptions& options)
+                 const Strategy& fallback, std::span<const Vec3> rest, const SessionOptions& options)
     : setup_(setup),
-      stand_in_strategy_(stand_in),
+      fallback_strategy_(fallback),
       options_(options),
-      poses_({setup.mesh, setup.reference}, kMostCrossings) {
+      starts_(setup.mesh, setup.reference, setup.rig != nullptr) {
   if (!strategy.sees_start) find_rest_crossings(name, rest);
   const Stopwatch preparing;
   main_ = make(strategy);
@@ -42,7 +38,7 @@ Session::Session(const std::string& name, const Setup& setup, const Strategy& st
 void Session::find_rest_crossings(const std::string& name, std::span<const Vec3> rest) {
   const Stopwatch searching;
   if (!options_.ignore_starts) find_crossings(rest, nullptr);
-  rest_ = poses_.crossings();
+  rest_ = starts_.crossings();
   rest_ms_ = searching.milliseconds();
   if (options_.keep_rest_crossings) return;
   if (rest_.total > kMostLeftOut)
@@ -52,7 +48,7 @@ void Session::find_rest_crossings(const std::string& name, std::span<const Vec3>
   left_out_ = RestCrossings(setup_.mesh, rest_);
 }
 
-Session::Row Session::make(const Strategy& strategy) const {
+Session::PreparedStrategy Session::make(const Strategy& strategy) const {
   // With pairs left out, the earliest contact may be one of theirs, and then later contacts are asked for.
   Setup setup = setup_;
   setup.first_only = first_only();
@@ -61,98 +57,53 @@ Session::Row Session::make(const Strategy& strategy) const {
           prepared.preparation.new_triangles};
 }
 
-Session::Row& Session::stand_in() {
-  if (!stand_in_) stand_in_ = make(stand_in_strategy_);
-  return *stand_in_;
+Session::PreparedStrategy& Session::fallback() {
+  if (!fallback_) fallback_ = make(fallback_strategy_);
+  return *fallback_;
 }
 
-bool Session::finds_all(const Row& row) const {
-  return promises_all(row.strategy->guarantee, poses_.crossings().total == 0) && !row.strategy->own_test &&
-         can_follow() && !first_only();
+Certainty Session::certainty_of(const Strategy& strategy) const {
+  if (strategy.own_test || !can_follow()) return {};
+  return {.all = promises_all(strategy.guarantee, starts_.embedded()) && !first_only(),
+          .whether = starts_.embedded() && strategy.guarantee != Guarantee::heuristic};
 }
 
-// Chooses the row that answers a step, and sees to it that what crosses at the start is known, or that the
-// row finds it with its answer.
-Session::Row& Session::row_for(const Motion& motion, const Rig::Interval* bones) {
-  start_known_ = options_.ignore_starts || moved_on_ || poses_.knows(motion.start());
+// Chooses the strategy that answers a step, and sees to it that what crosses at the start is known, or that
+// the strategy finds it with its answer.
+Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Interval* bones) {
+  start_known_ = options_.ignore_starts || starts_.knows(motion.start());
   if (options_.ignore_starts) return main_;
   const bool sees_start = main_.strategy->sees_start;
   const bool worth_following = !sees_start || signs_pay();
-  if (!start_known_ && !(worth_following && follow_to(motion.start(), bones))) {
+  if (!start_known_ && !(worth_following && starts_.follow_to(motion.start(), bones, *main_.detector,
+                                                              certainty_of(*main_.strategy)))) {
     if (sees_start) return main_;
-    if (needs_start() && stand_in_pays()) return stand_in();
+    if (needs_start() && fallback_pays()) return fallback();
     find_crossings(motion.start(), bones);
   }
   start_known_ = true;
-  return needs_start() && poses_.crossings().total > 0 ? stand_in() : main_;
+  return needs_start() && !starts_.embedded() ? fallback() : main_;
 }
 
 bool Session::signs_pay() const {
   return main_.strategy->looks_by_signs && setup_.mesh.closed_and_oriented();
 }
 
-// A complete row that sees starts answers from a start that is not known in less time than it takes to search
-// that start apart. It is prepared for that after so many plain searches that they have taken about as long
-// as its preparation. So a clip whose starts are nearly all known from the steps before them is spared the
-// preparation, and no clip takes much more than twice the time that the better choice would take. Searches
-// are counted and not timed, so that the same questions get the same answers from the same row.
-bool Session::stand_in_pays() const {
-  return stand_in_strategy_.sees_start && (stand_in_ || searches_ >= kPlainSearches);
+// A complete strategy that sees starts answers from a start that is not known in less time than it takes to
+// search that start apart. It is prepared for that after so many plain searches that they have taken about as
+// long as its preparation. So a clip whose starts are nearly all known from the steps before them is spared
+// the preparation, and no clip takes much more than twice the time that the better choice would take.
+// Searches are counted and not timed, so that the same questions get the same answers from the same strategy.
+bool Session::fallback_pays() const {
+  return fallback_strategy_.sees_start && (fallback_ || starts_.searches() >= kPlainSearches);
 }
 
 void Session::find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones) {
   const bool by_main = main_.detector && main_.strategy->sees_start;
-  if (by_main || stand_in_pays()) {
-    Row& row = by_main ? main_ : stand_in();
-    std::optional<Rig::Interval> rest;
-    if (bones != nullptr && setup_.rig != nullptr) rest = Rig::Interval{bones->start, bones->start};
-    row.detector->detect({.motion = Motion(pose, pose),
-                          .bones = rest ? &*rest : nullptr,
-                          .crossings = &seen_,
-                          .most_crossings = poses_.most()},
-                         touched_);
-    poses_.know(pose, seen_);
-  } else {
-    poses_.find(pose);
-  }
-  ++searches_;
-}
-
-// Finds what crosses at the start from the straight way that leads there from the last known pose. Returns
-// false where that way proves nothing, or where so much touches on it that a search is cheaper.
-bool Session::follow_to(std::span<const Vec3> start, const Rig::Interval* bones) {
-  const bool embedded = poses_.crossings().total == 0;
-  const bool provable = can_follow() && !main_.strategy->own_test &&
-                        (finds_all(main_) || (embedded && main_.strategy->guarantee != Guarantee::heuristic));
-  const bool has_bones = bones == nullptr || pose_bones_.size() == bones->start.size();
-  if (!provable || !has_bones || same_bits(touched_end_, start)) return false;
-  std::optional<Rig::Interval> way;
-  if (bones != nullptr && setup_.rig != nullptr) way = Rig::Interval{pose_bones_, bones->start};
-  const Motion motion(poses_.positions(), start);
-  main_.detector->detect({motion, way ? &*way : nullptr, embedded}, touched_);
-  const bool all_known = touched_.contacts.empty() || finds_all(main_);
-  if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
-  poses_.follow(start, touched_);
-  return true;
-}
-
-// Keeps what a step proves about its end. `found` holds everything that the row found.
-void Session::know_end(const Motion& motion, const Rig::Interval* bones, const Row& row,
-                       const ContactSet& found) {
-  const bool embedded = poses_.crossings().total == 0;
-  const bool nothing_touched = found.contacts.empty() && embedded && can_follow() &&
-                               !row.strategy->own_test && row.strategy->guarantee != Guarantee::heuristic;
-  if (moved_on_ && !nothing_touched) {
-    poses_.go_back(motion.start());
-    moved_on_ = false;
-  }
-  if (nothing_touched || (finds_all(row) && found.contacts.size() <= kMostFollowed)) {
-    if (!moved_on_) poses_.follow(motion.end(), found);
-    touched_end_.clear();
-    if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
-  } else {
-    touched_end_.assign(motion.end().begin(), motion.end().end());
-  }
+  Detector* const detector = by_main           ? main_.detector.get()
+                             : fallback_pays() ? fallback().detector.get()
+                                               : nullptr;
+  starts_.search(pose, bones, detector);
 }
 
 void Session::leave_out(StepAnswer& out) const {
@@ -168,36 +119,33 @@ void Session::leave_out(StepAnswer& out) const {
   });
 }
 
-// Asks a row, which finds what crosses at the start where that is not known.
-void Session::ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
-  Step asked{motion, setup_.rig != nullptr ? bones : nullptr};
-  out.strategy = row.strategy;
+// Asks a strategy, which finds what crosses at the start where that is not known.
+void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Interval* bones,
+                  StepAnswer& out) {
+  Step step{motion, setup_.rig != nullptr ? bones : nullptr};
+  out.strategy = asked.strategy;
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
     // touches. After a step in which something did, that is likely again, and one look for all is quicker.
     // For the first contact alone there is one look in either case.
-    const bool embedded = !options_.ignore_starts && poses_.crossings().total == 0 && can_follow();
-    asked.starts_embedded = embedded && (!touched_last_ || first_only());
-    out.report = row.detector->detect(asked, out.found);
+    const bool embedded = !options_.ignore_starts && starts_.embedded() && can_follow();
+    step.starts_embedded = embedded && (!touched_last_ || first_only());
+    out.report = asked.detector->detect(step, out.found);
   } else {
-    asked.crossings = &seen_;
-    asked.most_crossings = poses_.most();
-    out.report = row.detector->detect(asked, out.found);
-    poses_.know(motion.start(), seen_);
+    out.report = starts_.see(*asked.detector, step, out.found);
     start_known_ = true;
     out.embedding_ms += out.report.start_ms;
   }
   touched_last_ = !out.found.contacts.empty();
   if (!options_.ignore_starts) {
-    if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
     say_start(out);
-    know_end(motion, bones, row, out.found);
+    starts_.learn_end(motion, bones, certainty_of(*asked.strategy), out.found);
   }
   leave_out(out);
 }
 
 void Session::say_start(StepAnswer& out) const {
-  out.start = poses_.crossings();
+  out.start = starts_.crossings();
   out.starts_embedded = out.start.total == 0;
   if (setup_.exclusions != nullptr)
     out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
@@ -215,33 +163,33 @@ void Session::say_start(StepAnswer& out) const {
   });
 }
 
-void Session::move_on(const Motion& motion) {
+void Session::begin(const Motion& motion) {
   bool finite = true;
-  moved_on_ = !options_.ignore_starts && poses_.move_on(motion.start(), motion.end(), finite);
-  if (!options_.check_finite || (moved_on_ && finite)) return;
-  if (moved_on_) poses_.go_back(motion.start());
+  const bool known = !options_.ignore_starts && starts_.begin(motion, finite);
+  if (!options_.check_finite || (known && finite)) return;
+  if (known) starts_.abandon(motion);
   require_finite(motion.start(), "start positions");
   require_finite(motion.end(), "end positions");
 }
 
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
   const Stopwatch whole;
-  move_on(motion);
+  begin(motion);
   try {
-    Row& row = row_for(motion, bones);
+    PreparedStrategy& chosen = choose(motion, bones);
     out.embedding_ms = whole.milliseconds();
-    ask(row, motion, bones, out);
-    // A row that promises the first contact may miss those after it. If that first one is left out as a
-    // crossing at rest, the answer has to come from a complete row. So it has to where something touches and
+    ask(chosen, motion, bones, out);
+    // A strategy that promises the first contact may miss those after it. If that first one is left out as a
+    // crossing at rest, the answer has to come from the fallback. So it has to where something touches and
     // the caller ignores pairs, because the caller is told how many contacts are ignored.
     const bool later_missing =
         out.rest_contacts > 0 ||
         (options_.ignored != nullptr && out.found.contacts.size() + out.ignored.contacts.size() > 0);
-    if (row.strategy->guarantee == Guarantee::first_contact && needs_start() && &row == &main_ &&
+    if (chosen.strategy->guarantee == Guarantee::first_contact && needs_start() && &chosen == &main_ &&
         later_missing)
-      ask(stand_in(), motion, bones, out);
+      ask(fallback(), motion, bones, out);
   } catch (...) {  // nothing is known of the end then
-    if (moved_on_) poses_.go_back(motion.start());
+    starts_.abandon(motion);
     throw;
   }
 

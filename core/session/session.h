@@ -9,9 +9,9 @@
 #include "core/detect/contact.h"
 #include "core/detect/detector.h"
 #include "core/detect/start/crossings.h"
-#include "core/detect/start/pose_crossings.h"
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
+#include "core/session/known_starts.h"
 
 namespace cscd {
 
@@ -37,7 +37,7 @@ struct StepAnswer {
 
 struct SessionOptions {
   bool first = false;                // only the contacts of the earliest time
-  bool unproven = false;             // no stand-in where the strategy's guarantee is void
+  bool unproven = false;             // no fallback where the strategy's guarantee is void
   bool keep_rest_crossings = false;  // nothing is left out
   // Pairs of triangles, and the feature pairs that they alone carry, that are no part of answers; null for
   // none. Strategies know nothing of them, so that what a step proves still says how the next one starts.
@@ -51,8 +51,8 @@ struct SessionOptions {
 };
 
 // Answers one step after another of one surface, from any start. A strategy that promises the first contact
-// of an embedded start answers where the start is embedded, and a complete strategy stands in for it where it
-// is not. What one step proves says which triangles cross at the start of the next (see PoseCrossings), so
+// of an embedded start answers where the start is embedded, and a complete strategy, the fallback, answers
+// where it is not. What one step proves says which triangles cross at the start of the next (KnownStarts), so
 // steps are best asked for in the order of the motion.
 class Session {
  public:
@@ -60,7 +60,7 @@ class Session {
   // `rest`, [vertices], is the pose whose crossings are left out. Throws InputError, with `name` before the
   // text, where the set-up lacks what the strategy needs and where too many triangles cross at rest. The
   // strategies, and what `setup` refers to, must outlive the session.
-  Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& stand_in,
+  Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& fallback,
           std::span<const Vec3> rest, const SessionOptions& options);
 
   // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
@@ -79,58 +79,50 @@ class Session {
   int threads() const { return main_.threads; }
 
  private:
-  struct Row {
+  struct PreparedStrategy {
     const Strategy* strategy = nullptr;
     std::unique_ptr<Detector> detector;
     int threads = 1;
     std::size_t new_triangles = 0;
   };
-  Row make(const Strategy& strategy) const;
-  // Finds what crosses at rest, and what that explains. A main row that sees starts has to be made before.
+  PreparedStrategy make(const Strategy& strategy) const;
+  // Finds what crosses at rest, and what that explains. A main strategy that sees starts has to be made
+  // before.
   void find_rest_crossings(const std::string& name, std::span<const Vec3> rest);
-  Row& stand_in();
+  PreparedStrategy& fallback();
   // Whether only the contacts of the earliest time are asked of strategies.
   bool first_only() const { return options_.first && left_out_.empty() && options_.ignored == nullptr; }
   // Whether the contacts of a step say what crosses at its end.
   bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
-  // Whether the answers of a row hold all contacts of a motion from the pose that poses_ knows.
-  bool finds_all(const Row& row) const;
-  // Whether the strategy promises nothing from a start that is not embedded, and a stand-in is to answer
+  // What the strategy's contacts of a motion from the known pose say for sure.
+  Certainty certainty_of(const Strategy& strategy) const;
+  // Whether the strategy promises nothing from a start that is not embedded, and the fallback is to answer
   // there.
   bool needs_start() const { return needs_embedded_start(main_.strategy->guarantee) && !options_.unproven; }
-  // Begins a step: takes its end for the last known pose where it starts in the last known pose.
-  void move_on(const Motion& motion);
-  Row& row_for(const Motion& motion, const Rig::Interval* bones);
-  bool stand_in_pays() const;
-  // Whether a way from an embedded pose and a step from its end take less time than the main row takes to
-  // see the start.
+  void begin(const Motion& motion);
+  PreparedStrategy& choose(const Motion& motion, const Rig::Interval* bones);
+  bool fallback_pays() const;
+  // Whether a way from an embedded pose and a step from its end take less time than the main strategy takes
+  // to see the start.
   bool signs_pay() const;
   // Finds from nothing which triangles cross in a pose. `bones` holds the skeleton in it, at its start.
   void find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones);
-  bool follow_to(std::span<const Vec3> start, const Rig::Interval* bones);
-  void know_end(const Motion& motion, const Rig::Interval* bones, const Row& row, const ContactSet& found);
-  void ask(Row& row, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  void ask(PreparedStrategy& asked, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
   void say_start(StepAnswer& out) const;
   void leave_out(StepAnswer& out) const;
 
   Setup setup_;
-  const Strategy& stand_in_strategy_;
+  const Strategy& fallback_strategy_;
   SessionOptions options_;
-  Row main_;
-  std::optional<Row> stand_in_;
+  PreparedStrategy main_;
+  std::optional<PreparedStrategy> fallback_;
   double preparation_ms_ = 0;  // of the strategy
-  PoseCrossings poses_;
-  std::size_t searches_ = 0;  // for crossings, from nothing
-  double rest_ms_ = 0;        // that the search of the pose at rest took
+  KnownStarts starts_;
+  double rest_ms_ = 0;  // that the search of the pose at rest took
   Crossings rest_;
   RestCrossings left_out_;
-  bool moved_on_ = false;          // poses_ holds the end of the step that is being answered
-  bool touched_last_ = false;      // something did in the step before
-  bool start_known_ = false;       // what crosses at the start of the step that is being answered is known
-  std::vector<Bone> pose_bones_;   // of the pose that poses_ knows
-  std::vector<Vec3> touched_end_;  // the end of the last step, where contacts kept it from being known
-  ContactSet touched_;             // on the way to a start
-  Crossings seen_;                 // at a start, by the row that answered
+  bool touched_last_ = false;  // something did in the step before
+  bool start_known_ = false;   // what crosses at the start of the step that is being answered is known
 };
 
 }  // namespace cscd

@@ -1,0 +1,73 @@
+#include "core/session/known_starts.h"
+
+#include <optional>
+
+namespace cscd {
+namespace {
+
+// The most crossing pairs that are kept of one pose, eight bytes each. A surface with more has collapsed.
+constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
+// From more contacts than this it is quicker to look at the whole surface again.
+constexpr std::size_t kMostFollowed = 20'000;
+
+}  // namespace
+
+KnownStarts::KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> reference, bool use_bones)
+    : poses_({mesh, reference}, kMostCrossings), use_bones_(use_bones) {}
+
+bool KnownStarts::begin(const Motion& motion, bool& finite) {
+  return moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+}
+
+void KnownStarts::abandon(const Motion& motion) {
+  if (moved_on_) poses_.go_back(motion.start());
+  moved_on_ = false;
+}
+
+void KnownStarts::search(std::span<const Vec3> pose, const Rig::Interval* bones, Detector* detector) {
+  if (detector != nullptr) {
+    std::optional<Rig::Interval> rest;
+    if (bones != nullptr) rest = Rig::Interval{bones->start, bones->start};
+    see(*detector, {Motion(pose, pose), rest ? used(*rest) : nullptr}, touched_);
+  } else {
+    poses_.find(pose);
+  }
+  ++searches_;
+}
+
+Report KnownStarts::see(Detector& detector, Step step, ContactSet& found) {
+  step.crossings = &seen_;
+  step.most_crossings = poses_.most();
+  const Report report = detector.detect(step, found);
+  poses_.know(step.motion.start(), seen_);
+  return report;
+}
+
+bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bones, Detector& detector,
+                            const Certainty& certainty) {
+  const bool has_bones = bones == nullptr || pose_bones_.size() == bones->start.size();
+  if (!(certainty.all || certainty.whether) || !has_bones || same_bits(unknown_end_, pose)) return false;
+  std::optional<Rig::Interval> way;
+  if (bones != nullptr) way = Rig::Interval{pose_bones_, bones->start};
+  detector.detect({Motion(poses_.positions(), pose), way ? used(*way) : nullptr, embedded()}, touched_);
+  const bool all_known = touched_.contacts.empty() || certainty.all;
+  if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
+  poses_.follow(pose, touched_);
+  return true;
+}
+
+void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, const Certainty& certainty,
+                            const ContactSet& found) {
+  if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
+  const bool nothing_touched = found.contacts.empty() && certainty.whether;
+  if (!nothing_touched) abandon(motion);
+  if (nothing_touched || (certainty.all && found.contacts.size() <= kMostFollowed)) {
+    if (!moved_on_) poses_.follow(motion.end(), found);
+    unknown_end_.clear();
+    if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
+  } else {
+    unknown_end_.assign(motion.end().begin(), motion.end().end());
+  }
+}
+
+}  // namespace cscd

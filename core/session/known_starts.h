@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/detect/detector.h"
+#include "core/detect/start/pose_crossings.h"
+
+namespace cscd {
+
+// What a strategy's contacts of one motion from a known pose say for sure.
+struct Certainty {
+  bool all = false;      // they are all contacts of the motion
+  bool whether = false;  // if there are none, nothing touches
+};
+
+// Knows which triangle pairs cross in one pose: the last one that was searched, or to whose end a motion was
+// followed. Two triangles begin or cease to cross only where something touches, so a step that starts in the
+// known pose, and whose contacts are certain, tells what crosses at its end. Steps are therefore best asked
+// for in the order of the motion.
+class KnownStarts {
+ public:
+  // `use_bones` says whether detectors get the skeleton. The mesh must outlive the object.
+  KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> reference, bool use_bones);
+
+  // What crosses in the known pose.
+  const Crossings& crossings() const { return poses_.crossings(); }
+  bool embedded() const { return crossings().total == 0; }
+  // How often crossings have been searched from nothing.
+  std::size_t searches() const { return searches_; }
+
+  // Begins a step. Where it starts in the known pose, takes its end for the known pose already, and returns
+  // true; `finite` then says whether the positions of the end are. abandon() or learn_end() have to follow.
+  bool begin(const Motion& motion, bool& finite);
+  // Ends a step of which nothing is learned: its start is the known pose again.
+  void abandon(const Motion& motion);
+  // Returns whether a pose, or the start of the step that has begun, is known.
+  bool knows(std::span<const Vec3> pose) const { return moved_on_ || poses_.knows(pose); }
+
+  // Searches a pose from nothing: by the detector, which has to see starts, or without one by a test of the
+  // pose alone. `bones` holds the skeleton in the pose, at its start; null for a mesh without a rig.
+  void search(std::span<const Vec3> pose, const Rig::Interval* bones, Detector* detector);
+  // Has a detector that sees starts answer a step, and learns from it what crosses at the start.
+  Report see(Detector& detector, Step step, ContactSet& found);
+  // Asks the detector about the straight way from the known pose to `pose`, and learns from it what crosses
+  // there. Returns false, and learns nothing, where that way proves nothing, or where so much touches on it
+  // that a search is cheaper.
+  bool follow_to(std::span<const Vec3> pose, const Rig::Interval* bones, Detector& detector,
+                 const Certainty& certainty);
+  // Learns what a step from the known pose proves about its end. `found` is everything that touched.
+  void learn_end(const Motion& motion, const Rig::Interval* bones, const Certainty& certainty,
+                 const ContactSet& found);
+
+ private:
+  const Rig::Interval* used(const Rig::Interval& bones) const { return use_bones_ ? &bones : nullptr; }
+
+  PoseCrossings poses_;
+  bool use_bones_;
+  std::size_t searches_ = 0;
+  bool moved_on_ = false;          // poses_ holds the end of the step that has begun
+  std::vector<Bone> pose_bones_;   // the skeleton in the known pose
+  std::vector<Vec3> unknown_end_;  // of the last step, where its contacts kept the end from being known
+  ContactSet touched_;             // on the way to a pose
+  Crossings seen_;                 // at a start, by a detector
+};
+
+}  // namespace cscd

@@ -1,0 +1,151 @@
+#include "core/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include "core/base/error.h"
+#include "core/detect/compose.h"
+#include "core/detect/exclusions.h"
+#include "core/detect/plain_culler.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+Prepared make_plain(const Setup& setup) {
+  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
+}
+const Strategy kPlain{.name = "plain",
+                      .source = "",
+                      .guarantee = Guarantee::complete,
+                      .needs = {},
+                      .make = make_plain,
+                      .sees_start = true};
+
+// One ball rests, and another lies along the x axis where a test puts it.
+class SessionTest : public testing::Test {
+ protected:
+  std::vector<Vec3> pose(double x) const {
+    std::vector<Vec3> out = shape_.positions;
+    for (std::size_t v = out.size() / 2; v < out.size(); ++v) out[v] += Vec3(x, 0.1, 0.2);
+    return out;
+  }
+  cscd::Setup setup() const { return {mesh_, reference_, nullptr, *find_elementary_test("filtered_exact")}; }
+  Session session(const Strategy& strategy, const SessionOptions& options = {}) const {
+    return {"test", setup(), strategy, kDrvbcFastComplete, reference_, options};
+  }
+  ContactSet contacts_of(const Motion& motion) const {
+    ContactSet out;
+    make_plain(setup()).detector->detect({motion}, out);
+    out.sort();
+    return out;
+  }
+  std::vector<CrossingPair> crossings_of(std::span<const Vec3> pose) const {
+    return EmbeddingTest(mesh_, reference_).find_all(pose, std::numeric_limits<std::size_t>::max()).pairs;
+  }
+
+  test::Shape shape_ = test::together(test::icosphere(1), test::icosphere(1, 0.7));
+  TriangleMesh mesh_ = shape_.mesh();
+  std::vector<Vec3> reference_ = pose(4);
+  StepAnswer answer_;
+};
+
+// Steps follow each other, and sometimes begin elsewhere. Whatever a session knows of their starts, its
+// answers are those of a search from nothing.
+TEST_F(SessionTest, AnswersAsIfEachStepWereTheFirst) {
+  const std::vector<double> places = {4, 3, 2.5, 1.2, 0.9, 1.2, 2.5, 2.6, 1.5, -3, -2.4, -2.5, -1};
+  for (const Strategy* strategy : {&kPlain, &kDrvbcFast, &kDrvbcFastComplete})
+    for (const bool first : {false, true}) {
+      Session session = this->session(*strategy, {.first = first});
+      std::mt19937 random(5);
+      std::size_t touched = 0, crossed = 0, free = 0;
+      for (std::size_t i = 0; i < 40; ++i) {
+        const std::size_t place = i % 7 == 3 ? random() % (places.size() - 1) : i % (places.size() - 1);
+        const std::vector<Vec3> from = pose(places[place]), to = pose(places[place + 1]);
+        session.step({from, to}, nullptr, answer_);
+        const ContactSet truth = contacts_of({from, to});
+        EXPECT_EQ(answer_.start.pairs, crossings_of(from)) << strategy->name << i;
+        EXPECT_EQ(answer_.starts_embedded, answer_.start.total == 0);
+        EXPECT_TRUE(answer_.proven);
+        ASSERT_EQ(answer_.time().has_value(), !truth.contacts.empty()) << strategy->name << i;
+        if (answer_.time()) {
+          EXPECT_EQ(*answer_.time(), truth.contacts.front().time) << strategy->name << i;
+        }
+        if (!first && answer_.strategy->guarantee == Guarantee::complete) {
+          EXPECT_EQ(digest(answer_.found), digest(truth)) << strategy->name << i;
+        }
+        const bool fallback = strategy == &kDrvbcFast && !answer_.starts_embedded;
+        EXPECT_EQ(answer_.strategy, fallback ? &kDrvbcFastComplete : strategy) << i;
+        touched += !truth.contacts.empty();
+        crossed += !answer_.starts_embedded;
+        free += truth.contacts.empty() && answer_.starts_embedded;
+      }
+      EXPECT_GT(touched, 5u);
+      EXPECT_GT(crossed, 5u);
+      EXPECT_GT(free, 5u);
+    }
+}
+
+TEST_F(SessionTest, LeavesOutWhatCrossesAtRest) {
+  reference_ = pose(1.2);
+  const std::vector<Vec3> further = pose(1.25);
+  for (const bool keep : {false, true}) {
+    Session session = this->session(kDrvbcFast, {.keep_rest_crossings = keep});
+    session.step({reference_, further}, nullptr, answer_);
+    EXPECT_EQ(session.rest_crossings().pairs, crossings_of(reference_));
+    EXPECT_FALSE(answer_.starts_embedded);
+    EXPECT_EQ(answer_.rest_pairs, keep ? 0 : crossings_of(reference_).size());
+    EXPECT_EQ(answer_.start.pairs, keep ? crossings_of(reference_) : std::vector<CrossingPair>{});
+    const ContactSet all = contacts_of({reference_, further});
+    ASSERT_FALSE(all.contacts.empty());
+    EXPECT_EQ(answer_.rest_contacts + answer_.found.contacts.size(), all.contacts.size());
+    EXPECT_EQ(answer_.rest_contacts > 0, !keep);
+  }
+}
+
+TEST_F(SessionTest, CountsWhatIsIgnored) {
+  Exclusions ignored;
+  std::vector<int> group(mesh_.vertex_count());
+  for (std::size_t v = 0; v < group.size(); ++v) group[v] = v < group.size() / 2 ? 0 : 1;
+  ignored.set_groups(mesh_, group, std::vector<std::pair<int, int>>{{0, 1}});
+  const std::vector<Vec3> from = pose(4), to = pose(1);
+  for (const Strategy* strategy : {&kDrvbcFast, &kDrvbcFastComplete}) {
+    Session session = this->session(*strategy, {.ignored = &ignored});
+    session.step({from, to}, nullptr, answer_);
+    EXPECT_TRUE(answer_.found.contacts.empty());
+    EXPECT_EQ(digest(answer_.ignored), digest(contacts_of({from, to}))) << strategy->name;
+    session.step({to, to}, nullptr, answer_);
+    EXPECT_EQ(answer_.ignored_pairs, crossings_of(to)) << strategy->name;
+    EXPECT_FALSE(answer_.starts_embedded);
+  }
+}
+
+TEST_F(SessionTest, IsAsItWasAfterPositionsThatAreNotFinite) {
+  Session session = this->session(kDrvbcFastComplete, {.check_finite = true});
+  const std::vector<Vec3> from = pose(4), to = pose(2.5);
+  std::vector<Vec3> broken = to;
+  broken.back().z() = std::nan("");
+  session.step({from, from}, nullptr, answer_);
+  EXPECT_THROW(session.step({from, broken}, nullptr, answer_), InputError);
+  EXPECT_THROW(session.step({broken, to}, nullptr, answer_), InputError);
+  session.step({from, to}, nullptr, answer_);
+  EXPECT_TRUE(answer_.starts_embedded);
+  EXPECT_TRUE(answer_.found.contacts.empty());
+}
+
+TEST_F(SessionTest, SaysNothingOfStartsThatItIsToIgnore) {
+  Session session = this->session(kDrvbcFastComplete, {.ignore_starts = true});
+  const std::vector<Vec3> from = pose(1.2), to = pose(1.5);
+  session.step({from, to}, nullptr, answer_);
+  EXPECT_TRUE(answer_.starts_embedded);
+  EXPECT_TRUE(answer_.start.pairs.empty());
+  EXPECT_EQ(digest(answer_.found), digest(contacts_of({from, to})));
+}
+
+}  // namespace
+}  // namespace cscd
