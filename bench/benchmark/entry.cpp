@@ -8,7 +8,7 @@
 #include "bench/rows/applicable.h"
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
-#include "core/fast/embedding.h"
+#include "core/fast/drvbc_fast.h"
 
 namespace cscd::bench {
 namespace {

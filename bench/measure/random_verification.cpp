@@ -7,7 +7,7 @@
 #include "bench/rows/catalogue.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
-#include "core/fast/embedding.h"
+#include "core/fast/drvbc_fast.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 

@@ -16,7 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
-#include "core/fast/embedding.h"
+#include "core/fast/drvbc_fast.h"
 #include "core/geometry/lanes.h"
 
 namespace cscd::bench {

@@ -4,8 +4,6 @@
 #include <array>
 #include <optional>
 
-#include "core/detect/carried_filter.h"
-#include "core/detect/carried_look.h"
 #include "core/elementary/question/filter.h"
 #include "core/geometry/triple_product_lanes.h"
 
@@ -109,7 +107,7 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
     for (const auto& [pair, places] : pairs.first(std::min(kTogether, pairs.size()))) {
       const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
       std::optional<CarriedPlaces> kept;
-      if (single_precision_first) kept = not_filtered_at_a_look(motion, a, b, places);
+      if (single_precision_first) kept = not_filtered_in_single(motion, a, b, places);
       if (!kept) kept = not_filtered(motion, a, b, places);
       rest[count++] = {pair, *kept};
     }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/detect/carried_pairs.h"
+#include "core/mesh/motion.h"
 
 namespace cscd {
 
@@ -16,6 +18,16 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 // so wished, single precision goes first, which is faster and gives the same answer.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, std::vector<FeaturePair>& left);
+
+// Returns the feature pairs of two triangles, among those at some places, that the filter
+// (core/elementary/question/filter.h) cannot prove apart. The six vertices are loaded once; what fifteen
+// pairs need are permutations of registers.
+CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
+// Single-precision version of not_filtered(). Evaluates all fifteen feature pairs of two triangles side by
+// side, with bounds on what single precision loses. Returns nothing if rounding leaves any of them undecided;
+// the caller then asks not_filtered().
+std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
+                                                    const Triangle& b, CarriedPlaces places);
 
 // Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
 // et al. 2010), one pair at a time. This is the filter of the pipeline `published`. It may drop features that

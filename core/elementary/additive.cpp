@@ -1,8 +1,7 @@
-#include "core/elementary/additive.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary/published.h"
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/query_scale.h"
 #include "core/geometry/feature_distance.h"

@@ -2,12 +2,9 @@
 
 #include <array>
 
-#include "core/elementary/additive.h"
 #include "core/elementary/certified/filtered_exact.h"
-#include "core/elementary/cubic.h"
 #include "core/elementary/exact/exact.h"
-#include "core/elementary/inclusion.h"
-#include "core/elementary/newton.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/relative_box.h"
 

@@ -1,8 +1,7 @@
-#include "core/elementary/cubic.h"
-
 #include <gtest/gtest.h>
 
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {

@@ -1,10 +1,9 @@
-#include "core/elementary/inclusion.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/base/rounding.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/query_scale.h"
 

@@ -1,9 +1,8 @@
-#include "core/elementary/inclusion.h"
-
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/test_queries.h"
 #include "core/geometry/feature_distance.h"

@@ -1,6 +1,5 @@
-#include "core/elementary/newton.h"
-
 #include "core/elementary/newton_search.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/query_scale.h"
 
 namespace cscd {

@@ -1,5 +1,3 @@
-#include "core/elementary/newton.h"
-
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/published.h"
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/test_queries.h"
 

@@ -34,4 +34,11 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
           preparation};
 }
 
+EmbeddingTest make_embedding_test(const Setup& setup) {
+  StageClock clock;
+  clock.enter(Stage::decomposition);
+  fast::Candidate best = fast::best_candidate(setup, {.name = "embedding test", .complete = true}, clock);
+  return {setup.mesh, std::move(best.culler)};
+}
+
 }  // namespace cscd

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/detect/start/embedding.h"
 #include "core/detect/strategy.h"
 #include "core/fast/options.h"
 
@@ -11,6 +12,10 @@ namespace cscd {
 // Throws InputError if the set-up asks for no thread, or if the mesh is not closed and consistently oriented
 // and the options do not say `complete`, or say that starts are embedded.
 Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
+
+// Prepares the exact test whether a pose is embedded, culled as `drvbc_fast_complete` culls. It takes any
+// mesh. The test uses as many threads as the set-up asks for. The mesh of the set-up must outlive the test.
+EmbeddingTest make_embedding_test(const Setup& setup);
 
 // The two rows of the engine that the library asks, too.
 inline constexpr Strategy kDrvbcFast{

@@ -1,5 +1,3 @@
-#include "core/fast/embedding.h"
-
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <limits>

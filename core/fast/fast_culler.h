@@ -9,8 +9,8 @@
 #include "core/detect/strategy.h"
 #include "core/fast/cut/cut_surface.h"
 #include "core/fast/cut/saved_cut.h"
-#include "core/fast/descend/shared_descent.h"
-#include "core/fast/follow/following_cover.h"
+#include "core/fast/descent.h"
+#include "core/fast/following_cover.h"
 #include "core/fast/look/grid_bounds.h"
 #include "core/fast/options.h"
 #include "core/fast/prove/certificates.h"
@@ -35,7 +35,7 @@ class FastCuller : public Culler {
   // culler.
   FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options);
 
-  // From the next interval on, the first cover follows the surface (follow/following_cover.h).
+  // From the next interval on, the first cover follows the surface (following_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }
   // From the next interval on, looks from the first `count` covers alone, at least one.
   void use_covers(std::size_t count) {

@@ -14,7 +14,7 @@ struct DrvbcFastOptions {
   bool time_linear = true;  // bounds at both ends of the interval (look/grid_bounds.h); false: swept bounds
   bool stars = true;        // prove/stars.h
   bool planes = true;       // prove/parting.h
-  bool follows = true;      // follow/following_cover.h
+  bool follows = true;      // following_cover.h
   // A step in which the surface moves far is looked at in parts (fast_culler.h) if its descent takes more
   // than this many overlap tests for each patch; kNever: no step is looked at in parts.
   std::uint32_t long_descent = 288;

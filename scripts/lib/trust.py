@@ -29,6 +29,9 @@ LIB = ROOT / "scripts" / "lib"
 # Files and folders that have moved since records and reasons were written.
 MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
+    "core/detect/carried_filter": "core/detect/double_filter", "core/detect/carried_look": "core/detect/single_filter",
+    "core/fast/cut/decided_cut": "core/fast/cut/carried_cut", "core/fast/embedding": "core/fast/drvbc_fast",
+    "core/fast/descend/": "core/fast/", "core/fast/follow/": "core/fast/",
     "core/geometry/triangle_distance": "scenes/catalog/triangle_distance",
 }
 # What the page adds to every record of a kind.

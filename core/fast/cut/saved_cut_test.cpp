@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/fast/cut/decided_cut.h"
+#include "core/fast/cut/carried_cut.h"
 #include "core/fast/cut/test_body.h"
 
 namespace cscd::fast {

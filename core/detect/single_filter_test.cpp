@@ -1,10 +1,9 @@
-#include "core/detect/carried_look.h"
-
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/detect/filter_block.h"
 #include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
 
@@ -52,7 +51,7 @@ Tally look(int count, const Make& make) {
     const TrianglePair pair{TriangleId{0}, TriangleId{1}};
     const CarriedPlaces places = i % 2 ? kAllCarried : static_cast<CarriedPlaces>(1 << random() % 15);
     const auto truth = static_cast<CarriedPlaces>(places & kept(mesh, motion, pair));
-    const auto seen = not_filtered_at_a_look(motion, mesh.corners(pair.a), mesh.corners(pair.b), places);
+    const auto seen = not_filtered_in_single(motion, mesh.corners(pair.a), mesh.corners(pair.b), places);
     tally.open += !seen;
     if (!seen) continue;
     EXPECT_EQ(*seen, truth) << "interval " << i;

@@ -1,8 +1,7 @@
-#include "core/detect/carried_look.h"
-
 #include <array>
 #include <cstring>
 
+#include "core/detect/filter_block.h"
 #include "core/geometry/triple_product16.h"
 
 // Whatever this look finds certain, the filter finds in double precision too. A sign that exceeds its bound
@@ -160,7 +159,7 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
 
 }  // namespace
 
-std::optional<CarriedPlaces> not_filtered_at_a_look(const Motion& motion, const Triangle& a,
+std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
                                                     const Triangle& b, CarriedPlaces places) {
   const Corners c = corners_of(motion, a, b);
   if (!(c.largest <= kLargest)) return std::nullopt;

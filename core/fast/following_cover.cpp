@@ -1,4 +1,4 @@
-#include "core/fast/follow/following_cover.h"
+#include "core/fast/following_cover.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "core/fast/descend/patch_descent.h"
+#include "core/fast/descent.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
-#include "core/fast/descend/shared_descent.h"
-
 #include <algorithm>
 
 #include "core/base/bring_near.h"
+#include "core/fast/descent.h"
 
 namespace cscd::fast {
 namespace {

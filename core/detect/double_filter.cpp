@@ -1,5 +1,4 @@
-#include "core/detect/carried_filter.h"
-
+#include "core/detect/filter_block.h"
 #include "core/geometry/sideways.h"
 #include "core/geometry/triple_product_lanes.h"
 
