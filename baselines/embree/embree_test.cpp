@@ -27,7 +27,7 @@ TEST(Embree, LeavesOtherThreadsAlone) {
   const TriangleMesh mesh = shape.mesh();
   const Prepared embree = make_embree({mesh, shape.positions, nullptr, *find_elementary_test("newton")});
   std::atomic<int> started = 0, met = 0;
-  Team(2).each(2, [&](std::size_t, std::size_t) {
+  Team(2).parallel_for(2, [&](std::size_t, std::size_t) {
     ++started;
     const auto begin = std::chrono::steady_clock::now();
     while (started < 2 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))

@@ -3,7 +3,7 @@
 
 #include "bench/testing/rule_case.h"
 #include "core/detect/verify.h"
-#include "core/fast/cut/coarse_surface.h"
+#include "core/fast/prepare/coarse_surface.h"
 #include "core/fast/trial.h"
 
 // Whole strategies on surfaces of so many triangles that preparation decides on a coarser surface

@@ -17,7 +17,7 @@
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
 #include "core/fast/drvbc_fast.h"
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 
 namespace cscd::bench {
 namespace {

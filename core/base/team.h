@@ -24,7 +24,7 @@ class Team {
   // `thread` is the number of the thread that makes the call, in [0, threads()). A team of one thread does
   // the parts in order. `work` must not throw.
   template <class Work>
-  void each(std::size_t parts, const Work& work) const {
+  void parallel_for(std::size_t parts, const Work& work) const {
     if (threads_ == 1 || parts <= 1) {
       for (std::size_t part = 0; part < parts; ++part) work(part, 0);
       return;
@@ -40,7 +40,7 @@ class Team {
   template <class Work>
   void ranges(std::size_t count, std::size_t least, const Work& work) const {
     const std::size_t parts = ranges_of(count, least);
-    each(parts, [&](std::size_t part, std::size_t) {
+    parallel_for(parts, [&](std::size_t part, std::size_t) {
       work(range_begin(count, parts, part), range_begin(count, parts, part + 1), part);
     });
   }

@@ -13,7 +13,7 @@ TEST(Team, DoesEveryPartOnce) {
     for (const std::size_t parts : {0U, 1U, 2U, 100U}) {
       std::vector<std::atomic<int>> done(parts);
       std::atomic<bool> numbered = true;
-      team.each(parts, [&](std::size_t part, std::size_t thread) {
+      team.parallel_for(parts, [&](std::size_t part, std::size_t thread) {
         ++done[part];
         if (thread >= team.threads()) numbered = false;
       });

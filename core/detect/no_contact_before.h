@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/detect/culler.h"
-#include "core/geometry/lanes16.h"
+#include "core/geometry/simd_floats.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
 

@@ -2,8 +2,8 @@
 
 #include "core/elementary/question/elementary_test.h"
 
-// The published elementary tests, each in a source of its own. None is exact: the comments say what their
-// answers mean.
+// The published elementary tests, each in a source of its own. Their answers are no proofs, except where a
+// comment says so.
 namespace cscd {
 
 // The paper's elementary test (section 7.1): the non-penetration filter, then interval Newton on the

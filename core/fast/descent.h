@@ -12,10 +12,10 @@
 
 #include "core/base/team.h"
 #include "core/detect/culler.h"
-#include "core/fast/look/grid_bounds.h"
-#include "core/fast/prove/certificates.h"
-#include "core/fast/prove/parting.h"
-#include "core/fast/prove/stars.h"
+#include "core/fast/certify/certificates.h"
+#include "core/fast/certify/parting.h"
+#include "core/fast/certify/stars.h"
+#include "core/fast/classify/grid_bounds.h"
 
 namespace cscd::fast {
 
@@ -114,8 +114,8 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   void found(NodePair below);
   void inside(std::size_t p);
   void between(std::size_t a, std::size_t b);
-  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const Common* common);
-  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common);
+  void row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted, const SharedVertices* common);
+  Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const SharedVertices& common);
   bool flat(VertexId vertex);
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
   void pass_on_waiting();
@@ -165,7 +165,7 @@ class SharedDescent {
       pairs.insert(pairs.end(), block.begin(), block.end());
     }
   };
-  void bring_near() const;
+  void warm_cache() const;
   void split_into_subtrees();
   void pass_on_in_order(TrianglePairSink& sink);
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/fast/cut/cut_surface.h"
+#include "core/fast/prepare/cut_surface.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {

@@ -56,7 +56,7 @@ void FastCuller::look_at(const Motion& motion) {
   if (following_) following_->mend(certificates_);
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   const bool by_caps = options_.complete && !by_signs_;
-  certificates_.keep_all(by_caps);
+  certificates_.use_contour_test(by_caps);
   certificates_.start(positions_, team_);
   team_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
                [&](std::size_t first, std::size_t last, std::size_t) {
@@ -91,8 +91,8 @@ std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
     const Moved moved = move_apart();
     // A position in between, start + t (end - start), rounds three times. Far from the origin it may be off
     // by so much that the grid's steps are wider than patches, and then nothing is proven apart.
-    off_ = 0x1p-50 * positions_.largest_in_scene();
-    const bool can_tell = Grid(positions_.error_beside(off_)).steps() * moved.width >= 1;
+    rounding_ = 0x1p-50 * positions_.largest_in_scene();
+    const bool can_tell = Grid(positions_.error_beside(rounding_)).steps() * moved.width >= 1;
     if (moved.far() && can_tell) return cull_parts(sink);
   }
   return *(tests_ = descent_.run(bounds_, grid_, sink));
@@ -124,10 +124,10 @@ FastCuller::Moved FastCuller::move_apart() const {
 // The parts pass on a pair of triangles again and again, so pairs are collected first.
 std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
   found_.pairs.clear();
-  parts_fail_ = false;
+  use_whole_step_ = false;
   std::uint64_t tests = cull_part({0, kFinest});
-  if (parts_fail_) {
-    off_ = 0;  // both ends of the interval are given
+  if (use_whole_step_) {
+    rounding_ = 0;  // both ends of the interval are given
     begin({0, kFinest});
     found_.pairs.clear();
     return tests + *(tests_ = descent_.run(bounds_, grid_, sink));
@@ -145,7 +145,7 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
 // Collects the pairs of a part that has been looked at, and returns the number of overlap tests. A part in
 // which the surface moves far is halved if its descent and its pairs cost too much.
 std::uint64_t FastCuller::cull_part(const Part& part) {
-  if (parts_fail_) return 0;
+  if (use_whole_step_) return 0;
   const bool can_split = part.last - part.first > 1 && move_apart().far();
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
@@ -153,7 +153,7 @@ std::uint64_t FastCuller::cull_part(const Part& part) {
   tests_ = descent_.run(bounds_, grid_, found_, most);
   found_.flush();
   if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) {
-    parts_fail_ = found_.pairs.size() > kMostCollected;
+    use_whole_step_ = found_.pairs.size() > kMostCollected;
     return *tests_;
   }
   found_.pairs.resize(before);
@@ -162,7 +162,7 @@ std::uint64_t FastCuller::cull_part(const Part& part) {
   const unsigned middle = (part.first + part.last) / 2;
   for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
     begin(half);
-    parts_fail_ |= !positions_.known();  // every pair of triangles would be collected
+    use_whole_step_ |= !positions_.known();  // every pair of triangles would be collected
     tests += cull_part(half);
   }
   return tests;
@@ -180,7 +180,7 @@ void FastCuller::begin(const Part& part) {
     return std::span<const Vec3>(positions);
   };
   const Motion motion(at(part.first, part_start_), at(part.last, part_end_));
-  positions_.update(motion, team_, off_);
+  positions_.update(motion, team_, rounding_);
   grid_ = Grid(positions_.error());
   look_at(motion);
 }

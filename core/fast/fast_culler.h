@@ -7,14 +7,14 @@
 #include "core/base/team.h"
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
-#include "core/fast/cut/cut_surface.h"
-#include "core/fast/cut/saved_cut.h"
+#include "core/fast/certify/certificates.h"
+#include "core/fast/certify/stars.h"
+#include "core/fast/classify/grid_bounds.h"
 #include "core/fast/descent.h"
 #include "core/fast/following_cover.h"
-#include "core/fast/look/grid_bounds.h"
 #include "core/fast/options.h"
-#include "core/fast/prove/certificates.h"
-#include "core/fast/prove/stars.h"
+#include "core/fast/prepare/cut_surface.h"
+#include "core/fast/prepare/saved_cut.h"
 
 namespace cscd::fast {
 
@@ -31,7 +31,7 @@ inline constexpr std::uint64_t kTestsOfPair = 40;
 // surface moves far in them and their descents are long. All of that is part of cull.
 class FastCuller : public Culler {
  public:
-  // Takes over a surface that has been cut (cut/cut_surface.h). The mesh of the set-up must outlive the
+  // Takes over a surface that has been cut (prepare/cut_surface.h). The mesh of the set-up must outlive the
   // culler.
   FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options);
 
@@ -61,7 +61,7 @@ class FastCuller : public Culler {
   RadialView radial_view() const override { return certificates_.view(); }
 
   std::size_t patch_count() const { return cut_.tree.patches.size(); }
-  // The number of looks (prove/certificates.h) that one interval takes.
+  // The number of looks (certify/certificates.h) that one interval takes.
   std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
 
  private:
@@ -112,8 +112,8 @@ class FastCuller : public Culler {
   std::optional<Motion> motion_;
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
-  double off_ = 0;           // by how much positions in between are off
-  bool parts_fail_ = false;  // whether the interval has to be looked at as a whole
+  double rounding_ = 0;          // by how much positions in between are off
+  bool use_whole_step_ = false;  // whether the interval has to be looked at as a whole
   Found found_;
 };
 

@@ -99,7 +99,7 @@ void FollowingCover::forget(Certificates& certificates) {
     relabel(c);
     triangles_below(prepared_nodes_[c]);
     std::ranges::sort(triangles_);  // preparation takes them in this order
-    certificates.cut(c, builder_, mesh_, triangles_, triangles_, reference_);
+    certificates.set_cluster(c, builder_, mesh_, triangles_, triangles_, reference_);
   }
   whole_ = true;
 }

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "core/fast/cut/cut_surface.h"
-#include "core/fast/cut/observer.h"
-#include "core/fast/keep_all/caps.h"
-#include "core/fast/prove/certificates.h"
+#include "core/fast/certify/certificates.h"
+#include "core/fast/contour/caps.h"
+#include "core/fast/prepare/cut_surface.h"
+#include "core/fast/prepare/observer.h"
 
 namespace cscd::fast {
 
@@ -43,8 +43,7 @@ class FollowingCover {
  private:
   struct Cluster {
     std::size_t node;
-    std::uint64_t renewed;   // the interval before which it got its observer or kept it for want of a better
-                             // one; 0 with the observer of the preparation
+    std::uint64_t renewed;   // interval of the last search for an observer; 0 where none was searched
     bool failed;             // whether no better observer is to be hoped for
     std::uint32_t negative;  // how many triangles the first cover alone certified, as negative
     // How many triangles no cover certified in the last interval, with those of the rarer sign.

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "core/fast/keep_all/test_touching.h"
+#include "core/fast/contour/test_touching.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {

@@ -83,7 +83,7 @@ void PatchDescent::found(NodePair below) {
 inline void PatchDescent::inside(std::size_t p) {
   if (sink_->closed()) return;
   const Certificates::Shared shared = input_.certificates.shared(p, p);
-  const Common* common = input_.tree.common_of(p, p);
+  const SharedVertices* common = input_.tree.common_of(p, p);
   const Mask16 lanes = patches_[p].lanes;
   for (std::size_t lane = 0; lanes >> lane > 1; ++lane)
     row(p, lane, p, static_cast<Mask16>(shared.needed(lane) & ~((2U << lane) - 1)), common);
@@ -109,9 +109,9 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
   if (columns == 0) return;
   if (std::popcount(columns) < std::popcount(rows)) {  // the side with fewer triangles makes less work
     std::swap(p, q), std::swap(rows, columns);
-    shared = shared.turned(patches_[q].lanes);
+    shared = shared.swapped(patches_[q].lanes);
   }
-  const Common* common = input_.tree.common_of(p, q);
+  const SharedVertices* common = input_.tree.common_of(p, q);
   for_each_lane(rows, [&](std::size_t lane) {
     row(p, lane, q, static_cast<Mask16>(shared.needed(lane) & columns), common);
   });
@@ -119,7 +119,7 @@ inline void PatchDescent::between(std::size_t a, std::size_t b) {
 
 // Holds one triangle of patch p against some of patch q.
 inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Mask16 wanted,
-                              const Common* common) {
+                              const SharedVertices* common) {
   if (wanted == 0) return;
   Mask16 left = 0;
   if (common != nullptr) {
@@ -136,7 +136,8 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
 }
 
 // Removes the triangles that the star of a common corner proves apart.
-inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const Common& common) {
+inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
+                                     const SharedVertices& common) {
   if (input_.stars == nullptr) return wanted;
   const Patch& patch = patches_[p];
   for (const Places16& place : patch.corner) {

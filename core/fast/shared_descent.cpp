@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "core/base/bring_near.h"
+#include "core/base/warm_cache.h"
 #include "core/fast/descent.h"
 
 namespace cscd::fast {
@@ -32,15 +32,15 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
                                  std::uint64_t most) {
   const Team alone;
   const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
-  team.each(by_thread_.size(),
-            [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
-  if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) bring_near();
+  team.parallel_for(by_thread_.size(),
+                    [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
+  if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) warm_cache();
   subtrees_.assign(1, {0, 0});
   if (kept_.empty()) {
     by_thread_[0].descend(subtrees_[0], sink);
   } else {
     split_into_subtrees();
-    team.each(kept_.size(), [&](std::size_t range, std::size_t thread) {
+    team.parallel_for(kept_.size(), [&](std::size_t range, std::size_t thread) {
       const std::size_t first = subtrees_.size() * range / kept_.size();
       const std::size_t last = subtrees_.size() * (range + 1) / kept_.size();
       for (std::size_t i = first; i < last; ++i) by_thread_[thread].descend(subtrees_[i], kept_[range]);
@@ -53,11 +53,11 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
 }
 
 // Reads from end to end what a descent asks of pairs of patches that touch.
-void SharedDescent::bring_near() const {
-  cscd::bring_near(std::span(input_.tree.adjacent_offset));
-  cscd::bring_near(std::span(input_.tree.adjacent));
-  cscd::bring_near(std::span(input_.tree.common));
-  if (input_.stars != nullptr) input_.stars->bring_near();
+void SharedDescent::warm_cache() const {
+  cscd::warm_cache(std::span(input_.tree.adjacent_offset));
+  cscd::warm_cache(std::span(input_.tree.adjacent));
+  cscd::warm_cache(std::span(input_.tree.common));
+  if (input_.stars != nullptr) input_.stars->warm_cache();
 }
 
 // Splits pairs of nodes level by level, until there are enough for all ranges.

@@ -10,8 +10,8 @@
 
 #include "core/base/team.h"
 #include "core/fast/clusters/surface_clusters.h"
-#include "core/fast/cut/coarse_surface.h"
 #include "core/fast/joints_of_parts.h"
+#include "core/fast/prepare/coarse_surface.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/bone_clusters.h"
@@ -182,7 +182,7 @@ Parts parts_of(const Surfaces& surfaces, StageClock& clock) {
 template <class Work>
 void for_both(int threads, const Work& work) {
   std::array<std::exception_ptr, 2> thrown;
-  Team(threads).each(thrown.size(), [&](std::size_t i, std::size_t) {
+  Team(threads).parallel_for(thrown.size(), [&](std::size_t i, std::size_t) {
     try {
       work(i);
     } catch (...) {

@@ -17,17 +17,17 @@ struct Candidate {
 };
 
 // The clusters of a surface of more triangles than this are found on a coarser surface of at most this many
-// triangles (cut/coarse_surface.h).
+// triangles (prepare/coarse_surface.h).
 inline constexpr std::size_t kManyTriangles = 16000;
 
 // Prepares several cullers and returns the one that makes the least work in a few trial poses
 // (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, and look from one,
 // two or three covers. They are prepared and tried side by side on the threads of the set-up. Where there are
-// no bones, labels of vertices (Setup::labels) stand for them. Without either, on an open surface, or where the options name the clusters, there is one candidate and no trial. On a
-// surface of many triangles, clusters are found on a coarser surface. Where signs suffice, candidates are
-// tried on the coarser surface too, and only the culler that is returned is cut from the surface itself. With
-// Setup::preparation, nothing is tried or cut, and what the preparation says is taken. Leaves the clock in
-// the stage `decomposition`.
+// no bones, labels of vertices (Setup::labels) stand for them. Without either, on an open surface, or where
+// the options name the clusters, there is one candidate and no trial. On a surface of many triangles,
+// clusters are found on a coarser surface. Where signs suffice, candidates are tried on the coarser surface
+// too, and only the culler that is returned is cut from the surface itself. With Setup::preparation, nothing
+// is tried or cut, and what the preparation says is taken. Leaves the clock in the stage `decomposition`.
 Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
 
 }  // namespace cscd::fast

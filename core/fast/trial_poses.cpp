@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/base/random.h"
-#include "core/geometry/lanes16.h"
+#include "core/geometry/simd_floats.h"
 
 namespace cscd::fast {
 namespace {

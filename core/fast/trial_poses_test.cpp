@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/fast/cut/test_body.h"
+#include "core/fast/prepare/test_body.h"
 
 namespace cscd::fast {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
-#include "core/fast/cut/test_body.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/fast/prepare/test_body.h"
 
 namespace cscd::fast {
 namespace {

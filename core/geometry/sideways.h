@@ -2,7 +2,7 @@
 
 #include "core/base/rounding.h"
 #include "core/geometry/bernstein.h"
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 
 // Directions along which features that come into one plane stay apart. They lie in that plane at the middle
 // of the interval, across an edge or, for two edges, also across their difference. Along a direction that

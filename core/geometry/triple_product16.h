@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/base/vec3.h"
-#include "core/geometry/lanes16.h"
+#include "core/geometry/simd_floats.h"
 
 // Sixteen triple products of moving vectors in single precision, with certified signs.
 //

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/geometry/bernstein.h"
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 #include "core/mesh/motion.h"
 
 // Eight triple products side by side. They do, operation for operation, what triple_product and certain_sign

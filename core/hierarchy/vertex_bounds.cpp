@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 #include "core/hierarchy/bounds.h"
 
 // Bounds of eight vertices at a time. A projection is an exact sum of two coordinates, stored as

@@ -57,7 +57,7 @@ class CandidateSearch {
   // Replaces the content of `out` by feature pairs that hold every one that comes within `radius` at some t
   // and is not excluded. With a radius above 0 these are all pairs that CandidateSet takes. With radius 0
   // they are those among them that a complete culler does not prove apart. The radius is at least 0 and
-  // finite. The first call with a radius of 0, and the first with another, each prepare what they need.
+  // finite. The index for radius 0 and the one for larger radii are built when they are first used.
   void find(const Motion& motion, double radius, std::vector<FeaturePair>& out);
 
  private:

@@ -53,23 +53,23 @@ Aabb box_of(const Motion& motion) {
 }  // namespace
 
 // The pairs of one triangle of the deforming surface and one of an obstacle whose swept boxes overlap.
-class Obstacles::Between {
+class Obstacles::ObstaclePairs {
  public:
-  Between(const TriangleMesh& own, std::span<const Vec3> reference, const TriangleMesh& beside,
-          std::span<const Vec3> positions)
+  ObstaclePairs(const TriangleMesh& own, std::span<const Vec3> reference, const TriangleMesh& beside,
+                std::span<const Vec3> positions)
       : own_tree_(build_tree(own, reference)),
-        beside_tree_(build_tree(beside, positions)),
+        obstacle_tree_(build_tree(beside, positions)),
         own_(own, own_tree_),
-        beside_(beside, beside_tree_),
+        obstacles_(beside, obstacle_tree_),
         behind_(static_cast<std::int32_t>(own.triangle_count())) {}
 
   void refit_own(const Motion& own, double margin = 0) { own_.refit(own, margin); }
-  void refit_beside(const Motion& beside) { beside_.refit(beside); }
+  void refit_obstacles(const Motion& beside) { obstacles_.refit(beside); }
   // Whether some triangle of an obstacle comes near a box.
   bool near(const Aabb& box, NodeIndex node = 0) const {
-    if (!overlap(box, beside_[node])) return false;
-    return beside_tree_.is_leaf(node) || near(box, beside_tree_.left(node)) ||
-           near(box, beside_tree_.right(node));
+    if (!overlap(box, obstacles_[node])) return false;
+    return obstacle_tree_.is_leaf(node) || near(box, obstacle_tree_.left(node)) ||
+           near(box, obstacle_tree_.right(node));
   }
 
   // Hands every such pair to `sink` and returns the number of overlap tests.
@@ -83,18 +83,18 @@ class Obstacles::Between {
   // recomputes the bounds of the deforming surface alone.
   class View : public Culler {
    public:
-    View(Between& between, std::size_t own_vertices) : between_(between), own_vertices_(own_vertices) {}
+    View(ObstaclePairs& between, std::size_t own_vertices) : pairs_(between), own_vertices_(own_vertices) {}
     void refit(const Motion& motion) override {
-      between_.refit_own({motion.start().first(own_vertices_), motion.end().first(own_vertices_)});
+      pairs_.refit_own({motion.start().first(own_vertices_), motion.end().first(own_vertices_)});
     }
     CullCounts cull(TrianglePairSink& sink) override {
       CullCounts counts;
-      counts.bvot = between_.cull(sink);
+      counts.bvot = pairs_.cull(sink);
       return counts;
     }
 
    private:
-    Between& between_;
+    ObstaclePairs& pairs_;
     std::size_t own_vertices_;
   };
 
@@ -102,17 +102,17 @@ class Obstacles::Between {
   void descend(NodeIndex a, NodeIndex b, TrianglePairSink& sink, std::uint64_t& tests) const {
     if (sink.closed()) return;
     ++tests;
-    if (!overlap(own_[a], beside_[b])) return;
-    const bool leaf_a = own_tree_.is_leaf(a), leaf_b = beside_tree_.is_leaf(b);
+    if (!overlap(own_[a], obstacles_[b])) return;
+    const bool leaf_a = own_tree_.is_leaf(a), leaf_b = obstacle_tree_.is_leaf(b);
     if (leaf_a && leaf_b) {
-      const auto t = static_cast<std::int32_t>(beside_tree_.triangle(b));
+      const auto t = static_cast<std::int32_t>(obstacle_tree_.triangle(b));
       sink.add(own_tree_.triangle(a), TriangleId{behind_ + t});
-    } else if (leaf_b || (!leaf_a && size(own_[a]) > size(beside_[b]))) {
+    } else if (leaf_b || (!leaf_a && size(own_[a]) > size(obstacles_[b]))) {
       descend(own_tree_.left(a), b, sink, tests);
       descend(own_tree_.right(a), b, sink, tests);
     } else {
-      descend(a, beside_tree_.left(b), sink, tests);
-      descend(a, beside_tree_.right(b), sink, tests);
+      descend(a, obstacle_tree_.left(b), sink, tests);
+      descend(a, obstacle_tree_.right(b), sink, tests);
     }
   }
   static float size(const Aabb& box) {
@@ -121,8 +121,8 @@ class Obstacles::Between {
     return sum;
   }
 
-  Tree own_tree_, beside_tree_;
-  SweptBoxes own_, beside_;
+  Tree own_tree_, obstacle_tree_;
+  SweptBoxes own_, obstacles_;
   std::int32_t behind_;
 };
 
@@ -137,13 +137,13 @@ Obstacles::Obstacles(const TriangleMesh& own, std::span<const Vec3> reference, c
       follows_(first_vertex_.size(), true),
       moved_(first_vertex_.size(), false),
       at_rest_(first_vertex_.size(), true),
-      between_(std::make_unique<Between>(own, reference, beside, positions)),
-      start_test_(together_, std::make_unique<Between::View>(*between_, own_vertices_)) {
+      pairs_(std::make_unique<ObstaclePairs>(own, reference, beside, positions)),
+      start_test_(together_, std::make_unique<ObstaclePairs::View>(*pairs_, own_vertices_)) {
   for (std::size_t& first : first_vertex_) first += own_vertices_;
   first_vertex_.push_back(together_.vertex_count());
   start_.insert(start_.end(), positions.begin(), positions.end());
   end_ = start_;
-  between_->refit_beside({positions, positions});
+  pairs_->refit_obstacles({positions, positions});
   make_detectors();
 }
 
@@ -155,7 +155,7 @@ void Obstacles::leave_out(const Exclusions& exclusions) {
 void Obstacles::make_detectors() {
   const auto detector = [&](bool first) {
     const Setup setup{together_, start_, nullptr, elementary_, 1, first, exclusions_};
-    return compose(std::make_unique<Between::View>(*between_, own_vertices_), setup,
+    return compose(std::make_unique<ObstaclePairs::View>(*pairs_, own_vertices_), setup,
                    {.relative_boxes = true});
   };
   first_ = detector(true);
@@ -190,7 +190,7 @@ bool Obstacles::starts_where_a_free_step_ended(const Motion& own) const {
 // Computes the bounds of obstacles anew where some of them have moved.
 void Obstacles::bring_up_to_date() {
   if (!stale_) return;
-  between_->refit_beside({std::span(start_).subspan(own_vertices_), std::span(end_).subspan(own_vertices_)});
+  pairs_->refit_obstacles({std::span(start_).subspan(own_vertices_), std::span(end_).subspan(own_vertices_)});
   stale_ = false;
 }
 
@@ -199,7 +199,7 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
   start.pairs.clear();
   start.total = 0;
   bring_up_to_date();
-  if (!between_->near(box_of(own))) {  // the start is apart as well
+  if (!pairs_->near(box_of(own))) {  // the start is apart as well
     free_ = false;
     return;
   }
@@ -227,13 +227,13 @@ void Obstacles::find_candidates(const Motion& own, double radius, std::vector<Fe
   out.clear();
   candidates_->start_step();
   bring_up_to_date();
-  if (!between_->near(thickened(box_of(own), radius))) return;
+  if (!pairs_->near(thickened(box_of(own), radius))) return;
   free_ = false;  // the positions of the last step are written over
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
-  between_->refit_own(own, radius);
+  pairs_->refit_own(own, radius);
   CandidateSink sink(*candidates_, motion(), radius, out);
-  between_->cull(sink);
+  pairs_->cull(sink);
   sink.flush();
 }
 

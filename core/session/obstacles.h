@@ -54,7 +54,7 @@ class Obstacles {
   void find_candidates(const Motion& own, double radius, std::vector<FeaturePair>& out);
 
  private:
-  class Between;
+  class ObstaclePairs;
 
   void make_detectors();
   void bring_up_to_date();
@@ -71,7 +71,7 @@ class Obstacles {
   std::vector<bool> at_rest_;  // [obstacles]: starts where it ends
   bool stale_ = false;         // some obstacle's bounds are those of another motion
   bool free_ = false;          // the last step was near, started without crossings and met nothing
-  std::unique_ptr<Between> between_;
+  std::unique_ptr<ObstaclePairs> pairs_;
   std::unique_ptr<Detector> first_, all_;
   EmbeddingTest start_test_;
   std::optional<CandidateSet> candidates_;

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/elementary/question/elementary_test.h"
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 
 namespace cscd {
 

@@ -4,7 +4,7 @@
 
 #include "core/base/rounding.h"
 #include "core/geometry/feature_motion.h"
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 
 // Tells whether features touch wherever they are in one plane, from the signs of their *sides*. The sides are
 // combinations of components of n = p x q, g = p x r and h = r x q along an axis; integer_contact.cpp derives

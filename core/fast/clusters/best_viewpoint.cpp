@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/lanes.h"
+#include "core/geometry/simd_doubles.h"
 
 namespace cscd::fast {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/fast/cut/cut_surface.h"
+#include "core/fast/prepare/cut_surface.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::fast {

@@ -1,0 +1,279 @@
+#include "core/fast/certify/certificates.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "core/fast/certify/test_certificates.h"
+
+namespace cscd::fast {
+namespace {
+
+using radial::Orientation;
+
+template <class Visit>
+void for_each_pair_of_lanes(const CertifiedBody& scene, const Visit& visit) {
+  const std::vector<Patch>& patches = scene.tree.patches;
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t q = 0; q < patches.size(); ++q)
+      for (std::size_t i = 0; patches[p].lanes >> i != 0; ++i) {
+        const Mask16 needed = scene.certificates.shared(p, q).needed(i);
+        for (std::size_t j = 0; patches[q].lanes >> j != 0; ++j)
+          visit(scene.tree.triangles[p][i], scene.tree.triangles[q][j], (needed >> j & 1) != 0);
+      }
+}
+
+struct Case {
+  bool inside_out;
+  CertifiedBody::Bones bones;
+};
+constexpr Case kCases[] = {{false, CertifiedBody::Bones::chain},
+                           {true, CertifiedBody::Bones::chain},
+                           {false, CertifiedBody::Bones::sixths},
+                           {true, CertifiedBody::Bones::sixths}};
+
+// Mutations: look_round takes the certificate from the triangle that is not positive instead of from all
+// round it; needed() compares signs of different clusters, or drops pairs whose triangles are certified by
+// different covers; look_round ignores neighbours when it certifies negatives.
+TEST(Certificates, APairIsDroppedOnlyByOneField) {
+  for (const auto& [inside_out, bones] : kCases)
+    for (int seed = 1; seed <= 2; ++seed) {
+      const CertifiedBody scene(0.04 * seed, 3, seed, inside_out, bones);
+      EXPECT_EQ(scene.covers[2].observers.empty(), bones == CertifiedBody::Bones::chain);
+      std::size_t dropped = 0, needed_though_each_is_certified = 0, certain = 0;
+      for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+        certain += scene.one_field(t, u);
+        if (!needed) {
+          ++dropped;
+          EXPECT_TRUE(scene.one_field(t, u)) << +t << " and " << +u << ", seed " << seed;
+          return;
+        }
+        const auto by_some = [&](TriangleId triangle) {
+          for (std::size_t c = 0; c < kCovers; ++c)
+            if (scene.certain(c, triangle) != Orientation::uncertain) return true;
+          return false;
+        };
+        needed_though_each_is_certified += by_some(t) && by_some(u);
+      });
+      EXPECT_GT(needed_though_each_is_certified, 1000u) << "else mixing covers would change nothing";
+      EXPECT_GT(dropped, certain * 9 / 10) << "float bounds cost little";
+      EXPECT_LT(certain, scene.mesh.triangle_count() * scene.mesh.triangle_count() / 2);
+    }
+}
+
+// Rule one-field. A feature pair is dropped if all triangle pairs that carry it are dropped. Mutations: the
+// second cover also certifies triangles by themselves, as positive or as negative.
+TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
+  for (const auto& [inside_out, bones] : kCases) {
+    const CertifiedBody scene(0.08, 3, 2, inside_out, bones);
+    const TriangleMesh& mesh = scene.mesh;
+    std::vector<std::vector<bool>> needed(mesh.triangle_count(), std::vector<bool>(mesh.triangle_count()));
+    for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool is) { needed[+t][+u] = is; });
+    std::size_t dropped = 0;
+    const auto look = [&](std::span<const TriangleId> at, std::span<const TriangleId> also_at) {
+      for (const TriangleId t : at)
+        for (const TriangleId u : also_at)
+          if (needed[+t][+u]) return;
+      ++dropped;
+      EXPECT_TRUE(scene.one_field(at, also_at)) << +at[0] << " and " << +also_at[0];
+    };
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const TriangleId triangle{static_cast<std::int32_t>(t)};
+      const Triangle& corners = mesh.corners(triangle);
+      for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+        const VertexId vertex{static_cast<std::int32_t>(v)};
+        if (std::find(corners.begin(), corners.end(), vertex) == corners.end())
+          look(mesh.triangles_at(vertex), std::span(&triangle, 1));
+      }
+    }
+    for (std::size_t e = 0; e < mesh.edge_count(); ++e)
+      for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
+        const EdgeId one{static_cast<std::int32_t>(e)}, other{static_cast<std::int32_t>(f)};
+        const Edge &a = mesh.ends(one), &b = mesh.ends(other);
+        if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
+          look(mesh.triangles_at(one), mesh.triangles_at(other));
+      }
+    EXPECT_GT(dropped, 100'000u);
+  }
+}
+
+// Mutation: label_nodes takes the left child's label.
+TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
+  const CertifiedBody scene(0.04, 3, 1);
+  std::vector<std::vector<std::size_t>> below(scene.tree.nodes.size());
+  for (std::size_t n = below.size(); n-- > 0;) {
+    const PatchTree::Node& node = scene.tree.nodes[n];
+    if (node.is_leaf()) {
+      below[n] = {node.patch()};
+      continue;
+    }
+    below[n] = below[node.left()];
+    const std::vector<std::size_t>& right = below[node.right()];
+    below[n].insert(below[n].end(), right.begin(), right.end());
+  }
+  std::size_t skipped_inner = 0;
+  for (std::size_t a = 0; a < below.size(); ++a)
+    for (std::size_t b = a; b < below.size(); ++b) {
+      if (!scene.certificates.skip(a, b)) continue;
+      skipped_inner += below[a].size() > 1;
+      for (const std::size_t p : below[a])
+        for (const std::size_t q : below[b])
+          for (std::size_t i = 0; scene.tree.patches[p].lanes >> i != 0; ++i)
+            ASSERT_EQ(scene.certificates.shared(p, q).needed(i), 0) << "nodes " << a << " and " << b;
+    }
+  EXPECT_GT(skipped_inner, 10u);
+}
+
+// Mutations: certificates of covers that are no longer used stay; looks_per_interval counts all covers.
+TEST(Certificates, CoversThatAreNotUsedDropNothing) {
+  CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
+  const std::size_t looks = scene.certificates.looks_per_interval();
+  EXPECT_EQ(
+      scene.certificates.counts().clusters,
+      scene.covers[0].observers.size() + scene.covers[1].observers.size() + scene.covers[2].observers.size());
+  scene.certificates.use_covers(1);
+  EXPECT_EQ(scene.certificates.looks_per_interval(), scene.tree.patches.size());
+  EXPECT_GT(looks, scene.tree.patches.size() * 3 / 2);
+  EXPECT_EQ(scene.certificates.counts().clusters, scene.covers[0].observers.size());
+  scene.certify();
+  std::size_t dropped = 0;
+  for_each_pair_of_lanes(scene, [&](TriangleId t, TriangleId u, bool needed) {
+    dropped += !needed;
+    EXPECT_TRUE(needed || scene.cluster(0, +t) == scene.cluster(0, +u)) << +t << " and " << +u;
+  });
+  EXPECT_GT(dropped, 10'000u);
+}
+
+// The triangles of each cover that are certainly positive and clear, as the contour tests of its clusters say
+// if they are asked directly: [covers][patches].
+std::vector<std::vector<Mask16>> clear_triangles(const CertifiedBody& scene) {
+  std::vector<std::vector<Mask16>> clear;
+  for (std::size_t c = 0; c < scene.covers.size(); ++c) {
+    const Cover& cover = scene.covers[c];
+    std::vector<Viewpoint> from;
+    for (const FollowingPoint& observer : cover.observers)
+      from.push_back(placed(observer, scene.local.records()));
+    CappedClusters capped(scene.mesh, scene.shape.positions, cover, c);
+    capped.start(scene.local, from);
+    std::vector<Mask16>& of_patch = clear.emplace_back(scene.tree.patches.size());
+    const auto for_each = [&](const auto& take) {
+      for (std::size_t p = 0; p < of_patch.size(); ++p) {
+        const Patch& patch = scene.tree.patches[p];
+        if (patch.cluster[c] == kNone) continue;
+        const auto cluster = static_cast<std::size_t>(patch.cluster[c]);
+        const Signs signs =
+            orientation(load(scene.local.records(), patch.vertex), patch, from[cluster], scene.local.error());
+        take(p, patch, cluster, static_cast<Mask16>(patch.lanes & signs.positive));
+      }
+    };
+    for_each(
+        [&](std::size_t, const Patch& patch, std::size_t, Mask16 positive) { capped.take(patch, positive); });
+    while (capped.choose_other_rays())
+      for_each([&](std::size_t, const Patch& patch, std::size_t cluster, Mask16 positive) {
+        if (capped.has_other_ray(cluster)) capped.count(patch, positive);
+      });
+    for_each([&](std::size_t p, const Patch& patch, std::size_t, Mask16 positive) {
+      of_patch[p] = capped.clear(patch, positive);
+    });
+  }
+  return clear;
+}
+
+// With capped clusters a pair of triangles of one cluster is dropped exactly if one of the two is clear.
+// Mutations: patches that the ray of one cover may cross are not counted; a patch counts as clear in all
+// covers if it is in one; clear triangles of the second patch are entered elsewhere.
+TEST(Certificates, CapsDropAPairOfAClusterWhereOneTriangleIsClear) {
+  for (const auto& [bend, bones] :
+       {std::pair(0.5, CertifiedBody::Bones::chain), {3.0, CertifiedBody::Bones::sixths}}) {
+    CertifiedBody scene(0.02, bend, 1, false, bones);
+    Certificates certificates = scene.with_caps();
+    look_at_all(certificates, scene.tree, scene.local);
+    const std::vector<std::vector<Mask16>> clear = clear_triangles(scene);
+    std::size_t dropped_by_one_cover = 0, wrong = 0;
+    for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
+        const Patch &first = scene.tree.patches[p], &second = scene.tree.patches[q];
+        const Certificates::Shared shared = certificates.shared(p, q);
+        for_each_lane(first.lanes, [&](std::size_t lane) {
+          unsigned needed = second.lanes;
+          std::size_t covers = 0;
+          for (std::size_t c = 0; c < kCovers; ++c)
+            if (first.cluster[c] == second.cluster[c] && first.cluster[c] != kNone) {
+              const unsigned dropped = (clear[c][p] >> lane & 1) != 0 ? second.lanes : clear[c][q];
+              covers += dropped != 0;
+              needed &= ~dropped;
+            }
+          wrong += shared.needed(lane) != needed;
+          dropped_by_one_cover += covers == 1;
+        });
+      }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(dropped_by_one_cover, 1000u);
+  }
+}
+
+// A picture shows what the certificates say: signs of the first cover, clusters of all covers, patches, and
+// observers where they stand in the scene.
+TEST(Certificates, AreShownAsTheyAre) {
+  CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
+  for (const std::size_t covers : {kCovers, std::size_t{1}}) {
+    scene.certificates.use_covers(covers);
+    scene.certify();
+    const RadialView view = scene.certificates.view();
+    ASSERT_EQ(view.further_covers.size(), covers - 1);
+    for (std::size_t t = 0; t < scene.mesh.triangle_count(); ++t) {
+      EXPECT_EQ(view.positive[t], scene.own[t][0] == Orientation::positive);
+      EXPECT_EQ(view.cluster[t], scene.cluster(0, t));
+      for (std::size_t c = 1; c < covers; ++c)
+        EXPECT_EQ(view.further_covers[c - 1].cluster[t], scene.cluster(c, t));
+      const auto members = scene.tree.triangles_of(static_cast<std::size_t>(view.patch[t]));
+      EXPECT_NE(std::ranges::find(members, TriangleId{static_cast<std::int32_t>(t)}), members.end());
+    }
+    for (std::size_t c = 0; c < covers; ++c) {
+      const auto& shown = c == 0 ? view.observers : view.further_covers[c - 1].observers;
+      ASSERT_EQ(shown.size(), scene.covers[c].observers.size());
+      for (std::size_t i = 0; i < shown.size(); ++i) {
+        EXPECT_EQ(shown[i].cluster, static_cast<std::int32_t>(i));
+        EXPECT_LT((shown[i].head.start - scene.covers[c].observers[i].at(scene.start)).norm(), 1e-3);
+        EXPECT_LT((shown[i].tail.end - scene.covers[c].observers[i].at(scene.end)).norm(), 1e-3);
+      }
+    }
+  }
+}
+
+// A sphere is one cluster, all of it positive. Half of its patches then become a cluster of their own, seen
+// from the same place. Mutation: relabel() leaves patches as they were, with a label that names the old
+// cluster.
+TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
+  const test::Shape sphere = test::icosphere(3);
+  const TriangleMesh mesh = sphere.mesh();
+  CutSurface cut = cut_surface(mesh, sphere.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
+  Certificates certificates(cut.tree, cut.covers);
+  LocalPositions local(sphere.positions);
+  local.update(Motion(sphere.positions, sphere.positions));
+  const auto certify = [&] { look_at_all(certificates, cut.tree, local); };
+  const std::size_t first = static_cast<std::size_t>(cut.tree.leaf.front()),
+                    last = static_cast<std::size_t>(cut.tree.leaf.back());
+  certify();
+  ASSERT_TRUE(certificates.skip(first, last));
+  const std::size_t half = cut.tree.patches.size() / 2;
+  cut.covers[0].observers.push_back(cut.covers[0].observers[0]);
+  for (std::size_t p = half; p < cut.tree.patches.size(); ++p) cut.tree.patches[p].cluster[0] = 1;
+  certificates.resize_first_cover();
+  certificates.relabel(half, cut.tree.patches.size());
+  certify();
+  EXPECT_FALSE(certificates.skip(first, last));
+  EXPECT_TRUE(certificates.skip(last, last));
+}
+
+TEST(Certificates, NothingIsCertifiedWhereTheMotionLeavesTheRange) {
+  CertifiedBody scene(0.01, 1, 1);
+  for (Vec3& p : scene.start) p *= 1e10;  // changes no sign, but leaves the range
+  for (Vec3& p : scene.end) p *= 1e10;
+  scene.local.update(scene.motion());
+  ASSERT_FALSE(scene.local.known());
+  scene.certify();
+  for_each_pair_of_lanes(scene, [](TriangleId, TriangleId, bool needed) { EXPECT_TRUE(needed); });
+}
+
+}  // namespace
+}  // namespace cscd::fast

@@ -1,0 +1,114 @@
+#include "core/fast/classify/patch_lanes.h"
+
+namespace cscd::fast {
+namespace {
+
+// Results are written in place, register by register. gcc copies a struct of registers by halves, and loading
+// a whole register waits long for the two stores.
+[[gnu::always_inline]] inline void corner_of(const PatchLanes& lanes, const Places16& place,
+                                             PatchLanes& out) {
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) out.at[end][i] = permuted(lanes.at[end][i], place);
+}
+
+[[gnu::always_inline]] inline void subtract(PatchLanes& to, const PatchLanes& from) {
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) to.at[end][i] -= from.at[end][i];
+}
+
+}  // namespace
+
+PatchLanes load(std::span<const LocalPositions::Record> records,
+                const std::array<std::int32_t, kLanes16>& vertex) {
+  // Each row holds two records: the eight numbers of one vertex, and of the fourth vertex behind it. Four
+  // rows are transposed within their quarters; quarters of starts and of ends then alternate.
+  Float16 half[2][3];
+  for (std::size_t h = 0; h < 2; ++h) {
+    Float16 row[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      Float8 record[2];
+      for (std::size_t k = 0; k < 2; ++k)
+        std::memcpy(&record[k], records[static_cast<std::size_t>(vertex[8 * h + 4 * k + i])].at,
+                    sizeof record[k]);
+      row[i] = joined<Float16>(record[0], record[1]);
+    }
+    const auto first_two = [](Float16 a, Float16 b) {
+      return shuffled<0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29>(a, b);
+    };
+    const auto third = [](Float16 a, Float16 b) {
+      return shuffled<2, 18, 2, 18, 6, 22, 6, 22, 10, 26, 10, 26, 14, 30, 14, 30>(a, b);
+    };
+    const auto even_pairs = [](Float16 a, Float16 b) {
+      return shuffled<0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29>(a, b);
+    };
+    const auto odd_pairs = [](Float16 a, Float16 b) {
+      return shuffled<2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31>(a, b);
+    };
+    const Float16 low01 = first_two(row[0], row[1]), low23 = first_two(row[2], row[3]);
+    half[h][0] = even_pairs(low01, low23);
+    half[h][1] = odd_pairs(low01, low23);
+    half[h][2] = even_pairs(third(row[0], row[1]), third(row[2], row[3]));
+  }
+  PatchLanes out;
+  for (int i = 0; i < 3; ++i) {
+    out.at[0][i] = shuffled<0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27>(half[0][i], half[1][i]);
+    out.at[1][i] =
+        shuffled<4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31>(half[0][i], half[1][i]);
+  }
+  return out;
+}
+
+namespace {
+
+// The control vectors of the normals, and what bounds their rounding.
+struct PatchNormals {
+  Float16 control[3][3];
+  Float16 longest[2];  // the largest component of each of the two edges
+};
+// Computes the normals of a patch's triangles. `corner` holds one corner of each triangle.
+[[gnu::always_inline]] inline void make_normals(const PatchLanes& lanes, const Patch& patch,
+                                                PatchNormals& out, PatchLanes& corner) {
+  PatchLanes a, b;
+  corner_of(lanes, patch.corner[0], corner);
+  corner_of(lanes, patch.corner[1], a);
+  corner_of(lanes, patch.corner[2], b);
+  subtract(a, corner);
+  subtract(b, corner);
+  cross(a, b, out.control);
+  out.longest[0] = largest_component(a);
+  out.longest[1] = largest_component(b);
+}
+
+[[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const PatchLanes& corner,
+                                         const Rounding16& rounding, const Viewpoint& viewpoint,
+                                         float error) {
+  PatchLanes c;
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
+  Float16 coefficient[4];
+  coefficients(normals.control, c, coefficient);
+  if (all_positive(coefficient, rounding, viewpoint.reach)) return {0xffff, 0};  // this is so nearly always
+  const TripleProducts16 products = bounded(coefficient, c, rounding, error);
+  return {products.positive(), products.negative()};
+}
+
+}  // namespace
+
+Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& viewpoint, float error) {
+  PatchNormals normals;
+  PatchLanes corner;
+  make_normals(lanes, patch, normals, corner);
+  return look(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error), viewpoint, error);
+}
+
+void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
+                  float error, Signs (&out)[kCovers]) {
+  PatchNormals normals;
+  PatchLanes corner;
+  make_normals(lanes, patch, normals, corner);
+  const Rounding16 rounding = rounding_of(normals.longest[0], normals.longest[1], error);
+  for (std::size_t c = 0; c < kCovers; ++c)
+    out[c] = from[c] ? look(normals, corner, rounding, *from[c], error) : Signs{};
+}
+
+}  // namespace cscd::fast
