@@ -13,8 +13,8 @@ namespace cscd::bench {
 // step to step.
 inline constexpr std::size_t kLead = 24;
 
-// Does so for a strategy that follows, and nothing for the others. The clip then holds another interval than
-// before: load the one to be asked after this.
+// Warms up strategies that adapt to the surface (Strategy::follows), and does nothing for the others. Load
+// the interval again afterwards, because the clip then holds another one.
 void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval);
 
 }  // namespace cscd::bench

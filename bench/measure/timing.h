@@ -46,8 +46,8 @@ struct TimingPlan {
   std::uint64_t seed;
 };
 
-// Streams all positions of both ends once from main memory, which leaves them as near as whoever has just
-// moved them would. Returns milliseconds. (Where caches cannot be emptied, from where they are.)
+// Streams all positions of both ends once from main memory, which leaves them as warm in the caches as a
+// simulator would leave them. Returns milliseconds. (Where caches cannot be emptied, from where they are.)
 double stream_positions(const Motion& motion);
 
 // Times the strategies. Each timed interval is given to all strategies in turn, in a random order drawn anew

@@ -23,8 +23,8 @@ struct ChangePoint {
 // optimum is exact (optimal partitioning: Jackson et al. 2005; PELT of Killick et al. 2012 prunes the same
 // recursion, which so short a course does not need). A point's noise is the largest of its own standard
 // error, `least_noise`, and what neighbouring points differ by (median absolute difference, so that a few
-// steps do not widen it). One point between two levels is a disturbance and no level of its own; the first
-// and the last point may be one. The penalty is 12 + 2 log(n): change_points_test.cpp measures how often a
+// steps do not widen it). One point between two levels is an outlier and is ignored; the first and the last
+// point may be levels of their own. The penalty is 12 + 2 log(n): change_points_test.cpp measures how often a
 // course without change is cut.
 std::vector<ChangePoint> change_points(std::span<const CoursePoint> course, double least_noise);
 
