@@ -9,13 +9,13 @@
 #include <string>
 #include <unistd.h>
 
-#include "bench/command_line/help_format.h"
-#include "bench/command_line/plain_numbers.h"
-#include "bench/command_line/standard_streams.h"
-#include "bench/command_line/usage.h"
-#include "bench/command_line/version.h"
-#include "bench/commands/command.h"
-#include "bench/output/output.h"
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/command_line/help_format.h"
+#include "bench/cli/command_line/plain_numbers.h"
+#include "bench/cli/command_line/standard_streams.h"
+#include "bench/cli/command_line/usage.h"
+#include "bench/cli/command_line/version.h"
+#include "bench/cli/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
 #include "scenes/base/temporaries.h"

@@ -1,5 +1,5 @@
 // Records of runs.
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 #include "core/base/error.h"
 #include "fuzz/input_file.h"

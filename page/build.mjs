@@ -66,7 +66,7 @@ writeFileSync(
 // The standard asks compilers for literals of 65536 characters; those in use take longer ones.
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 
-#include "bench/view/viewer_page.h"
+#include "bench/query/view/viewer_page.h"
 namespace cscd::bench {
 ${functionOf("viewer_page", await pageOf("view", "main.js", "three"))}
 ${functionOf("report_page", await pageOf("report", "report.js", "uplot", "frame-src 'self'; "))}

@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "bench/output/schema.h"
-#include "bench/output/sha256.h"
+#include "bench/cli/output/schema.h"
+#include "bench/cli/output/sha256.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

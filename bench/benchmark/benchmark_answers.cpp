@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "bench/output/gzip.h"
+#include "bench/cli/output/gzip.h"
 #include "core/base/error.h"
 #include "scenes/base/closest_name.h"
 #include "scenes/base/joined.h"

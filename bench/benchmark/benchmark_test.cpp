@@ -9,8 +9,8 @@
 
 #include "bench/benchmark/entry.h"
 #include "bench/benchmark/judge.h"
-#include "bench/output/schema.h"
-#include "bench/rows/catalogue.h"
+#include "bench/cli/output/schema.h"
+#include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/exact/triangles_meet.h"

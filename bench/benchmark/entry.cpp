@@ -4,9 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "bench/record/environment.h"
-#include "bench/rows/applicable.h"
-#include "bench/statistics/statistics.h"
+#include "bench/compare/statistics/statistics.h"
+#include "bench/measure/record/environment.h"
+#include "bench/measure/strategies/applicable.h"
 #include "core/base/error.h"
 #include "core/fast/drvbc_fast.h"
 

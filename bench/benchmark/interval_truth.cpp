@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "bench/rows/catalogue.h"
+#include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/exact/exact.h"

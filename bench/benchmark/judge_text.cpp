@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "bench/benchmark/judge.h"
-#include "bench/statistics/statistics.h"
+#include "bench/compare/statistics/statistics.h"
 
 namespace cscd::bench {
 namespace {

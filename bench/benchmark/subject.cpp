@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bench/measure/interval_choice.h"
-#include "bench/rows/catalogue.h"
+#include "bench/measure/replay/interval_choice.h"
+#include "bench/measure/strategies/catalogue.h"
 #include "scenes/hard/disturbance.h"
 #include "scenes/random/random_interval.h"
 

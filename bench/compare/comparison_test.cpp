@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/schema.h"
 #include "bench/compare/test_records.h"
-#include "bench/output/json_text.h"
-#include "bench/output/schema.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

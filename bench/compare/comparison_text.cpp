@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "bench/cli/output/markdown.h"
 #include "bench/compare/comparison.h"
 #include "bench/compare/stage_samples.h"
-#include "bench/output/markdown.h"
-#include "bench/record/shortfall.h"
+#include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {
 namespace {

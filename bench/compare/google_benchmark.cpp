@@ -5,7 +5,7 @@
 #include <map>
 
 #include "bench/compare/stage_samples.h"
-#include "bench/statistics/statistics.h"
+#include "bench/compare/statistics/statistics.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 // The JSON files of other benchmark programs. Google Benchmark's can be read and written; the list of
 // github-action-benchmark can be written.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 namespace cscd::bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bench/compare/shared_intervals.h"
-#include "bench/statistics/statistics.h"
+#include "bench/compare/statistics/statistics.h"
 
 namespace cscd::bench {
 namespace {

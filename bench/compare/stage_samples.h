@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/record/record.h"
-#include "bench/statistics/process_ratio.h"
+#include "bench/compare/statistics/process_ratio.h"
+#include "bench/measure/record/record.h"
 
 namespace cscd::bench {
 

@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 
+#include "bench/cli/output/data.h"
 #include "bench/compare/shared_intervals.h"
 #include "bench/compare/side.h"
 #include "bench/compare/stage_samples.h"
-#include "bench/output/data.h"
-#include "bench/record/shortfall.h"
+#include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "bench/compare/statistics/process_ratio.h"
+#include "bench/compare/statistics/statistics.h"
 #include "bench/compare/work.h"
-#include "bench/record/record.h"
-#include "bench/statistics/process_ratio.h"
-#include "bench/statistics/statistics.h"
+#include "bench/measure/record/record.h"
 
 namespace cscd::bench {
 
@@ -27,14 +27,16 @@ struct TimeFinding {
   Change change = Change::same;
   // Why a change that the interval shows is not reported; empty where it is, or where there is none.
   std::string withheld = {};
-  bool of_shortfall = false;  // whether the row answers less than a complete row (bench/record/shortfall.h)
+  bool of_shortfall =
+      false;  // whether the row answers less than a complete row (bench/measure/record/shortfall.h)
 };
 
 // The whole query of a row where no verdict about its times is possible. A side without such times has none.
 struct UnjudgedTime {
   std::string scene, row;
   std::optional<double> before_ms, after_ms;  // an interval, medians over the processes
-  bool of_shortfall = false;  // whether the row answers less than a complete row (bench/record/shortfall.h)
+  bool of_shortfall =
+      false;  // whether the row answers less than a complete row (bench/measure/record/shortfall.h)
 };
 
 // The geometric mean over scenes of what the whole query of a row takes, after over before.

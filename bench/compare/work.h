@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 // What two programs counted: work, which is exact, and memory and instructions, which nearly are.
 namespace cscd::bench {

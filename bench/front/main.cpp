@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/input/input.h"
+#include "bench/query/input/input.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bench/output/data.h"
-#include "bench/output/markdown.h"
+#include "bench/cli/output/data.h"
+#include "bench/cli/output/markdown.h"
 #include "bench/tables/paper_tables.h"
 #include "scenes/base/joined.h"
 

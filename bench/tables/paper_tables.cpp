@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/output/data.h"
+#include "bench/cli/output/data.h"
 
 namespace cscd::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 #include "bench/tables/quantity.h"
 
 // Every figure that tables have, published figures beside measured ones. What a column is,

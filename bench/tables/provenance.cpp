@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "bench/output/markdown.h"
+#include "bench/cli/output/markdown.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {

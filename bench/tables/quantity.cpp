@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "bench/rows/catalogue.h"
+#include "bench/measure/strategies/catalogue.h"
 
 namespace cscd::bench {
 namespace {

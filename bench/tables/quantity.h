@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/record/record.h"
-#include "bench/record/shortfall.h"
-#include "bench/statistics/statistics.h"
+#include "bench/compare/statistics/statistics.h"
+#include "bench/measure/record/record.h"
+#include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bench/output/data.h"
+#include "bench/cli/output/data.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 namespace cscd::bench {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 namespace cscd::bench {
 

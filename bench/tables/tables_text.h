@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/shaped_table.h"
 

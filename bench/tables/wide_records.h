@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/record/record.h"
+#include "bench/measure/record/record.h"
 
 // For tests: records in which every table has long figures with long intervals.
 namespace cscd::bench {

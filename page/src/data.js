@@ -19,7 +19,7 @@ async function inflate(bytes) {
   return new Response(stream).arrayBuffer();
 }
 
-// Undoes PositionCoder (bench/view/position_coder.h). Returns [frames][3][vertices] places on the grid.
+// Undoes PositionCoder (bench/query/view/position_coder.h). Returns [frames][3][vertices] places on the grid.
 function decodePlaces(bytes, frames, vertices) {
   const n = 3 * vertices;
   const places = new Uint16Array(frames * n);

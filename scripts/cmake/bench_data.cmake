@@ -8,7 +8,7 @@
 #
 #   cscd_bench_data(ROOM)   for the room that declares data_files():
 #
-# data_files.cpp   bench/*/*.json, so that the program needs no files of its own beside it
+# data_files.cpp   bench/**.json, so that the program needs no files of its own beside it
 function(cscd_build_info room)
   set(generated ${PROJECT_BINARY_DIR}/generated)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
@@ -35,7 +35,7 @@ endfunction()
 
 function(cscd_bench_data room)
   set(generated ${PROJECT_BINARY_DIR}/generated)
-  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*/*.json)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.json)
   set(rows "")
   foreach(file ${files})
     get_filename_component(name ${file} NAME)
@@ -44,7 +44,7 @@ function(cscd_bench_data room)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   endforeach()
   file(CONFIGURE OUTPUT ${generated}/data_files.cpp @ONLY CONTENT [[
-#include "bench/output/data.h"
+#include "bench/cli/output/data.h"
 
 namespace cscd::bench {
 namespace {

@@ -10,7 +10,7 @@ function(cscd_viewer room)
   set(copy ${PROJECT_BINARY_DIR}/page)
   if(NOT CSCD_VIEWER)
     file(CONFIGURE OUTPUT ${made} CONTENT [[
-#include "bench/view/viewer_page.h"
+#include "bench/query/view/viewer_page.h"
 namespace cscd::bench {
 std::string_view viewer_page() { return {}; }
 std::string_view report_page() { return {}; }

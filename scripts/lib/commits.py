@@ -61,7 +61,8 @@ def scenes_of(commit):
 
 def strategies_of(commit):
     """The names and groups in a commit's catalogue of strategies."""
-    catalogue = git("ls-tree", "--name-only", commit, "bench/rows/catalogue.cpp", "bench/catalogue.cpp").splitlines()
+    catalogue = git("ls-tree", "--name-only", commit, "bench/measure/strategies/catalogue.cpp",
+                    "bench/rows/catalogue.cpp", "bench/catalogue.cpp").splitlines()
     if not catalogue:
         refuse(f"commit {commit[:10]}: has no catalogue of strategies, so it cannot be measured")
     rows = git("show", f"{commit}:{catalogue[0]}").partition("playing(")[0]  # behind them are look-ups and their errors

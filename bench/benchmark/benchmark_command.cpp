@@ -1,0 +1,200 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <optional>
+
+#include "bench/benchmark/benchmark.h"
+#include "bench/benchmark/entry.h"
+#include "bench/benchmark/judge.h"
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/progress.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "core/base/error.h"
+#include "scenes/catalog/scene.h"
+
+namespace cscd::bench {
+namespace {
+
+constexpr char kAll[] = "all", kNone[] = "none";
+
+// The names that --scene stands for.
+std::vector<std::string> scenes_called(const std::vector<std::string>& words) {
+  if (words == std::vector<std::string>{kNone}) return {};
+  if (words != std::vector<std::string>{kAll}) return words;
+  std::vector<std::string> names;
+  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+    if (!scene.fault.empty())
+      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
+                       "); mend or remove that file, or name the scenes one by one");
+    names.push_back(scene.name);
+  }
+  return names;
+}
+
+void add_make(CLI::App& benchmark) {
+  struct Options {
+    BenchmarkPlan plan;
+    std::string folder;
+    std::vector<std::string> scenes = {kAll};
+    bool smoke = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = benchmark.add_subcommand(
+      "make",
+      "Write intervals and their exact answers into a folder, for any program (bench/BENCHMARK.md).\n\n"
+      "  cscd benchmark make --out benchmark\n"
+      "  cscd benchmark make --out small --smoke\n"
+      "  cscd benchmark make --out mine --count 200 --scene my/scene.json\n\n"
+      "The same command writes the same bytes. `sha256sum -c SHA256SUMS` checks a copy.");
+  command->add_option("--out", options->folder, "the folder; it is made where it is missing")->required();
+  CLI::Option* count = command->add_option("--count", options->plan.small, "intervals of small meshes")
+                           ->capture_default_str()
+                           ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--seed", options->plan.seed, "the same seed gives the same small meshes")
+      ->capture_default_str();
+  CLI::Option* scenes =
+      command
+          ->add_option("--scene", options->scenes,
+                       "scenes, with commas between; all: every scene of cscd list; none: small meshes alone")
+          ->delimiter(',')
+          ->default_str(kAll);
+  CLI::Option* each =
+      command->add_option("--scene-intervals", options->plan.scene_intervals, "intervals of each scene")
+          ->capture_default_str()
+          ->check(CLI::Range(1, 10'000));
+  command
+      ->add_flag("--smoke", options->smoke,
+                 "seconds instead of minutes: 60 small meshes and no scenes, to show that everything works")
+      ->excludes(count)
+      ->excludes(scenes)
+      ->excludes(each);
+  command->add_flag("--force", options->plan.force, "replace a benchmark that is there");
+  command->callback([options] {
+    BenchmarkPlan& plan = options->plan;
+    plan.folder = options->folder;
+    if (options->smoke) {
+      plan.small = 60;
+      options->scenes = {kNone};
+    }
+    plan.scenes = scenes_called(options->scenes);
+    {
+      std::optional<Progress> progress;
+      make_benchmark(plan, [&](std::size_t done, std::size_t all) {
+        if (!progress) progress.emplace("benchmark", all);
+        progress->set(done);
+      });
+    }
+    const Benchmark made = read_benchmark(plan.folder);
+    std::size_t touching = 0, crossing = 0, contacts = 0;
+    std::uint64_t bytes = 0;
+    for (const IntervalTruth& truth : read_truth(made)) {
+      touching += truth.verdict() == "touches";
+      crossing += !truth.starts_embedded();
+      contacts += truth.contacts.size();
+    }
+    for (const ListedFile& file : made.files) bytes += file.bytes;
+    std::printf(
+        "%s: %zu intervals of %zu families, %zu touch and %zu intersect at their start; %zu contacts; "
+        "%.1f MB\nmanifest %s\n",
+        plan.folder.c_str(), made.intervals.size(), made.families.size(), touching, crossing, contacts,
+        static_cast<double>(bytes) / 1e6, made.sha256.c_str());
+  });
+}
+
+void add_answer(CLI::App& benchmark) {
+  struct Options {
+    std::string folder, strategy, elementary = "filtered_exact", output;
+    int repetitions = 5;
+    bool force = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = benchmark.add_subcommand(
+      "answer",
+      "Answer a benchmark by a strategy of this program (cscd list), in the format that judge reads.\n\n"
+      "  cscd benchmark answer benchmark --strategy embree --json embree.json\n"
+      "  cscd benchmark answer benchmark --strategy base --elementary newton --json newton.json.gz\n"
+      "  cscd benchmark answer benchmark --strategy \"drvbc_fast --first\" --json first.json\n\n"
+      "Says how many intervals the strategy leaves out, and why.");
+  command->add_option("benchmark", options->folder, "the folder of a benchmark")->required();
+  command->add_option("--strategy", options->strategy, "a strategy, or \"STRATEGY --first\"")->required();
+  command->add_option("--elementary", options->elementary, "elementary test (cscd list tests)")
+      ->capture_default_str();
+  command->add_option("--json", options->output, "where the answers go; - is standard output")->required();
+  command
+      ->add_option("--repetitions", options->repetitions,
+                   "how often each interval is asked; its time is the median")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->callback([options] {
+    const std::vector<StrategyRow> rows = rows_called(std::vector<std::string>{options->strategy});
+    if (rows.size() != 1)
+      throw InputError("--strategy " + options->strategy + ": is a group of " + std::to_string(rows.size()) +
+                       " strategies; name one of them");
+    const ElementaryTest& elementary = elementary_test_named(options->elementary);
+    OutputFile output(options->output, options->force);
+    const Benchmark asked = read_benchmark(options->folder);
+    Entry entry;
+    {
+      Progress progress("answers of " + rows[0].name(), asked.intervals.size());
+      entry = answer_benchmark(asked, rows[0], elementary, options->repetitions,
+                               [&](std::size_t done) { progress.set(done); });
+    }
+    std::printf("%s answers %zu of %zu intervals\n", entry.answers.program.c_str(),
+                entry.answers.intervals.size(), asked.intervals.size());
+    for (const auto& [reason, count] : entry.left_out)
+      std::printf("  leaves out %zu: %s\n", count, reason.c_str());
+    output.commit(to_json(entry.answers).dump() + "\n");
+  });
+}
+
+void add_judge(CLI::App& benchmark) {
+  struct Options {
+    std::string folder, answers, output;
+    JudgeOptions judging;
+    bool families = false, force = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = benchmark.add_subcommand(
+      "judge",
+      "Hold any program's answers against a benchmark: misses, inventions, errors of times, speed.\n\n"
+      "  cscd benchmark judge benchmark answers.json\n"
+      "  cscd benchmark judge benchmark answers.jsonl.gz --families\n"
+      "  cscd benchmark judge benchmark answers.json --json - | jq .all\n\n"
+      "bench/BENCHMARK.md describes the format of answers and defines every count. The exit status is 0 "
+      "whatever\n"
+      "the score; 2 for a damaged benchmark or malformed answers, with one line that says how to mend them.");
+  command->add_option("benchmark", options->folder, "the folder of a benchmark")->required();
+  command->add_option("answers", options->answers, "the answers, as JSON or JSON lines")->required();
+  command
+      ->add_option("--time-tolerance", options->judging.time_tolerance,
+                   "times that are off by no more than this share of the interval are neither late nor early")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_flag("--families", options->families, "a row for each family instead of each set of them");
+  command->add_option("--json", options->output, "where the whole score goes; - is standard output");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->callback([options] {
+    std::optional<OutputFile> output;
+    if (!options->output.empty()) output.emplace(options->output, options->force);
+    const Benchmark judged = read_benchmark(options->folder);
+    const Judgement judgement =
+        judge(judged, read_answers(options->answers), "answers " + options->answers, options->judging);
+    std::printf("%s", describe(judgement, options->families).c_str());
+    if (output) output->commit(json_text(to_json(judgement)));
+  });
+}
+
+}  // namespace
+
+void add_benchmark(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("benchmark", "A public benchmark: make it, answer it, judge any program's answers.");
+  command->require_subcommand(1);
+  add_make(*command);
+  add_answer(*command);
+  add_judge(*command);
+}
+
+}  // namespace cscd::bench

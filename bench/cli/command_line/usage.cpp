@@ -1,0 +1,95 @@
+#include "bench/cli/command_line/usage.h"
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "scenes/base/closest_name.h"
+
+namespace cscd::bench {
+namespace {
+
+// The innermost command that was named, and how it is called.
+struct Named {
+  const CLI::App* command;
+  std::string words;
+};
+
+Named named_command(const CLI::App& program) {
+  Named named{&program, "cscd"};
+  for (;;) {
+    const std::vector<CLI::App*> used = named.command->get_subcommands();
+    if (used.empty()) return named;
+    named = {used.front(), named.words + " " + used.front()->get_name()};
+  }
+}
+
+std::string hint(const std::string& word, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return did_you_mean(word, views);
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+  return "unknown option " + name + hint(name, names);
+}
+
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
+  std::vector<std::string> below;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    below.push_back(sub->get_name());
+  if (!below.empty() && words.front()[0] != '-')
+    return "unknown command " + words.front() + hint(words.front(), below);
+  for (const std::string& word : words)
+    if (word.size() > 1 && word[0] == '-') return unknown_option(command, word);
+  return "one argument too many: " + words.front();
+}
+
+// Of a text in UTF-8: whether it holds a control character, or one that embeds, overrides or isolates a
+// direction of writing.
+bool controls_a_terminal(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (byte(i) < 0x20 || byte(i) == 0x7f) return true;
+    if (byte(i) == 0xc2 && byte(i + 1) < 0xa0) return true;  // U+0080 to U+009F
+    if (byte(i) != 0xe2) continue;
+    if (byte(i + 1) == 0x80 && byte(i + 2) >= 0xaa && byte(i + 2) <= 0xae) return true;  // U+202A to U+202E
+    if (byte(i + 1) == 0x81 && byte(i + 2) >= 0xa6 && byte(i + 2) <= 0xa9) return true;  // U+2066 to U+2069
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
+  const Named named = named_command(program);
+  std::vector<std::string> unknown = named.command->remaining();
+  std::erase(unknown, "");
+  const bool about_presence = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  std::string text = about_presence && !unknown.empty() ? unexpected(*named.command, unknown) : error.what();
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text + "; see " + named.words + " --help";
+}
+
+void require_text(int count, const char* const* words) {
+  for (int i = 1; i < count; ++i) {
+    const std::string argument = "argument " + std::to_string(i);
+    try {
+      nlohmann::json(words[i]).dump();
+    } catch (const nlohmann::json::exception&) {
+      throw InputError(argument + " is not UTF-8; give the file another name");
+    }
+    if (controls_a_terminal(words[i]))
+      throw InputError(argument +
+                       " holds a character that controls a terminal or the direction of writing; "
+                       "give the file another name");
+  }
+}
+
+}  // namespace cscd::bench

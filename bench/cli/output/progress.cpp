@@ -1,0 +1,70 @@
+#include "bench/cli/output/progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <unistd.h>
+
+namespace cscd::bench {
+namespace {
+
+constexpr Progress::Seconds kBetweenBars{0.1};
+constexpr char kClearLine[] = "\r\033[K";
+
+}  // namespace
+
+std::string time_left(std::size_t done, std::size_t total, double elapsed_seconds) {
+  if (done == 0 || done >= total) return "";
+  constexpr double kSecondsUpTo = 100, kMinutesUpTo = 100 * 60;
+  const double seconds = elapsed_seconds * static_cast<double>(total - done) / static_cast<double>(done);
+  char text[48];
+  if (seconds < kSecondsUpTo)
+    std::snprintf(text, sizeof text, ", about %.0f s left", std::ceil(seconds));
+  else if (seconds < kMinutesUpTo)
+    std::snprintf(text, sizeof text, ", about %.0f min left", std::ceil(seconds / 60));
+  else
+    std::snprintf(text, sizeof text, ", about %.1f h left", seconds / 3600);
+  return text;
+}
+
+Progress::Progress(std::string title, std::size_t total, Seconds between_lines)
+    : title_(std::move(title)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      between_lines_(between_lines),
+      begin_(std::chrono::steady_clock::now()),
+      drawn_(begin_) {
+  if (terminal_) draw(Seconds(0));
+}
+
+Progress::~Progress() {
+  if (terminal_ && done_ != total_) std::fputs(kClearLine, stderr);
+}
+
+void Progress::set(std::size_t done) {
+  done_ = done;
+  const auto now = std::chrono::steady_clock::now();
+  if (terminal_ && done_ == total_) {  // what is printed next begins a line of its own
+    std::fputs(kClearLine, stderr);
+    return;
+  }
+  if (now - drawn_ < (terminal_ ? kBetweenBars : between_lines_)) return;
+  drawn_ = now;
+  draw(now - begin_);
+}
+
+void Progress::draw(Seconds elapsed) const {
+  const std::string left = time_left(done_, total_, elapsed.count());
+  if (!terminal_) {
+    std::fprintf(stderr, "%s: %zu of %zu%s\n", title_.c_str(), done_, total_, left.c_str());
+    return;
+  }
+  constexpr std::size_t width = 30;
+  const std::size_t filled = total_ == 0 ? width : std::min(width, width * done_ / total_);
+  const std::string bar = std::string(filled, '=') + std::string(width - filled, ' ');
+  std::fprintf(stderr, "%s%s [%s] %zu/%zu%s", kClearLine, title_.c_str(), bar.c_str(), done_, total_,
+               left.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace cscd::bench

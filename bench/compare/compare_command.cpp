@@ -1,0 +1,66 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <optional>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/output.h"
+#include "bench/compare/comparison.h"
+
+namespace cscd::bench {
+namespace {
+
+struct CompareOptions {
+  std::string before, after, lane = "all", json, markdown;
+  bool force = false, show_all = false;
+};
+
+void compare_sides(const CompareOptions& options) {
+  std::optional<OutputFile> json, markdown;
+  if (!options.json.empty()) json.emplace(options.json, options.force);
+  if (!options.markdown.empty()) markdown.emplace(options.markdown, options.force, ".md");
+  const Side before = read_side(options.before), after = read_side(options.after);
+  const Comparison comparison =
+      compare(before, after, options.lane == "counters" ? Lane::counters : Lane::all);
+  if (json) json->commit(json_text(comparison_json(comparison)));
+  if (markdown) markdown->commit(comparison_markdown(comparison));
+  std::fputs(comparison_text(comparison, options.show_all).c_str(), stdout);
+  if (const int status = exit_status(comparison.verdict()); status != 0) throw ExitStatus{status};
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Tell whether a program got faster or slower, truer or less true, from records of both.\n\n"
+      "  cscd compare before after                   two folders of records\n"
+      "  cscd compare old.json,old2.json new.json    several records of one program, with commas between\n"
+      "  cscd compare before after --lane counters   truth, counters and memory; no times\n\n"
+      "The verdict goes by truth first, then counters, then memory, then times. Truth is verification, "
+      "digests of\n"
+      "contacts, first times, and what the elementary tests missed or invented. Counters are compared "
+      "exactly. A\n"
+      "time has changed only where the interval over processes excludes no change, the change passes the "
+      "floors, and\n"
+      "all pairings of layouts agree in its sign. Times need six processes a side, measured in turns, as\n"
+      "scripts/bench_commits does; each line says which change it could have seen. Where no verdict about "
+      "times is\n"
+      "possible, the times of both sides are shown all the same, with the reason.\n\n"
+      "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest "
+      "is not worse.");
+  command->add_option("old", options->before, "records of the old program: files or folders, commas between")
+      ->required();
+  command->add_option("new", options->after, "records of the new program: the same")->required();
+  command->add_option("--lane", options->lane, "what is compared: all, or everything but times (counters)")
+      ->check(CLI::IsMember({"all", "counters"}))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "where the comparison goes as JSON; - is standard output");
+  command->add_option("--markdown", options->markdown, "where it goes as Markdown, for a pull request");
+  command->add_flag("--all", options->show_all, "show every finding and every time, scene by scene");
+  command->add_flag("--force", options->force, "replace files that exist");
+  command->callback([options] { compare_sides(*options); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/compare/side.h"
+#include "bench/compare/statistics/change_points.h"
+#include "bench/compare/statistics/statistics.h"
+
+// What this project took, commit by commit: one small JSON file a commit and kind of machine, which is never
+// rewritten.
+namespace cscd::bench {
+
+inline constexpr std::string_view kHistorySchema = "cscd.history/1";
+
+// Summarises the records of one commit: digests, counters, medians with intervals, environment. `committed`
+// is the commit's date as git prints it (%cI).
+nlohmann::ordered_json history_entry(const Side& side, const std::string& committed);
+
+// Where an entry belongs: FOLDER/MACHINE/DATE-COMMIT.json.
+std::filesystem::path history_file(const std::filesystem::path& folder, const nlohmann::ordered_json& entry);
+
+// One stage of one row of one scene on one machine, in order of the commits. All its points measured the
+// same: frames, elementary test, timed intervals, and the rows that took turns and so shared the caches.
+struct Course {
+  std::string machine, scene, row, stage;
+  nlohmann::ordered_json measured;  // digest, elementary, timed_intervals, rows
+  std::vector<std::string> commits, dates;
+  std::vector<Estimate> ms;
+  std::vector<std::string> answers;  // what the digests of all intervals come to
+  std::vector<ChangePoint> changes;
+};
+
+// Which courses are wanted; an empty name stands for all.
+struct CourseChoice {
+  std::string machine, scene, row, stage;
+};
+
+// Reads every entry below a folder. Throws InputError, naming the file, for one that is not of the schema,
+// and for a folder without entries.
+std::vector<Course> read_courses(const std::filesystem::path& folder, const CourseChoice& choice);
+
+nlohmann::ordered_json courses_json(const std::vector<Course>& courses);
+std::string courses_text(const std::vector<Course>& courses, bool every_point);
+
+}  // namespace cscd::bench

@@ -1,0 +1,71 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/output.h"
+#include "bench/compare/history.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+struct HistoryOptions {
+  std::string folder = "results/history", records, committed, json;
+  CourseChoice choice{"", "", "", "total"};
+  bool force = false;
+};
+
+void keep_entry(const HistoryOptions& options) {
+  if (options.committed.empty())
+    throw InputError(
+        "--keep: needs the commit's date; add --committed \"$(git show -s --format=%cI COMMIT)\"");
+  const nlohmann::ordered_json entry = history_entry(read_side(options.records), options.committed);
+  const std::filesystem::path file = history_file(options.folder, entry);
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  if (std::filesystem::exists(file, error))
+    throw InputError("history " + file.string() + ": is there, and a history is never rewritten");
+  OutputFile(file, false).commit(json_text(entry));
+  std::printf("kept: %s\n", file.string().c_str());
+}
+
+void history(const HistoryOptions& options) {
+  if (!options.records.empty()) return keep_entry(options);
+  const std::vector<Course> courses = read_courses(options.folder, options.choice);
+  if (courses.empty())
+    throw InputError("no entry of " + options.folder + " has such a row; see cscd history");
+  if (!options.json.empty()) OutputFile(options.json, options.force).commit(json_text(courses_json(courses)));
+  const bool chosen = !options.choice.row.empty() || !options.choice.scene.empty();
+  std::fputs(courses_text(courses, chosen).c_str(), stdout);
+}
+
+}  // namespace
+
+void add_history(CLI::App& app) {
+  auto options = std::make_shared<HistoryOptions>();
+  CLI::App* command = app.add_subcommand(
+      "history",
+      "Show what each row took, commit by commit, and where its level changed.\n\n"
+      "  cscd history                                        the changes of every row\n"
+      "  cscd history --scene hand --row drvbc_fast          every commit of this row\n"
+      "  cscd history --keep FOLDER --committed DATE         add an entry of the records in FOLDER\n\n"
+      "An entry is one small JSON file a commit and kind of machine, and is never rewritten. Changes of "
+      "level "
+      "are\n"
+      "found by penalised least squares on logarithms, exactly (optimal partitioning).");
+  command->add_option("folder", options->folder, "the folder of the entries")->capture_default_str();
+  command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
+  command->add_option("--scene", options->choice.scene, "of this scene alone");
+  command->add_option("--row", options->choice.row, "of this row alone");
+  command->add_option("--stage", options->choice.stage, "of this stage")->capture_default_str();
+  command->add_option("--keep", options->records,
+                      "add an entry of these records: files or folders, commas between");
+  command->add_option("--committed", options->committed, "the date of the commit, as git prints it with %cI");
+  command->add_option("--json", options->json, "where the courses go as JSON; - is standard output");
+  command->add_flag("--force", options->force, "replace that file if it exists");
+  command->callback([options] { history(*options); });
+}
+
+}  // namespace cscd::bench

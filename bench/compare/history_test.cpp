@@ -1,0 +1,85 @@
+#include "bench/compare/history.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/schema.h"
+#include "bench/compare/test_records.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+ordered_json entry_of(const std::string& commit, const std::string& committed, double factor,
+                      const std::vector<std::size_t>& timed_intervals = {0, 2}) {
+  std::vector<Record> records;
+  for (int i = 0; i < 3; ++i) {
+    records.push_back(test::small_record(commit, i));
+    records.back().timed_intervals = timed_intervals;
+    for (StrategyRecord& row : records.back().strategies)
+      for (auto& [stage, repetitions] : row.ms)
+        for (auto& repetition : repetitions)
+          for (double& ms : repetition) ms *= factor;
+  }
+  return history_entry(side_of(std::move(records), "a test"), committed);
+}
+
+TEST(History, KeepsWhatACommitTook) {
+  const ordered_json entry = entry_of("aaaaaaaaaaaaaaaa", "2026-11-25T10:00:00+00:00", 1);
+  EXPECT_EQ(schema_violation(entry, "history.schema.json"), "");
+  EXPECT_EQ(history_file("h", entry), fs::path("h/a-machine-2core/2026-11-25-aaaaaaaaaa.json"));
+  const ordered_json& row = entry["scenes"][0]["rows"][0];
+  EXPECT_EQ(row["counters"]["bvot"], 1000);
+  EXPECT_DOUBLE_EQ(row["ms"]["total"]["median"].get<double>(),
+                   (7.1 + 12.1) / 2);  // lowest deciles of two intervals
+  EXPECT_EQ(entry["scenes"][0]["processes"], 3);
+}
+
+TEST(History, RefusesRecordsOfNoCommit) {
+  Record dirty = test::small_record();
+  dirty.environment["dirty"] = true;
+  EXPECT_THROW(history_entry(side_of({dirty}, "a test"), "2026-11-25"), InputError);
+  Record failed = test::small_record();
+  failed.verification.strategies[0].failures = {"missing contact"};
+  EXPECT_THROW(history_entry(side_of({failed}, "a test"), "2026-11-25"), InputError);
+}
+
+TEST(History, FindsTheCommitThatChangedARow) {
+  const fs::path folder = fs::temp_directory_path() / ("cscd-history-test-" + std::to_string(getpid()));
+  fs::create_directories(folder / "m");
+  EXPECT_THROW(read_courses(folder, {}), InputError);
+  for (int i = 0; i < 8; ++i) {
+    const std::string commit = std::string(16, static_cast<char>('a' + i)),
+                      day = "2026-11-1" + std::to_string(i);
+    // Written in another order than committed, as later measurements of earlier commits are.
+    std::ofstream(folder / "m" / (std::to_string(9 - i) + ".json"))
+        << json_text(entry_of(commit, day + "T10:00:00+00:00", i < 5 ? 1 : 0.7));
+  }
+  const std::vector<Course> courses = read_courses(folder, {"", "hand", "slow", "traversal"});
+  ASSERT_EQ(courses.size(), 1u);
+  ASSERT_EQ(courses[0].changes.size(), 1u);
+  EXPECT_EQ(courses[0].commits[courses[0].changes[0].first], "ffffffffffffffff");
+  EXPECT_NEAR(courses[0].changes[0].ratio, 0.7, 1e-6);
+  EXPECT_NE(courses_text(courses, true).find("<- 1.43 times faster"), std::string::npos)
+      << courses_text(courses, true);
+  EXPECT_EQ(courses_json(courses)["courses"][0]["changes"][0]["commit"], "ffffffffffffffff");
+  // Times of other intervals, as a full record has, are no point of this course.
+  std::ofstream(folder / "m" / "full.json")
+      << json_text(entry_of("iiiiiiiiiiiiiiii", "2026-11-18T10:00:00+00:00", 3, {1, 3}));
+  const std::vector<Course> both = read_courses(folder, {"", "hand", "slow", "traversal"});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].commits.size(), 8u);
+  EXPECT_EQ(both[0].changes.size(), 1u);
+  EXPECT_EQ(both[1].commits.size(), 1u);
+  std::ofstream(folder / "m" / "other.json") << "{}";
+  EXPECT_THROW(read_courses(folder, {}), InputError);
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace cscd::bench

@@ -1,0 +1,69 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/output.h"
+#include "core/base/error.h"
+#include "scenes/hard/disturbance.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace hard = scenes::hard;
+
+struct HardCasesOptions {
+  std::string folder;
+  std::size_t queries = 1000;
+  std::uint64_t seed = 1;
+  double hardness = 0;
+  bool force = false;
+};
+
+void write_hard_cases(const HardCasesOptions& options) {
+  const std::filesystem::path folder = options.folder;
+  if (!std::filesystem::is_directory(folder))
+    throw InputError("output " + options.folder + ": is not a folder; make it first");
+  for (const hard::Family& family : hard::families())
+    for (const hard::Kind kind : {hard::Kind::vertex_face, hard::Kind::edge_edge}) {
+      const std::string name =
+          std::string(family.name) + (kind == hard::Kind::vertex_face ? "-vf.csv" : "-ee.csv");
+      OutputFile output(folder / name, options.force, ".csv");
+      std::vector<Query> queries;
+      std::size_t contacts = 0;
+      for (std::size_t i = 0; i < options.queries; ++i) {
+        Query& query = queries.emplace_back(
+            options.hardness > 0 ? hard::random_query(family, kind, options.hardness, i, options.seed)
+                                 : hard::suite_query(family, kind, i, options.seed));
+        query.truth = hard::in_contact(query, kind);
+        contacts += *query.truth;
+      }
+      output.commit(query_text(queries));
+      std::printf("%-28s %zu queries, %zu contacts\n", name.c_str(), queries.size(), contacts);
+    }
+}
+
+}  // namespace
+
+void add_hardcases(CLI::App& app) {
+  auto options = std::make_shared<HardCasesOptions>();
+  CLI::App* command = app.add_subcommand(
+      "hardcases",
+      "Write the hard elementary queries, with the referee's truth, in the public format (cscd "
+      "elementary).\n\n"
+      "  cscd hardcases --out FOLDER              the suite: on the lattice and some ulps off it\n"
+      "  cscd hardcases --out FOLDER --hardness 1e-9   off the lattice by that share of their size\n\n"
+      "Two files a family (cscd list families), FAMILY-vf.csv and FAMILY-ee.csv.");
+  command->add_option("--out", options->folder, "an existing folder")->required();
+  command->add_option("--queries", options->queries, "of each family and kind")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000'000));
+  command->add_option("--seed", options->seed, "the same seed gives the same queries")->capture_default_str();
+  command->add_option("--hardness", options->hardness, "the smaller, the harder; 0: the suite")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_flag("--force", options->force, "replace files that exist");
+  command->callback([options] { write_hard_cases(*options); });
+}
+
+}  // namespace cscd::bench

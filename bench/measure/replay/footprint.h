@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "bench/measure/record/record.h"
+#include "bench/measure/strategies/strategy_row.h"
+#include "bench/query/input/input.h"
+#include "core/detect/strategy.h"
+
+namespace cscd::bench {
+
+// A strategy made and measured while it was made and answered one interval twice.
+struct Made {
+  Prepared prepared;
+  Footprint footprint;  // without instructions
+  double make_ms = 0;   // before it answered
+};
+Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
+                   std::size_t interval);
+
+// Makes the strategy anew and runs it on the intervals, of which there is at least one.
+Footprint measure_footprint(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
+                            std::span<const std::size_t> intervals);
+
+}  // namespace cscd::bench

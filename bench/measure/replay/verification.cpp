@@ -1,0 +1,194 @@
+#include "bench/measure/replay/verification.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "bench/cli/output/progress.h"
+#include "bench/measure/replay/lead.h"
+#include "bench/measure/strategies/catalogue.h"
+
+namespace cscd::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
+
+// The reference with both tests: a contestant where it takes part in the pipeline `today`, which drops no
+// contact, else made for the occasion.
+class Verifier::Reference {
+ public:
+  Contestant own;
+  Contestant* used;
+
+  Reference(const Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
+            const ElementaryTest& timed) {
+    const Strategy* strategy = &complete_reference();
+    const auto row = std::find_if(contestants.begin(), contestants.end(), [&](const Contestant& c) {
+      return c.strategy == strategy && c.pipeline == Pipeline::today;
+    });
+    used = row != contestants.end() ? &*row : &own;
+    if (used == &own) own = std::move(make_contestants(input, {&strategy, 1}, exact, timed).front());
+  }
+};
+
+// A strategy with an elementary test of its own is compared, not judged: nothing is promised.
+class Verifier::OwnTest {
+ public:
+  explicit OwnTest(const Strategy& strategy) : strategy_(strategy) {}
+
+  void compare(const TriangleMesh& mesh, std::size_t interval, const ContactSet& truth,
+               const ContactSet& answer) {
+    accuracy_.add(compare_elementary(truth, answer));
+    for (const Difference& difference : differences(truth, answer)) {
+      if (listed_.size() == kListed) return;
+      listed_.push_back({{"interval", interval},
+                         {"kind", is_vertex_face(difference.pair) ? "vf" : "ee"},
+                         {"vertices", vertices(mesh, difference.pair)},
+                         {"said", time(difference.said)},
+                         {"true", time(difference.truth)}});
+    }
+  }
+  nlohmann::ordered_json json() const {
+    return {{"strategy", strategy_.name},
+            {"misses", accuracy_.misses},
+            {"false_alarms", accuracy_.false_alarms},
+            {"largest_time_error", accuracy_.largest_time_error},
+            {"differences", listed_}};
+  }
+
+ private:
+  static constexpr std::size_t kListed = 200;
+  static bool is_vertex_face(const FeaturePair& pair) { return pair.kind == FeaturePair::Kind::vertex_face; }
+  static std::vector<int> vertices(const TriangleMesh& mesh, const FeaturePair& pair) {
+    std::vector<VertexId> ids;
+    if (is_vertex_face(pair)) {
+      const Triangle& corner = mesh.corners(TriangleId{pair.b});
+      ids = {VertexId{pair.a}, corner[0], corner[1], corner[2]};
+    } else {
+      const Edge &a = mesh.ends(EdgeId{pair.a}), &b = mesh.ends(EdgeId{pair.b});
+      ids = {a[0], a[1], b[0], b[1]};
+    }
+    std::vector<int> out;
+    for (const VertexId id : ids) out.push_back(static_cast<int>(id));
+    return out;
+  }
+  static nlohmann::ordered_json time(const std::optional<double>& t) {  // null: apart
+    return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
+  }
+
+  const Strategy& strategy_;
+  Accuracy accuracy_;
+  nlohmann::ordered_json listed_ = nlohmann::ordered_json::array();
+};
+
+namespace {
+
+// Leaves the referee's answers to the pairs that both call contacts.
+void keep_shared(const ContactSet& truth, ContactSet& answer) {
+  ContactSet shared;
+  for (const Contact& contact : truth.contacts)
+    if (std::any_of(answer.contacts.begin(), answer.contacts.end(),
+                    [&](const Contact& said) { return said.pair == contact.pair; }))
+      shared.contacts.push_back(contact);
+  answer = std::move(shared);
+}
+
+bool promises(Guarantee guarantee, bool starts_embedded, const ContactSet& reference) {
+  if (reference.contacts.empty()) return false;
+  return guarantee == Guarantee::complete || (needs_embedded_start(guarantee) && starts_embedded);
+}
+
+void add(const Verification& judgement, bool promised, std::size_t interval, VerifiedStrategy& row) {
+  row.contacts_expected += judgement.reference_contacts;
+  row.contacts_found += judgement.found_contacts;
+  row.intervals_promised += promised;
+  if (!judgement.ok)
+    row.failures.push_back("interval " + std::to_string(interval) + ": " + judgement.failure);
+}
+
+}  // namespace
+
+Verifier::Verifier(Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
+                   const ElementaryTest& timed)
+    : input_(input),
+      contestants_(contestants),
+      reference_(std::make_unique<Reference>(input, contestants, exact, timed)),
+      embedding_(std::make_unique<EmbeddingTest>(input.mesh, input.reference)) {
+  record_.reference = reference_->used->strategy->name;
+  record_.elementary = exact.name;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    const Strategy& strategy = *contestants[c].strategy;
+    VerifiedStrategy& row = record_.strategies.emplace_back();
+    row.name = strategy.name;
+    row.guarantee = to_string(strategy.guarantee);
+    if (strategy.own_test) own_tests_.emplace(c, std::make_unique<OwnTest>(strategy));
+  }
+}
+
+Verifier::~Verifier() = default;
+
+bool Verifier::has_judged(std::size_t interval) const {
+  return reports_.contains(interval);
+}
+
+bool Verifier::starts_embedded(std::size_t interval) const {
+  return std::ranges::find(record_.unembedded, interval) == record_.unembedded.end();
+}
+
+const Report& Verifier::report(std::size_t contestant, std::size_t interval) const {
+  return reports_.at(interval)[contestant];
+}
+
+void Verifier::judge(std::span<const std::size_t> intervals) {
+  const Clock::time_point begin = Clock::now();
+  Progress progress("verifying " + input_.name, intervals.size());
+  for (const std::size_t interval : intervals) {
+    if (!has_judged(interval)) judge_one(interval);
+    progress.advance();
+  }
+  record_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+void Verifier::judge_one(std::size_t i) {
+  scenes::ClipInterval interval = input_.clip->load(i);
+  const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
+  const bool starts_embedded = embedding_->embedded(interval.motion.start());
+  if (!starts_embedded) record_.unembedded.push_back(i);
+
+  ContactSet truth, answer;
+  const Report expected = reference_->used->judged->detect({interval.motion, bones}, truth);
+  truth.sort();
+  if (!truth.contacts.empty()) record_.colliding.push_back(i);
+  std::vector<Report>& reports = reports_[i];
+  for (std::size_t c = 0; c < contestants_.size(); ++c) {
+    const Strategy& strategy = *contestants_[c].strategy;
+    const bool itself = &contestants_[c] == reference_->used;
+    lead_up(strategy, *contestants_[c].judged, *input_.clip, i);
+    interval = input_.clip->load(i);
+    bones = interval.bones ? &*interval.bones : nullptr;
+    reports.push_back(itself ? expected : contestants_[c].judged->detect({interval.motion, bones}, answer));
+    answer.sort();
+    if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
+      own->second->compare(input_.mesh, i, truth, answer);
+      keep_shared(truth, answer);
+    }
+    add(verify(truth, itself ? truth : answer, strategy.guarantee, starts_embedded),
+        promises(strategy.guarantee, starts_embedded, truth), i, record_.strategies[c]);
+  }
+  record_.accuracy_tests +=
+      reference_->used->timed->detect({interval.motion, bones}, answer).pairs.elementary_tests;
+  record_.accuracy.add(compare_elementary(truth, answer));
+}
+
+VerificationRecord Verifier::record() const {
+  VerificationRecord out = record_;
+  for (const auto& [c, own] : own_tests_) out.own_tests.push_back(own->json());
+  for (const auto& [interval, reports] : reports_) out.intervals.push_back(interval);
+  std::ranges::sort(out.unembedded);
+  std::ranges::sort(out.colliding);
+  return out;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,246 @@
+#include "bench/measure/replay/verification.h"
+
+#include <array>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "bench/measure/replay/timing.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "core/base/error.h"
+#include "core/detect/start/embedding.h"
+#include "scenes/random/random_interval.h"
+
+// The harness is tested by strategies that cheat: each must be caught before it gets a time.
+namespace cscd::bench {
+namespace {
+
+const ElementaryTest& exact() {
+  return elementary_test_named("exact");
+}
+const ElementaryTest& newton() {
+  return elementary_test_named("newton");
+}
+
+Input random_input(std::uint64_t seed) {
+  auto clip = std::make_unique<scenes::Clip>(scenes::make_random_interval(seed).clip);
+  TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count, "random interval");
+  std::optional<Rig> rig = scenes::rig_of(*clip);
+  const std::span<const Vec3> first = clip->frame(0).positions;
+  std::vector<Vec3> reference(first.begin(), first.end());
+  return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
+}
+
+// Starts embedded, and has contacts at different times.
+Input colliding_input() {
+  for (std::uint64_t seed = 1; seed < 1000; ++seed) {
+    Input input = random_input(seed);
+    const scenes::ClipInterval interval = input.clip->load(0);
+    if (!EmbeddingTest(input.mesh, input.reference).embedded(interval.motion.start())) continue;
+    ContactSet found;
+    complete_reference().make(input.setup(exact())).detector->detect({interval.motion}, found);
+    found.sort();
+    if (!found.contacts.empty() && found.contacts.front().time < found.contacts.back().time) return input;
+  }
+  throw std::logic_error("no random interval collides twice");
+}
+
+// Runs the reference and then spoils what it found.
+using Spoil = void (*)(const Setup& setup, int call, Report& report, ContactSet& found);
+class Saboteur : public Detector {
+ public:
+  Saboteur(const Setup& setup, Spoil spoil)
+      : setup_(setup), honest_(complete_reference().make(setup).detector), spoil_(spoil) {}
+  Report detect(const Step& step, ContactSet& out) override {
+    Report report = honest_->detect(step, out);
+    out.sort();
+    spoil_(setup_, ++call_, report, out);
+    return report;
+  }
+
+ private:
+  Setup setup_;
+  std::unique_ptr<Detector> honest_;
+  Spoil spoil_;
+  int call_ = 0;
+};
+
+template <Spoil spoil>
+Prepared sabotage(const Setup& setup) {
+  return {std::make_unique<Saboteur>(setup, spoil), {}};
+}
+
+void lose_first(const Setup&, int, Report&, ContactSet& found) {
+  const double first = found.contacts.front().time;
+  std::erase_if(found.contacts, [&](const Contact& contact) { return contact.time == first; });
+}
+void lose_last(const Setup&, int, Report&, ContactSet& found) {
+  found.contacts.pop_back();
+}
+void invent(const Setup&, int, Report&, ContactSet& found) {
+  found.contacts.push_back({FeaturePair::of(VertexId{0}, TriangleId{0}), Verdict::contact, 0});
+}
+void cull_more_when_timed(const Setup& setup, int, Report& report, ContactSet&) {
+  report.cull.pctp -= setup.elementary.name != exact().name;
+}
+void forget_once(const Setup& setup, int call, Report&, ContactSet& found) {
+  if (setup.elementary.name != exact().name && call == 3) found.contacts.pop_back();
+}
+void count_otherwise_once(const Setup& setup, int call, Report& report, ContactSet&) {
+  *report.cull.bvot += setup.elementary.name != exact().name && call == 3;
+}
+
+struct Outcome {
+  VerificationRecord verified;
+  std::optional<Unrepeatable> void_times;
+  std::vector<StrategyRecord> records;
+};
+
+Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
+  Input input = colliding_input();
+  const std::array rows = {&complete_reference(), &strategy};
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
+  Outcome outcome;
+  Verifier verifier(input, contestants, exact(), newton());
+  const std::vector<std::size_t> all = {0};
+  verifier.judge(all);
+  outcome.verified = verifier.record();
+  outcome.records.resize(contestants.size());
+  const WarmUp counted = warm_up(input, contestants, all, verifier, outcome.records);
+  outcome.void_times = counted.unrepeatable;
+  if (!outcome.void_times)
+    outcome.void_times =
+        time_contestants(input, contestants, {all, repetitions, 1}, verifier, counted, outcome.records);
+  return outcome;
+}
+
+std::vector<std::string> failures(Prepared (*make)(const Setup&), Guarantee guarantee) {
+  const Outcome outcome = judge({"saboteur", "test", guarantee, {}, make});
+  EXPECT_TRUE(outcome.verified.strategies[0].failures.empty());
+  EXPECT_EQ(outcome.verified.ok(), outcome.verified.strategies[1].failures.empty());
+  return outcome.verified.strategies[1].failures;
+}
+
+void lose_first_and_invent(const Setup& setup, int call, Report& report, ContactSet& found) {
+  lose_first(setup, call, report, found);
+  invent(setup, call, report, found);
+}
+
+// A strategy with an elementary test of its own does not fail; what it gets wrong is listed.
+TEST(Verification, OwnTestsAreComparedAndTimed) {
+  const Outcome outcome =
+      judge({"checker", "test", Guarantee::heuristic, {}, sabotage<lose_first_and_invent>, "checker", true});
+  EXPECT_TRUE(outcome.verified.ok());
+  EXPECT_FALSE(outcome.void_times);
+  ASSERT_EQ(outcome.verified.own_tests.size(), 1u);
+  const nlohmann::ordered_json& own = outcome.verified.own_tests[0];
+  EXPECT_EQ(own["strategy"], "checker");
+  EXPECT_GT(own["misses"], 0);
+  EXPECT_EQ(own["false_alarms"], 1);
+  ASSERT_EQ(own["differences"].size(), own["misses"].get<std::size_t>() + 1);
+  EXPECT_TRUE(own["differences"].front()["said"].is_null());
+  EXPECT_TRUE(own["differences"].front()["true"].is_number());
+  EXPECT_EQ(own["differences"].front()["vertices"].size(), 4u);
+  EXPECT_EQ(own["differences"].back()["said"], 0);
+  EXPECT_TRUE(own["differences"].back()["true"].is_null());
+  const VerifiedStrategy& row = outcome.verified.strategies[1];
+  EXPECT_EQ(row.contacts_found + own["misses"].get<std::uint64_t>(), row.contacts_expected);
+}
+
+TEST(Verification, HonestStrategiesPassAndAreTimed) {
+  for (const Strategy& strategy : strategies()) {
+    const Outcome outcome = judge(strategy);
+    EXPECT_TRUE(outcome.verified.ok()) << strategy.name;
+    EXPECT_FALSE(outcome.void_times) << strategy.name;
+    EXPECT_EQ(outcome.verified.strategies[1].intervals_promised,
+              strategy.guarantee == Guarantee::heuristic ? 0u : 1u)
+        << strategy.name;
+    EXPECT_EQ(outcome.verified.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
+    EXPECT_EQ(outcome.verified.colliding, std::vector<std::size_t>{0});
+    EXPECT_TRUE(outcome.records[1].ms.contains("streaming"));
+    for (const auto& [stage, repetitions] : outcome.records[1].ms) {
+      ASSERT_EQ(repetitions.size(), 3u) << stage;
+      for (const std::vector<double>& row : repetitions) EXPECT_EQ(row.size(), 1u) << stage;
+    }
+    EXPECT_EQ(outcome.records[1].counts.at("pctp").size(), 1u);
+    EXPECT_EQ(outcome.records[1].digests.size(), 1u);
+  }
+}
+
+TEST(Verification, LosingTheFirstContactFails) {
+  EXPECT_EQ(failures(sabotage<lose_first>, Guarantee::complete).size(), 1u);
+  EXPECT_EQ(failures(sabotage<lose_first>, Guarantee::first_contact).size(), 1u);
+  EXPECT_TRUE(failures(sabotage<lose_first>, Guarantee::heuristic).empty());
+}
+
+TEST(Verification, LosingALaterContactFailsOnlyTheComplete) {
+  EXPECT_EQ(failures(sabotage<lose_last>, Guarantee::complete).size(), 1u);
+  EXPECT_TRUE(failures(sabotage<lose_last>, Guarantee::first_contact).empty());
+}
+
+TEST(Verification, ContactsThatTheReferenceLacksFail) {
+  EXPECT_EQ(failures(sabotage<invent>, Guarantee::first_contact).size(), 1u);
+}
+
+TEST(Timing, CullingOtherwiseThanVerifiedVoidsTheTimes) {
+  const Outcome outcome =
+      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<cull_more_when_timed>});
+  EXPECT_TRUE(outcome.verified.ok());
+  ASSERT_TRUE(outcome.void_times);
+  EXPECT_EQ(outcome.void_times->contestant, 1u);
+}
+
+TEST(Timing, AnswersThatDifferBetweenRepetitionsVoidTheTimes) {
+  const Outcome contacts = judge({"saboteur", "test", Guarantee::complete, {}, sabotage<forget_once>});
+  ASSERT_TRUE(contacts.void_times);
+  EXPECT_EQ(contacts.void_times->contestant, 1u);
+  EXPECT_TRUE(
+      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<count_otherwise_once>}).void_times);
+}
+
+// Mutation: rows are not compared, so only intervals that were chosen for it are verified.
+TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
+  for (const bool loses_first : {true, false}) {
+    Input input = colliding_input();
+    const Strategy saboteur{"saboteur",
+                            "test",
+                            loses_first ? Guarantee::first_contact : Guarantee::complete,
+                            {},
+                            loses_first ? sabotage<lose_first> : sabotage<lose_last>};
+    const std::array rows = {&complete_reference(), &saboteur};
+    std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
+    Verifier verifier(input, contestants, exact(), exact());
+    std::vector<StrategyRecord> records(2);
+    const std::vector<std::size_t> all = {0};
+    const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+    EXPECT_EQ(counted.disagreeing, all);
+    EXPECT_TRUE(verifier.record().ok()) << "nothing was judged yet";
+    verifier.judge(counted.disagreeing);
+    EXPECT_EQ(verifier.record().strategies[1].failures.size(), 1u);
+  }
+}
+
+// Contacts that a row is free to leave out are no disagreement.
+TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
+  Input input = colliding_input();
+  const Strategy saboteur{"saboteur", "test", Guarantee::first_contact, {}, sabotage<lose_last>};
+  const std::array rows = {&complete_reference(), &saboteur};
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
+  Verifier verifier(input, contestants, exact(), exact());
+  std::vector<StrategyRecord> records(2);
+  EXPECT_TRUE(
+      warm_up(input, contestants, std::vector<std::size_t>{0}, verifier, records).disagreeing.empty());
+}
+
+TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
+  Input input = colliding_input();
+  const std::array rows = {&complete_reference()};
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
+  const Verifier verifier(input, contestants, exact(), newton());
+  std::vector<StrategyRecord> records(1);
+  const std::vector<std::size_t> all = {0};
+  const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+  EXPECT_THROW(time_contestants(input, contestants, {all, 3, 1}, verifier, counted, records), InputError);
+}
+
+}  // namespace
+}  // namespace cscd::bench

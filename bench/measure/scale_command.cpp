@@ -1,0 +1,338 @@
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/data.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/progress.h"
+#include "bench/cli/output/schema.h"
+#include "bench/measure/record/environment.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/studies/scale_study.h"
+#include "bench/measure/studies/scale_summary.h"
+#include "bench/query/options/model_options.h"
+#include "core/base/error.h"
+#include "scenes/catalog/resized.h"
+
+// How cost grows: with triangles, with the length of the step, with bones, threads and contacts (schema
+// cscd.scale/1). What is run unless told otherwise is data, scale_plan.json.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct ScaleOptions {
+  std::vector<std::string> studies, scenes, strategies;
+  std::vector<std::size_t> sizes;
+  std::vector<double> steps;
+  std::size_t intervals = 0, repetitions = 0, reference_limit = 250'000;
+  std::uint64_t seed = 2014;
+  int threads = 1;
+  bool smoke = false, largest = false, force = false;
+  std::string output;
+};
+
+// Returns the named rows that this build has, as packages may be missing. Throws InputError where the user
+// named a row that no build knows.
+std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_json& names) {
+  std::vector<StrategyRow> rows = rows_called(options.strategies);
+  if (!rows.empty()) return rows;
+  for (const std::string text : names)
+    for (const Strategy& strategy : strategies())
+      for (const StrategyRow row : {StrategyRow{&strategy}, StrategyRow{&strategy, true}})
+        if (row.name() == text) rows.push_back(row);
+  return rows;
+}
+
+// Makes the subjects of a run out of what was asked for and, where nothing was, of the plan in data. One
+// member a study, called scene by scene with what all subjects of the scene have in common.
+class Plan {
+ public:
+  explicit Plan(const ScaleOptions& options)
+      : options_(options),
+        data_(data_json("scale_plan.json").at(options.smoke ? "smoke" : "full")),
+        sizes_(or_planned(options.sizes, "sizes")),
+        steps_(or_planned(options.steps, "steps")) {
+    std::sort(steps_.begin(), steps_.end());
+    for (const double step : steps_)
+      if (step > 1 && step != std::floor(step))
+        throw InputError("--steps: " + ordered_json(step).dump() +
+                         " is neither a share of a frame nor a whole number of frames; round it");
+  }
+
+  // Scenes of which only the study of contacts is planned come last.
+  std::vector<std::string> scenes() const {
+    std::vector<std::string> names = or_planned(options_.scenes, "scenes");
+    if (!options_.scenes.empty()) return names;
+    for (const std::string name : data_.at("contact_scenes"))
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names;
+  }
+
+  // Returns the settings that all studies begin from.
+  ScaleSubject common(const std::string& scene) const {
+    ScaleSubject subject;
+    subject.scene = scene;
+    subject.steps = {{scene}};
+    subject.triangles = data_.at("other_triangles");
+    subject.repetitions = or_planned(options_.repetitions, "repetitions");
+    subject.reference_limit = options_.reference_limit;
+    subject.threads = options_.threads;
+    return subject;
+  }
+
+  void size(ScaleSubject subject) {
+    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("size_strategies"));
+    std::vector<std::size_t> sizes = sizes_;
+    if (options_.largest)
+      for (const std::size_t size : data_.at("largest")) sizes.push_back(size);
+    std::sort(sizes.begin(), sizes.end());
+    for (const std::size_t size : sizes) subject.triangles = size, add(subject);
+  }
+  void step(ScaleSubject subject) {
+    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("step_strategies"));
+    subject.steps.clear();
+    for (const double step : steps_) subject.steps.push_back({subject.scene, step});
+    add(subject);
+  }
+  void bones(ScaleSubject subject) {
+    if (!planned_for("bone_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("bone_strategies"));
+    for (const std::size_t bones : data_.at("bones")) subject.bones = bones, add(subject);
+  }
+  void threads(ScaleSubject subject) {
+    if (!planned_for("thread_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("thread_strategies"));
+    subject.triangles = data_.at("thread_triangles");
+    for (const int threads : data_.at("threads"))
+      if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
+        subject.threads = threads, add(subject);
+  }
+  void contacts(ScaleSubject subject) {
+    if (!planned_for("contact_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("contact_strategies"));
+    subject.recorded = true;
+    subject.triangles = 0;
+    subject.steps.push_back({subject.scene + "_contact"});
+    add(subject, "contact_intervals");
+  }
+
+  std::vector<ScaleSubject> take() { return std::move(all_); }
+
+ private:
+  template <class T>
+  std::vector<T> or_planned(const std::vector<T>& given, const char* key) const {
+    return given.empty() ? data_.at(key).get<std::vector<T>>() : given;
+  }
+  std::size_t or_planned(std::size_t given, const char* key) const {
+    return given > 0 ? given : data_.at(key).get<std::size_t>();
+  }
+  bool planned_for(const char* key, const std::string& scene) const {
+    return std::ranges::find(data_.at(key), ordered_json(scene)) != data_.at(key).end();
+  }
+  void add(ScaleSubject subject, const char* intervals = "intervals") {
+    // A variant with contacts may be shorter than its scene.
+    std::size_t frames = scenes::load_scene(subject.scene).frames;
+    for (const ScaleStep& step : subject.steps)
+      if (step.scene != subject.scene) frames = std::min(frames, scenes::load_scene(step.scene).frames);
+    subject.starts =
+        spread_starts(frames, or_planned(options_.intervals, intervals), subject.steps.back().frames);
+    all_.push_back(std::move(subject));
+  }
+
+  const ScaleOptions& options_;
+  const ordered_json data_;
+  std::vector<std::size_t> sizes_;
+  std::vector<double> steps_;
+  std::vector<ScaleSubject> all_;
+};
+
+constexpr struct {
+  const char* name;
+  void (Plan::*add)(ScaleSubject);
+} kStudies[] = {{"size", &Plan::size},
+                {"step", &Plan::step},
+                {"bones", &Plan::bones},
+                {"threads", &Plan::threads},
+                {"contacts", &Plan::contacts}};
+
+std::string study_names() {
+  std::string names;
+  for (const auto& study : kStudies) names += (names.empty() ? "" : ", ") + std::string(study.name);
+  return names;
+}
+
+// Returns the subjects of a full run, or of a small one.
+std::vector<ScaleSubject> planned(const ScaleOptions& options) {
+  for (const std::string& study : options.studies)
+    if (std::ranges::find(kStudies, study, [](const auto& s) { return std::string(s.name); }) ==
+        std::end(kStudies))
+      throw InputError("--study " + study + ": is not known; choose among " + study_names());
+  Plan plan(options);
+  for (const std::string& scene : plan.scenes())
+    for (const auto& study : kStudies) {
+      if (!options.studies.empty() && std::ranges::find(options.studies, study.name) == options.studies.end())
+        continue;
+      ScaleSubject subject = plan.common(scene);
+      subject.study = study.name;
+      (plan.*study.add)(std::move(subject));
+    }
+  return plan.take();
+}
+
+// Queries that will be asked, weighed by triangles: about what a run costs.
+double estimated_minutes(std::span<const ScaleSubject> all) {
+  constexpr double kMicrosecondsATriangle = 80, kSecondsOnce = 1;
+  double seconds = 0;
+  for (const ScaleSubject& subject : all) {
+    const scenes::Scene scene = scenes::load_scene(subject.scene);
+    const auto triangles =
+        static_cast<double>(subject.triangles > 0 ? subject.triangles : scenes::triangle_count(scene));
+    const auto intervals = static_cast<double>(subject.steps.size() * subject.starts.size());
+    seconds += kSecondsOnce + kMicrosecondsATriangle * 1e-6 * triangles * intervals;
+  }
+  return seconds / 60;
+}
+
+std::vector<std::string> command_line(const ScaleOptions& o, std::span<const ScaleSubject> all) {
+  std::vector<std::string> words = {"cscd", "scale"};
+  const auto add = [&](const char* name, const auto& values) {
+    std::string text;
+    for (const auto& value : values) {
+      const std::string word = ordered_json(value).dump();
+      text += (text.empty() ? "" : ",") + (word.front() == '"' ? word.substr(1, word.size() - 2) : word);
+    }
+    if (!text.empty()) words.insert(words.end(), {name, text});
+  };
+  if (o.smoke) words.push_back("--smoke");
+  if (o.largest) words.push_back("--largest");
+  add("--study", o.studies);
+  add("--scene", o.scenes);
+  add("--sizes", o.sizes);
+  add("--steps", o.steps);
+  add("--strategy", o.strategies);
+  if (o.intervals > 0) add("--intervals", std::vector{o.intervals});
+  add("--repetitions", std::vector{all.front().repetitions});
+  add("--reference-up-to", std::vector{o.reference_limit});
+  add("--seed", std::vector{o.seed});
+  add("--threads", std::vector{o.threads});
+  return words;
+}
+
+void print(const ordered_json& subject) {
+  std::printf("%s %s: %zu triangles, %zu bones, threads: %d%s\n",
+              subject.at("study").get<std::string>().c_str(), subject.at("scene").get<std::string>().c_str(),
+              subject.at("triangles").get<std::size_t>(), subject.at("bones").get<std::size_t>(),
+              subject.at("threads").get<int>(), subject.at("ok") ? "" : ", NOT VERIFIED");
+  for (const ordered_json& row : subject.at("left_out")) {
+    const std::string why = row.at("why");  // what follows a colon is about single triangles
+    std::printf("  left out: %s, because %s\n", row.at("name").get<std::string>().c_str(),
+                why.substr(0, why.find(':')).c_str());
+  }
+  for (const ordered_json& step : subject.at("steps")) {
+    for (const ordered_json& failure : step.at("verified").at("failures"))
+      std::printf("  %s\n", failure.get<std::string>().c_str());
+    std::printf("  %s, step %-5s %zu of %zu collide:", step.at("scene").get<std::string>().c_str(),
+                step.at("step").dump().c_str(), step.at("colliding").get<std::size_t>(),
+                step.at("starts").size());
+    for (const ordered_json& row : step.at("strategies"))
+      if (row.contains("ms"))
+        std::printf("  %s %.2f ms", row.at("name").get<std::string>().c_str(),
+                    row.at("ms").at("total").get<double>());
+    std::printf("\n");
+  }
+  std::fflush(stdout);
+}
+
+void run_scale(const ScaleOptions& options) {
+  const std::vector<ScaleSubject> all = planned(options);
+  if (all.empty()) throw InputError("--study, --scene: leave nothing to measure; name a scene of the study");
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output.emplace(options.output, options.force);
+  std::printf("%zu surfaces; about %.1f minutes on an idle machine\n", all.size(), estimated_minutes(all));
+  std::fflush(stdout);
+
+  std::mt19937_64 random(options.seed);
+  ordered_json subjects = ordered_json::array();
+  const ordered_json where = environment();  // with the load before the work
+  Progress progress("scale", all.size());
+  bool ok = true;
+  for (const ScaleSubject& subject : all) {
+    subjects.push_back(measure_subject(subject, random));
+    ok = ok && subjects.back().at("ok");
+    print(subjects.back());
+    progress.advance();
+  }
+  const ordered_json record = {{"schema", "cscd.scale/1"},
+                               {"environment", where},
+                               {"command", command_line(options, all)},
+                               {"seed", options.seed},
+                               {"smoke", options.smoke},
+                               {"ok", ok},
+                               {"fits", fits(subjects)},
+                               {"step_ratios", step_ratios(subjects)},
+                               {"contact_ratios", contact_ratios(subjects)},
+                               {"subjects", std::move(subjects)}};
+  if (const std::string violation = schema_violation(record, "scale.schema.json"); !violation.empty())
+    throw std::logic_error("the record does not follow its schema: " + violation);
+  if (output) output->commit(json_text(record));
+  if (!ok) throw kVerificationFailed;
+}
+
+}  // namespace
+
+void add_scale(CLI::App& app) {
+  auto options = std::make_shared<ScaleOptions>();
+  CLI::App* command = app.add_subcommand(
+      "scale",
+      "Measure how cost grows: with triangles, with the length of the step, with bones, with threads, with\n"
+      "contacts.\n\n"
+      "  cscd scale --json scale.json\n"
+      "  cscd scale --smoke\n"
+      "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
+      "size     the scenes with other numbers of triangles in the same motion, and memory a triangle\n"
+      "step     intervals between frames that lie further apart, or nearer\n"
+      "bones    chains of bones merged or cut, on the same surface\n"
+      "threads  the same surface on one thread and more, up to those of the machine\n"
+      "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n\n"
+      "Every answer is held against the complete reference before anything is timed; on meshes above\n"
+      "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
+      "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
+  command->add_option("--study", options->studies, study_names() + ", with commas; default all")
+      ->delimiter(',');
+  command
+      ->add_option("--scene", options->scenes, "scenes with commas; default the six, and cloth for contacts")
+      ->delimiter(',');
+  command->add_option("--sizes", options->sizes, "numbers of triangles, about")
+      ->delimiter(',')
+      ->check(CLI::Range(500, 20'000'000));
+  command->add_flag("--largest", options->largest, "775 thousand and 3.1 million triangles too");
+  command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1000.0));
+  command->add_option("--strategy", options->strategies, "strategies with commas; default by study")
+      ->delimiter(',');
+  command->add_option("--intervals", options->intervals, "of each scene, spread evenly")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--repetitions", options->repetitions, "of each interval's timing")
+      ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--reference-up-to", options->reference_limit,
+                   "triangles up to which the reference answers and is timed on every interval")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "of the order of the strategies")->capture_default_str();
+  add_threads_option(*command, options->threads);
+  command->add_flag("--smoke", options->smoke, "small surfaces, in seconds; times mean nothing");
+  command->add_option("--json", options->output, "where the record goes");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->callback([options] { run_scale(*options); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/measure/strategies/strategy_row.h"
+#include "bench/query/input/input.h"
+
+// The input of the study of growing work: one surface, prepared once, in intervals of its own or of other
+// motions.
+namespace cscd::bench {
+
+// Intervals that are alike.
+struct ScaleStep {
+  std::string scene;  // of whose motion they are
+  double frames = 1;  // a whole number of frame steps, or a share of one
+};
+
+struct ScaleSubject {
+  std::string study;      // size, step, bones, threads or contacts
+  std::string scene;      // whose surface and bones these are
+  bool recorded = false;  // each step as its scene's clip holds it; else posed anew from the subject's scene
+  std::size_t triangles = 0;        // asked for, of a posed one; 0 for the scene's own
+  std::size_t bones = 0;            // of the chain, of a posed one; 0 for the scene's own
+  std::vector<ScaleStep> steps;     // none shorter than the one before
+  std::vector<std::size_t> starts;  // frames at which intervals start
+  std::vector<StrategyRow> rows;
+  std::size_t repetitions = 5;
+  int threads = 1;  // for the strategies that can share their work
+  std::size_t reference_limit =
+      0;  // triangles above which the complete reference answers one interval a step
+};
+
+// The surface at rest, and all intervals of its first step, then those of the next.
+struct ScaleInput {
+  Input input;
+  double build_ms;
+};
+
+// Throws InputError for a scene that a subject cannot be made of.
+ScaleInput scale_input(const ScaleSubject& subject);
+
+// So many frames, spread evenly, from each of which the longest step stays inside the clip. Throws InputError
+// where there is no room.
+std::vector<std::size_t> spread_starts(std::size_t frames, std::size_t count, double longest_step);
+
+}  // namespace cscd::bench

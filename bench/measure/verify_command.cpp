@@ -1,0 +1,52 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/progress.h"
+#include "bench/measure/replay/random_verification.h"
+#include "bench/measure/strategies/catalogue.h"
+
+namespace cscd::bench {
+
+void add_verify(CLI::App& app) {
+  struct Options {
+    RandomVerification plan;
+    std::vector<std::string> strategies;
+    std::string folder = ".";
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Hold every strategy to its guarantee on random small noisy meshes, the exact referee judging.\n\n"
+      "  cscd verify --intervals 10000\n"
+      "  cscd verify --intervals 10000 --strategy \"drvbc_fast,drvbc_fast --first\"\n\n"
+      "\"STRATEGY --first\" looks for the earliest contact alone.\n\n"
+      "A failing interval is written as a point cache that `cscd query` replays. Exit status 1 if there is "
+      "one.");
+  command->add_option("--intervals", options->plan.intervals, "how many")->capture_default_str();
+  command
+      ->add_option("--strategy", options->strategies,
+                   "strategies or groups of them, with commas between; default all")
+      ->delimiter(',');
+  command->add_option("--seed", options->plan.first_seed, "the first interval's seed; the next ones count up")
+      ->capture_default_str();
+  command
+      ->add_option("--brute-every", options->plan.brute_every, "all pairs as the reference for every so many")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--failures", options->folder, "folder for failing intervals")->capture_default_str();
+  command->callback([options] {
+    std::vector<StrategyRow> rows = rows_called(options->strategies);
+    if (rows.empty()) rows = rows_of(strategies());
+    Progress progress("verify", options->plan.intervals);
+    const RandomSummary summary =
+        verify_random(options->plan, rows, [&](std::size_t done) { progress.set(done); });
+    std::printf("%s", describe(summary).c_str());
+    for (const RandomFailure& failure : summary.failures)
+      std::printf("FAILED %s\n", write_failure(failure, options->folder).c_str());
+    if (!summary.failures.empty()) throw kVerificationFailed;
+  });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string_view>
+
+#include "bench/query/input/input.h"
+#include "core/session/session.h"
+
+namespace cscd::bench {
+
+enum class IntervalVerdict {
+  clear,                // nothing crosses at the start, and nothing touches
+  touches,              // nothing crosses at the start, and something touches
+  intersects_at_start,  // triangles cross at the start
+  undecided  // nothing crosses, and an inexact elementary test could not tell whether something touches
+};
+std::string_view to_string(IntervalVerdict verdict);
+
+// The answer to one interval of a clip.
+struct IntervalAnswer : StepAnswer {
+  std::size_t index = 0;
+  IntervalVerdict verdict = IntervalVerdict::clear;
+  double load_ms = 0;  // what it took to read both frames, outside of `wall_ms`
+};
+
+using AnswerOptions = SessionOptions;
+
+// Answers the intervals of an input, best in growing order (see Session).
+class Answerer {
+ public:
+  // Prepares the strategy. What the input says is ignored is no part of answers. Throws InputError where the
+  // input lacks what the strategy needs, where options do not go together, and where too many triangles cross
+  // at rest. `input` must outlive it.
+  Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+           const AnswerOptions& options);
+
+  IntervalAnswer answer(std::size_t interval);
+
+  // Returns what preparing the strategy has found out; empty where it saves nothing.
+  std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
+  // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
+  double preparation_ms() const { return session_.preparation_ms(); }
+  // How many triangles the preparation of the input did not know.
+  std::size_t new_triangles() const { return session_.new_triangles(); }
+  // The triangles that cross at rest. They are left out of answers unless the options keep them.
+  const Crossings& rest_crossings() const { return session_.rest_crossings(); }
+  int threads() const { return session_.threads(); }
+
+ private:
+  Input& input_;
+  Session session_;
+};
+
+}  // namespace cscd::bench

@@ -1,0 +1,168 @@
+#include "bench/query/answer/answer_json.h"
+
+#include <algorithm>
+
+#include "bench/cli/output/report_json.h"
+#include "core/detect/contact_geometry.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+template <class Id>
+int number(Id id) {
+  return static_cast<int>(id);
+}
+
+std::vector<VertexId> side_vertices(const TriangleMesh& mesh, const FeaturePair& pair, bool second) {
+  if (pair.kind == FeaturePair::Kind::edge_edge) {
+    const Edge& ends = mesh.ends(EdgeId{second ? pair.b : pair.a});
+    return {ends[0], ends[1]};
+  }
+  if (!second) return {VertexId{pair.a}};
+  const Triangle& corners = mesh.corners(TriangleId{pair.b});
+  return {corners[0], corners[1], corners[2]};
+}
+
+// A triangle with these vertices that the file holds: one that fills a hole has no numbers there.
+TriangleId source_triangle(const Input& input, const FeaturePair& pair, bool second, TriangleId otherwise) {
+  if (pair.kind == FeaturePair::Kind::vertex_face && second) return otherwise;
+  const TriangleMesh& mesh = input.mesh;
+  const std::span<const TriangleId> around = pair.kind == FeaturePair::Kind::vertex_face
+                                                 ? mesh.triangles_at(VertexId{pair.a})
+                                                 : mesh.triangles_at(EdgeId{second ? pair.b : pair.a});
+  const auto known = std::find_if(around.begin(), around.end(),
+                                  [&](TriangleId t) { return input.sources->triangle[+t].part >= 0; });
+  return known == around.end() ? otherwise : *known;
+}
+
+json source_json(const Input& input, const FeaturePair& pair, bool second, TriangleId triangle) {
+  if (!input.sources || !input.import) return nullptr;
+  triangle = source_triangle(input, pair, second, triangle);
+  const scenes::SourceMap::Corners& from = input.sources->triangle[+triangle];
+  if (from.part < 0) return nullptr;
+  const scenes::ImportReport::Part& part = input.import->parts[static_cast<std::size_t>(from.part)];
+  json vertices = json::array();
+  const Triangle& corners = input.mesh.corners(triangle);
+  for (const VertexId vertex : side_vertices(input.mesh, pair, second)) {
+    const auto corner = std::find(corners.begin(), corners.end(), vertex);
+    vertices.push_back(from.vertex[static_cast<std::size_t>(corner - corners.begin())]);
+  }
+  json out = {{"part", from.part}, {"mesh", nullptr}, {"primitive", nullptr}, {"vertices", vertices}};
+  if (part.mesh >= 0) out["mesh"] = part.mesh;
+  if (part.primitive >= 0) out["primitive"] = part.primitive;
+  return out;
+}
+
+json side_json(const Input& input, const SurfaceNames& names, const FeaturePair& pair, bool second) {
+  const TriangleId triangle = names.triangle_of(pair, second);
+  json out = {{"part", names.part_of(triangle)}, {"bone", nullptr}};
+  const std::string bone = names.bone_of(side_vertices(input.mesh, pair, second).front());
+  if (!bone.empty()) out["bone"] = bone;
+  if (input.import) out["source"] = source_json(input, pair, second, triangle);
+  return out;
+}
+
+json contact_json(const Input& input, const SurfaceNames& names, const Contact& contact,
+                  const Motion& motion) {
+  json vertices = json::array();
+  for (const VertexId vertex : vertices_of(input.mesh, contact.pair)) vertices.push_back(number(vertex));
+  const bool face = contact.pair.kind == FeaturePair::Kind::vertex_face;
+  json out = {{"kind", face ? "vf" : "ee"}, {"vertices", vertices}, {"time", contact.time}};
+  if (face) {
+    out["vertex"] = contact.pair.a;
+    out["triangle"] = contact.pair.b;
+  }
+  if (contact.verdict != Verdict::contact) return out;
+  const ContactGeometry geometry = contact_geometry(input.mesh, motion, contact.pair, contact.time);
+  out["point"] = vector_json(geometry.point);
+  out["normal"] = geometry.normal ? vector_json(*geometry.normal) : json();
+  out["relative_speed"] = geometry.relative_speed ? json(*geometry.relative_speed) : json();
+  json weights = json::array();
+  for (int i = 0; i < geometry.weight_count; ++i)
+    weights.push_back(geometry.weights[static_cast<std::size_t>(i)]);
+  out[face ? "barycentric" : "edge_parameters"] = weights;
+  out["first"] = side_json(input, names, contact.pair, false);
+  out["second"] = side_json(input, names, contact.pair, true);
+  return out;
+}
+
+}  // namespace
+
+std::optional<double> second_of(const Input& input, const ClipMoment& moment) {
+  if (!input.import) return std::nullopt;
+  const std::size_t frames = input.clip->frame_count();
+  const double from = second_of_frame(*input.import, moment.interval, frames);
+  const double to = second_of_frame(*input.import, moment.interval + 1, frames);
+  return (1 - moment.time) * from + moment.time * to;
+}
+
+double frame_of(const Input& input, const ClipMoment& moment) {
+  const std::optional<double> seconds = second_of(input, moment);
+  return seconds ? frame_at(*input.import, *seconds) : static_cast<double>(moment.interval) + moment.time;
+}
+
+json moment_json(const Input& input, const ClipMoment& moment) {
+  const std::optional<double> seconds = second_of(input, moment);
+  return {{"interval", moment.interval},
+          {"time", moment.time},
+          {"frame", frame_of(input, moment)},
+          {"seconds", seconds ? json(*seconds) : json()}};
+}
+
+json interval_json(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
+                   const Motion& motion, std::size_t most_start_pairs) {
+  json contacts = json::array(), undecided = json::array(), start_pairs = json::array(), collides;
+  for (const Contact& contact : answer.found.contacts)
+    (contact.verdict == Verdict::contact ? contacts : undecided)
+        .push_back(contact_json(input, names, contact, motion));
+  for (std::size_t i = 0; i < std::min(most_start_pairs, answer.start.pairs.size()); ++i)
+    start_pairs.push_back({number(answer.start.pairs[i].first), number(answer.start.pairs[i].second)});
+  if (answer.verdict != IntervalVerdict::undecided) collides = answer.verdict != IntervalVerdict::clear;
+  const std::optional<double> time = answer.time();
+  json out = {{"index", answer.index},
+              {"verdict", to_string(answer.verdict)},
+              {"collides", collides},
+              {"time", time ? json(*time) : json()},
+              {"starts_embedded", answer.starts_embedded},
+              {"start_pairs", std::move(start_pairs)},
+              {"start_pairs_total", answer.start.total},
+              {"left_out", {{"start_pairs", answer.rest_pairs}, {"contacts", answer.rest_contacts}}},
+              {"ignored",
+               {{"start_pairs", answer.ignored_pairs.size()}, {"contacts", answer.ignored.contacts.size()}}},
+              {"contacts", std::move(contacts)},
+              {"undecided", std::move(undecided)},
+              {"strategy", answer.strategy->name},
+              {"proven", answer.proven},
+              {"counts", counts_json(answer.report)},
+              {"ms", milliseconds_json(answer.report.ms)}};
+  out["ms"]["embedding"] = answer.embedding_ms;
+  out["ms"]["load"] = answer.load_ms;
+  out["ms"]["wall"] = answer.wall_ms;
+  const json start = moment_json(input, {answer.index, 0});
+  out["frame"] = start["frame"];
+  out["seconds"] = start["seconds"];
+  return out;
+}
+
+json rest_json(const Input& input, const SurfaceNames& names, const Crossings& rest, bool left_out) {
+  json parts = json::array();
+  for (const auto& [pair, count] : pairs_by_part(names, input.mesh, rest))
+    parts.push_back({{"first", pair.first}, {"second", pair.second}, {"pairs", count}});
+  return {{"pairs", rest.total}, {"left_out", left_out}, {"parts", std::move(parts)}};
+}
+
+json ignored_json(const Input& input) {
+  if (!input.ignored) return nullptr;
+  json pairs = json::array(), neighbours;
+  for (const auto& [first, second] : input.ignored->names) pairs.push_back({first, second});
+  if (input.ignored->neighbours) neighbours = *input.ignored->neighbours;
+  return {{"pairs", std::move(pairs)}, {"neighbours", std::move(neighbours)}};
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,256 @@
+#include "bench/query/exchange/export_files.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/progress.h"
+#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/answer_json.h"
+#include "bench/query/view/touched.h"
+#include "core/base/error.h"
+#include "core/detect/contact_geometry.h"
+#include "scenes/base/output_target.h"
+#include "scenes/exchange/mesh_cache.h"
+#include "scenes/exchange/surface_file.h"
+#include "scenes/exchange/usd_file.h"
+#include "scenes/exchange/vtk_file.h"
+#include "scenes/export/baked_glb.h"
+#include "scenes/export/skinned_scene.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Files that are opened together before the work, so that none appears if one cannot.
+class Files {
+ public:
+  explicit Files(bool force) : force_(force) {}
+  std::size_t add(const fs::path& path) {
+    paths_.push_back(path);
+    files_.push_back(std::make_unique<Target>(Target{find_output_target(path, force_)}));
+    if (files_.back()->target.is_stream)
+      throw InputError("output " + path.string() +
+                       ": is a device or a pipe, and this format needs an ordinary file; choose one");
+    return paths_.size() - 1;
+  }
+  void write(std::size_t file, std::string_view content) {
+    UnfinishedFile out(files_[file]->target.path, force_);
+    out.write(content);
+    out.finish();
+  }
+  std::string name(std::size_t file) const { return paths_[file].filename().string(); }
+  std::size_t count() const { return paths_.size(); }
+
+ private:
+  struct Target {
+    OutputTarget target;
+  };
+  bool force_;
+  std::vector<fs::path> paths_;
+  std::vector<std::unique_ptr<Target>> files_;
+};
+
+double fps_of(const Input& input) {
+  return input.import ? input.import->fps : scenes::kExportedFps;
+}
+
+// NAME.0012.obj for frame 12 of NAME.obj; the number has as many digits as the last frame needs, at least
+// four.
+fs::path numbered(const fs::path& output, std::size_t frame, std::size_t frames,
+                  const std::string& extension) {
+  std::string number = std::to_string(frame);
+  const std::size_t digits = std::max<std::size_t>(4, std::to_string(frames - 1).size());
+  number.insert(0, digits - number.size(), '0');
+  return output.parent_path() / (output.stem().string() + "." + number + extension);
+}
+
+void export_sequence(Input& input, const fs::path& output, const std::string& format, bool force) {
+  const std::size_t frames = input.clip->frame_count();
+  Files files(force);
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, format));
+  for (std::size_t f = 0; f < frames; ++f) {
+    const std::span<const Vec3> positions = input.clip->load_frame(f).positions;
+    files.write(f, format == ".obj" ? scenes::to_obj(positions, input.mesh.triangles())
+                                    : scenes::to_ply(positions, input.mesh.triangles()));
+  }
+  std::printf("%s to %s", files.name(0).c_str(), files.name(frames - 1).c_str());
+}
+
+void export_mesh_cache(Input& input, const fs::path& output, const std::string& format, bool force) {
+  const auto kind = format == ".pc2" ? scenes::MeshCacheFormat::pc2 : scenes::MeshCacheFormat::mdd;
+  const std::size_t frames = input.clip->frame_count();
+  Files files(force);
+  const std::size_t cache = files.add(output), faces = files.add(fs::path(output).replace_extension(".obj"));
+  std::string bytes = scenes::mesh_cache_head(kind, input.mesh.vertex_count(), frames, fps_of(input));
+  for (std::size_t f = 0; f < frames; ++f)
+    bytes += scenes::mesh_cache_frame(kind, input.clip->load_frame(f).positions);
+  files.write(faces, scenes::to_obj(input.reference, input.mesh.triangles()));
+  files.write(cache, bytes);
+  std::printf("%s, faces in %s", output.string().c_str(), files.name(faces).c_str());
+}
+
+// What is known about the triangles in one interval. [triangles] each, and [contacts].
+struct IntervalMarks {
+  std::vector<float> touches, crosses;
+  // Empty without observers. The clusters are those of the covers of drvbc_fast; -1 where there is none.
+  std::vector<float> cluster, positive, second_cover, third_cover, patch;
+  std::vector<Vec3> points;
+  std::vector<float> time, kind, normal;  // kind: 0 vertex and face, 1 two edges
+};
+
+// Answers the intervals of an input as cscd query does by default.
+class Marker {
+ public:
+  explicit Marker(Input& input)
+      : input_(input),
+        strategy_(default_strategy(input)),
+        elementary_(elementary_test_named("filtered_exact")),
+        answerer_(prepared_input(input, strategy_), strategy_, elementary_, {}),
+        observer_(strategy_.make(input.setup(elementary_))) {}
+
+  IntervalMarks mark(std::size_t interval) {
+    IntervalMarks marks;
+    const std::size_t triangles = input_.mesh.triangle_count();
+    marks.touches.resize(triangles);
+    marks.crosses.resize(triangles);
+    const IntervalAnswer answer = answerer_.answer(interval);
+    const scenes::ClipInterval moving = input_.clip->load(interval);
+    std::vector<bool> touched(triangles);
+    for (const Contact& contact : answer.found.contacts) {
+      if (contact.verdict != Verdict::contact) continue;
+      mark_touched(input_.mesh, contact.pair, touched);
+      const ContactGeometry geometry =
+          contact_geometry(input_.mesh, moving.motion, contact.pair, contact.time);
+      marks.points.push_back(geometry.point);
+      marks.time.push_back(static_cast<float>(contact.time));
+      marks.kind.push_back(contact.pair.kind == FeaturePair::Kind::vertex_face ? 0 : 1);
+      const Vec3 normal = geometry.normal.value_or(Vec3::Zero());
+      for (int axis = 0; axis < 3; ++axis) marks.normal.push_back(static_cast<float>(normal[axis]));
+    }
+    for (std::size_t t = 0; t < triangles; ++t) marks.touches[t] = touched[t];
+    for (const CrossingPair& pair : answer.start.pairs)
+      marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
+    ContactSet ignored;
+    observer_.detector->detect({moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr},
+                               ignored);
+    const RadialView view = observer_.detector->radial_view();
+    marks.cluster.assign(view.cluster.begin(), view.cluster.end());
+    marks.positive.assign(view.positive.begin(), view.positive.end());
+    marks.patch.assign(view.patch.begin(), view.patch.end());
+    std::vector<float>* const covers[] = {&marks.second_cover, &marks.third_cover};
+    for (std::size_t c = 0; c < std::size(covers); ++c)
+      if (c < view.further_covers.size())
+        covers[c]->assign(view.further_covers[c].cluster.begin(), view.further_covers[c].cluster.end());
+      else
+        covers[c]->assign(triangles, -1.0F);
+    return marks;
+  }
+
+ private:
+  static Input& prepared_input(Input& input, const Strategy& strategy) {
+    input.use_bones = gets_bones(strategy, input.clip->interval_count());
+    return input;
+  }
+  Input& input_;
+  const Strategy& strategy_;
+  const ElementaryTest& elementary_;
+  Answerer answerer_;
+  Prepared observer_;
+};
+
+void export_paraview(Input& input, const fs::path& output, bool force) {
+  const std::size_t frames = input.clip->frame_count();
+  Files files(force);
+  const std::size_t list = files.add(output);
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, ".vtp"));
+  const fs::path contacts = output.parent_path() / (output.stem().string() + ".contacts.pvd");
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(contacts, f, frames, ".vtp"));
+
+  Marker marker(input);
+  std::vector<scenes::VtkMoment> moments;
+  Progress progress("export " + output.string(), frames);
+  for (std::size_t f = 0; f < frames; ++f) {
+    const bool last = f + 1 == frames;
+    const IntervalMarks marks = last ? IntervalMarks{} : marker.mark(f);
+    scenes::VtkSurface surface(input.clip->load_frame(f).positions, input.mesh.triangles());
+    // The last frame begins no interval; every file of a series has the same arrays all the same.
+    const std::vector<float> zeros(input.mesh.triangle_count(), 0.0F);
+    const auto cells = [&](const char* name, const std::vector<float>& values) {
+      surface.add(name, values.empty() ? zeros : values);
+    };
+    cells("touches", marks.touches);
+    cells("crosses_at_start", marks.crosses);
+    cells("cluster", marks.cluster);
+    cells("positive", marks.positive);
+    cells("second_cover", marks.second_cover);
+    cells("third_cover", marks.third_cover);
+    cells("patch", marks.patch);
+    scenes::VtkSurface points(marks.points, {});
+    points.add("time_in_interval", marks.time);
+    points.add("two_edges", marks.kind);
+    points.add("normal", marks.normal, 3);
+    files.write(1 + f, surface.text());
+    files.write(1 + frames + f, points.text());
+    const std::size_t interval = last ? f - 1 : f;
+    const ClipMoment moment{interval, last ? 1.0 : 0.0};
+    const double time = second_of(input, moment).value_or(static_cast<double>(f) / fps_of(input));
+    moments.push_back({time, 0, files.name(1 + f)});
+    moments.push_back({time, 1, files.name(1 + frames + f)});
+    progress.advance();
+  }
+  files.write(list, scenes::to_pvd(moments));
+  std::printf("%s, which lists %zu .vtp files", output.string().c_str(), files.count() - 1);
+}
+
+void export_usd(Input& input, const fs::path& output, bool force) {
+  OutputFile file(output, force, ".usda");
+  const std::size_t frames = input.clip->frame_count(), triangles = input.mesh.triangle_count();
+  constexpr scenes::UsdSurface::Colour kPalette[] = {
+      {0.79F, 0.83F, 0.86F}, {0.90F, 0.62F, 0.0F}, {0.84F, 0.37F, 0.0F}};  // clear, touches, crosses
+  Marker marker(input);
+  scenes::UsdSurface surface(input.mesh.triangles(), fps_of(input));
+  Vec3 low = input.reference[0], high = low;
+  for (const Vec3& x : input.reference) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  Progress progress("export " + output.string(), frames);
+  for (std::size_t f = 0; f < frames; ++f) {
+    const IntervalMarks marks = f + 1 == frames ? IntervalMarks{} : marker.mark(f);
+    std::vector<std::uint8_t> colour(triangles, 0);
+    for (std::size_t t = 0; t < marks.touches.size(); ++t)
+      colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
+    surface.append(input.clip->load_frame(f).positions, colour, kPalette, marks.points);
+    progress.advance();
+  }
+  file.commit(surface.text(0.004 * (high - low).norm()));
+  std::printf("%s", output.string().c_str());
+}
+
+}  // namespace
+
+void export_files(Input& input, const fs::path& output, const std::string& format, bool force) {
+  if (format == ".obj" || format == ".ply") {
+    export_sequence(input, output, format, force);
+  } else if (format == ".pc2" || format == ".mdd") {
+    export_mesh_cache(input, output, format, force);
+  } else if (format == ".pvd") {
+    export_paraview(input, output, force);
+  } else if (format == ".usda") {
+    export_usd(input, output, force);
+  } else {
+    OutputFile file(output, force, ".glb");
+    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input)));
+    std::printf("%s", output.string().c_str());
+  }
+  std::printf(": %zu frames of %zu vertices and %zu triangles\n", input.clip->frame_count(),
+              input.mesh.vertex_count(), input.mesh.triangle_count());
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bench/query/input/input.h"
+
+namespace cscd::bench {
+
+// Writes the frames of an input in the formats that other programs read, and prints what was written. Files
+// appear whole or not at all, and none is written if one of them exists (unless `force`). Throws InputError.
+//   .obj .ply   a file a frame, NAME.0000.obj and so on, bit for bit
+//   .pc2 .mdd   a mesh cache in single precision, beside NAME.obj with the faces
+//   .pvd        a list for ParaView, and beside it NAME.0000.vtp a frame with cluster, orientation, what
+//   touches
+//               and what crosses, and NAME.contacts.0000.vtp with the contacts of the interval that begins
+//               there
+//   .usda       points and colours over time, and the contacts as points
+//   .glb        morph targets, without bones
+void export_files(Input& input, const std::filesystem::path& output, const std::string& format, bool force);
+
+}  // namespace cscd::bench

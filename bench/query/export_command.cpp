@@ -1,0 +1,92 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/output_format.h"
+#include "bench/query/exchange/export_files.h"
+#include "bench/query/exchange/export_glb.h"
+#include "bench/query/input/input.h"
+#include "bench/query/options/model_options.h"
+#include "core/base/error.h"
+#include "scenes/base/output_target.h"
+#include "scenes/clip/point_cache.h"
+
+namespace cscd::bench {
+namespace {
+
+constexpr std::string_view kFormats[] = {".h5",  ".hdf5", ".glb", ".pc2", ".mdd",
+                                         ".obj", ".ply",  ".pvd", ".usda"};
+
+struct ExportOptions {
+  std::string input, output;
+  bool force = false, bake = false;
+  ModelOptions model;
+};
+
+void export_frames(const ExportOptions& options) {
+  // An output that cannot be written is refused before the work, not after it.
+  const std::string format = require_format(options.output, kFormats);
+  if (options.bake && format != ".glb")
+    throw InputError("--bake: is for .glb files; " + format +
+                     " holds positions in any case, so leave it out");
+  const bool sequence = format == ".obj" || format == ".ply";  // whose files have other names
+  const OutputTarget target = find_output_target(options.output, options.force || sequence);
+  if (target.is_stream)
+    throw InputError("output " + options.output +
+                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  if (format == ".glb" && !options.bake) {
+    export_glb(options.input, options.model, options.output, options.force);
+    return;
+  }
+  if (!sequence) const UnfinishedFile can_be_made(target.path, options.force);
+  Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
+  if (format != ".h5" && format != ".hdf5") {
+    if (input.clip->header().predicted)
+      std::fprintf(
+          stderr,
+          "note: intervals of %s end at a simulator's predictions, which .h5 alone keeps: what touches "
+          "on the way there need not touch from frame to frame\n",
+          options.input.c_str());
+    export_files(input, options.output, format, options.force);
+    return;
+  }
+  scenes::ClipHeader header = input.clip->header();
+  if (!input.up.because.empty()) header.up = input.up.axis;
+  scenes::PointCacheWriter writer(options.output, std::move(header), options.force);
+  scenes::copy_frames(*input.clip, writer);
+  writer.finish();
+  std::printf("%s: %zu frames of %zu vertices and %zu triangles\n", options.output.c_str(),
+              input.clip->frame_count(), input.mesh.vertex_count(), input.mesh.triangle_count());
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command =
+      app.add_subcommand("export",
+                         "Write the frames that a run replays for another program; the "
+                         "extension names the format.\n\n"
+                         "  cscd export rope rope.h5            a point cache, exactly\n"
+                         "  cscd export rope rope.glb           a linearly skinned scene with "
+                         "its bones; --bake: any input, without\n"
+                         "  cscd export walk.fbx walk.pc2       a mesh cache for Blender or "
+                         "Maya (.mdd too) beside walk.obj\n"
+                         "  cscd export rope frames/rope.ply    a file a frame (.obj too), "
+                         "exactly: frames/rope.0000.ply ...\n"
+                         "  cscd export rope rope.pvd           for ParaView, with clusters, "
+                         "orientation and contacts\n"
+                         "  cscd export rope rope.usda          points over time, coloured by "
+                         "what touches, with contacts\n"
+                         "  cscd export character.glb walk.h5 --clip walk --fps 60");
+  command->add_option("input", options->input, kInputHelp)->required();
+  command->add_option("output", options->output, "the file to write; its extension names the format")
+      ->required();
+  command->add_flag("--bake", options->bake, "a .glb of positions alone, as morph targets, from any input");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  add_model_options(*command, options->model);
+  command->callback([options] { export_frames(*options); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/query/input/ignored.h"
+#include "bench/query/input/import.h"
+#include "bench/query/input/up.h"
+#include "core/detect/strategy.h"
+#include "core/mesh/rig.h"
+#include "core/mesh/triangle_mesh.h"
+#include "scenes/clip/clip.h"
+
+namespace cscd::bench {
+
+// The input of a command: a scene, given by its name, or a point cache or model file, given by its path.
+struct Input {
+  std::string name;
+  std::unique_ptr<scenes::ClipSource> clip;
+  TriangleMesh mesh;
+  std::vector<Vec3> reference;  // positions of frame 0
+  std::optional<Rig> rig;
+  std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
+  std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
+  bool clip_was_named = true;                                 // else it is the first clip that moves
+  int threads = 1;                                            // for whatever can use them
+  bool use_bones = true;                                      // for strategies that can do without
+  std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
+  std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
+  Up up = {};
+  std::shared_ptr<const Ignored> ignored = nullptr;  // null where nothing is
+
+  // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
+  std::span<const Vec3> rest() const {
+    const std::vector<Vec3>& named = clip->header().rest;
+    return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
+  }
+
+  Setup setup(const ElementaryTest& elementary, bool first_only = false,
+              Pipeline pipeline = Pipeline::today) const {
+    return {mesh,       reference, rig && use_bones ? &*rig : nullptr,
+            elementary, threads,   first_only,
+            nullptr,    pipeline,  preparation};
+  }
+};
+
+// Throws InputError. Generates a scene whose cache is missing; imports a model file. Options are for model
+// files only.
+Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
+
+// Says what was made of a model file, a few lines, and which of its clips this is; nothing of other inputs.
+void say_what_was_read(const Input& input, std::FILE* to);
+
+// Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
+bool is_model_file(const std::string& name_or_path);
+bool is_point_cache(const std::filesystem::path& path);
+
+// Half-open range of intervals.
+struct IntervalRange {
+  std::size_t first, last;
+};
+// "A:B" stands for the intervals between frames A and B, by the numbers that frame_number() gives; either may
+// be left out. Throws InputError.
+IntervalRange parse_frames(const std::string& text, const Input& input);
+// Returns the text that parse_frames() reads back as the range.
+std::string frames_text(const IntervalRange& range, const Input& input);
+// Returns the number by which people know a frame: of a model file, that of the file's own time line (see
+// frame_at); of other inputs, the index.
+double frame_number(const Input& input, std::size_t frame);
+
+// Whether the input has what a strategy needs.
+bool allows(const Input& input, const Strategy& strategy);
+
+// The last first_contact row without a group that the input allows, or else the complete reference.
+const Strategy& default_strategy(const Input& input);
+
+}  // namespace cscd::bench

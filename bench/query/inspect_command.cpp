@@ -1,0 +1,263 @@
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/report_json.h"
+#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "bench/query/input/input.h"
+#include "bench/query/options/model_options.h"
+#include "core/base/error.h"
+#include "core/detect/start/embedding.h"
+#include "scenes/character/pieces.h"
+
+// `cscd inspect` says what an input is made of and what each strategy can do with it, for every component and
+// for all of them together.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+using scenes::Piece;
+
+struct InspectOptions {
+  std::string input, output;
+  bool force = false;
+  ModelOptions model;
+};
+
+// A moment that is looked at: the rest, and where each clip starts.
+struct Moment {
+  std::string name;
+  std::vector<Vec3> positions;
+};
+
+std::vector<Moment> moments_of(Input& input) {
+  const auto frame = [&](std::size_t i) {
+    const std::span<const Vec3> x = input.clip->load_frame(i).positions;
+    return std::vector<Vec3>(x.begin(), x.end());
+  };
+  std::vector<Moment> moments{{input.import ? "bind pose" : "frame 0", frame(0)}};
+  if (!input.import) return moments;
+  for (std::size_t c = 0; c < input.import->clips.size() && c + 1 < input.clip->frame_count(); ++c)
+    moments.push_back({"clip " + std::to_string(c) + " '" + input.import->clips[c].name + "'", frame(c + 1)});
+  return moments;
+}
+
+const char* key_of(Defect kind) {
+  switch (kind) {
+    case Defect::duplicate_triangle:
+      return "duplicate_triangles";
+    case Defect::non_manifold_edge:
+      return "non_manifold_edges";
+    case Defect::boundary_edge:
+      return "boundary_edges";
+    case Defect::inconsistent_orientation:
+      return "inconsistently_oriented_edges";
+    case Defect::non_manifold_vertex:
+      return "non_manifold_vertices";
+  }
+  return "defects";
+}
+
+std::size_t count(const TriangleMesh& mesh, Defect kind) {
+  for (const TriangleMesh::DefectReport& defect : mesh.defects())
+    if (defect.kind == kind) return defect.count;
+  return 0;
+}
+
+// Triangles without an area at rest, as far as doubles can tell.
+std::size_t flat_triangles(const TriangleMesh& mesh, std::span<const Vec3> x) {
+  std::size_t flat = 0;
+  for (const Triangle& c : mesh.triangles())
+    flat += (x[+c[1]] - x[+c[0]]).cross(x[+c[2]] - x[+c[0]]).squaredNorm() == 0;
+  return flat;
+}
+
+// Where a surface meets itself: for each moment null, or the first two triangles found.
+json embedding_json(const TriangleMesh& mesh, std::span<const std::vector<Vec3>> positions,
+                    std::span<const Moment> moments) {
+  EmbeddingTest test(mesh, positions.front());
+  json rows = json::array();
+  for (std::size_t m = 0; m < moments.size(); ++m) {
+    const auto met = test.find_intersection(positions[m]);
+    json pair;
+    if (met) pair = {static_cast<int>(met->first), static_cast<int>(met->second)};
+    rows.push_back({{"moment", moments[m].name}, {"embedded", !met}, {"triangles", pair}});
+  }
+  return rows;
+}
+
+json strategies_json(const TriangleMesh& mesh, bool has_bones, const json& embedding) {
+  std::size_t embedded = 0;
+  for (const json& row : embedding) embedded += row["embedded"].get<bool>();
+  const bool always = embedded == embedding.size();
+  json rows = json::array();
+  for (const Strategy& strategy : strategies()) {
+    const std::optional<std::string> reason = why_not(strategy, mesh, has_bones);
+    json why;
+    if (reason) why = *reason;
+    std::string promise = "finds every contact";
+    if (strategy.guarantee == Guarantee::first_contact)
+      promise = always ? "finds the first contact" : "finds the first contact where the start is embedded";
+    if (strategy.guarantee == Guarantee::all_from_embedded && !always)
+      promise = "finds every contact where the start is embedded";
+    if (strategy.guarantee == Guarantee::heuristic) promise = "promises nothing";
+    rows.push_back({{"name", strategy.name}, {"can", !reason}, {"why_not", why}});
+    if (!reason) rows.back()["promise"] = promise;
+  }
+  return rows;
+}
+
+json piece_json(const Piece& piece, std::span<const Moment> moments, bool has_bones) {
+  std::vector<std::vector<Vec3>> positions;
+  for (const Moment& moment : moments) {
+    std::vector<Vec3>& own = positions.emplace_back();
+    for (const VertexId v : piece.vertices) own.push_back(moment.positions[+v]);
+  }
+  const TriangleMesh& mesh = piece.mesh;
+  const bool closed = count(mesh, Defect::boundary_edge) == 0;
+  const bool manifold =
+      count(mesh, Defect::non_manifold_edge) + count(mesh, Defect::non_manifold_vertex) == 0;
+  json defects = json::object(), volume, facing;
+  for (const TriangleMesh::DefectReport& defect : mesh.defects())
+    defects[key_of(defect.kind)] = {{"count", defect.count}, {"first", defect.first}};
+  if (mesh.closed_and_oriented()) {
+    volume = signed_volume(piece, moments.front().positions);
+    facing = volume.get<double>() < 0 ? "inward" : "outward";
+  }
+  json embedding = embedding_json(mesh, positions, moments);
+  json strategies = strategies_json(mesh, has_bones, embedding);
+  return {{"triangles", mesh.triangle_count()},
+          {"vertices", mesh.vertex_count()},
+          {"closed", closed},
+          {"manifold", manifold},
+          {"consistently_oriented", count(mesh, Defect::inconsistent_orientation) == 0},
+          {"facing", facing},
+          {"volume", volume},
+          {"triangles_without_area", flat_triangles(mesh, positions.front())},
+          {"defects", std::move(defects)},
+          {"embedding", std::move(embedding)},
+          {"strategies", std::move(strategies)}};
+}
+
+std::string number(const json& value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.6g", value.get<double>());
+  return digits;
+}
+
+std::string embedding_text(const json& embedding) {
+  std::string not_embedded;
+  std::size_t good = 0;
+  for (const json& row : embedding) {
+    good += row["embedded"].get<bool>();
+    if (!row["embedded"].get<bool>())
+      not_embedded += (not_embedded.empty() ? "; meets itself at " : ", ") + row["moment"].get<std::string>();
+  }
+  return "embedded at " + std::to_string(good) + " of " + std::to_string(embedding.size()) +
+         " moments (rest and starts of clips)" + not_embedded;
+}
+
+std::string strategies_text(const json& strategies) {
+  std::vector<std::pair<std::string, std::string>> said;  // what is promised or lacks, who
+  for (const json& row : strategies) {
+    const std::string what =
+        row["can"].get<bool>() ? row["promise"].get<std::string>() : row["why_not"].get<std::string>();
+    const auto same = std::find_if(said.begin(), said.end(), [&](const auto& s) { return s.first == what; });
+    const std::string name = row["name"].get<std::string>();
+    if (same == said.end())
+      said.emplace_back(what, name);
+    else
+      same->second += ", " + name;
+  }
+  std::string out;
+  for (const auto& [what, who] : said) out += "      " + who + ": " + what + "\n";
+  return out;
+}
+
+void print(const json& document) {
+  for (const json& clip : document["clips"])
+    std::printf("  clip '%s': %s s, %s frames from frame %s, %s bones driven\n",
+                clip["name"].get<std::string>().c_str(), number(clip["seconds"]).c_str(),
+                number(clip["frames"]).c_str(), number(clip["first_frame"]).c_str(),
+                number(clip["bones_driven"]).c_str());
+  for (const json& c : document["components"]) {
+    std::string shape = c["closed"].get<bool>() ? "closed" : "open";
+    shape += c["manifold"].get<bool>() ? ", manifold" : ", not manifold";
+    if (!c["consistently_oriented"].get<bool>()) shape += ", not consistently oriented";
+    if (!c["facing"].is_null())
+      shape += ", facing " + c["facing"].get<std::string>() + ", volume " + number(c["volume"]);
+    if (c["triangles_without_area"] != 0)
+      shape += ", " + number(c["triangles_without_area"]) + " triangles without area";
+    std::printf("  component %zu%s: %zu triangles, %zu vertices", c["index"].get<std::size_t>(),
+                c["chosen"].get<bool>() ? " (used unless another is named)" : "",
+                c["triangles"].get<std::size_t>(), c["vertices"].get<std::size_t>());
+    if (!c["bones"].is_null()) std::printf(", %zu bones", c["bones"].get<std::size_t>());
+    std::printf("; %s\n      %s\n%s", shape.c_str(), embedding_text(c["embedding"]).c_str(),
+                strategies_text(c["strategies"]).c_str());
+  }
+  if (document["components"].size() < 2) return;
+  const json& all = document["together"];
+  std::printf("  all components together\n      %s\n%s", embedding_text(all["embedding"]).c_str(),
+              strategies_text(all["strategies"]).c_str());
+}
+
+void inspect(InspectOptions options) {
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output.emplace(options.output, options.force);
+  if (is_model_file(options.input)) options.model.import.survey = true;
+  Input input = open_input(options.input, options.model);
+  say_what_was_read(input, stdout);
+  const std::vector<Moment> moments = moments_of(input);
+  const std::vector<Piece> pieces = scenes::pieces_of(input.mesh);
+  const bool has_bones = input.rig.has_value();
+  const std::vector<std::size_t> chosen =
+      scenes::choose_pieces(pieces, input.import ? options.model.import.component : "all");
+
+  json document = {{"schema", "cscd.inspect/1"}, {"input", options.input}, {"clips", json::array()}};
+  if (input.import) {
+    document["import"] = import_json(*input.import);
+    document["clips"] = document["import"]["clips"];
+  } else {
+    std::printf("%s: %zu frames, %zu bones\n", options.input.c_str(), input.clip->frame_count(),
+                input.clip->header().bone_parent.size());
+  }
+  document["components"] = json::array();
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    json row = piece_json(pieces[p], moments, has_bones);
+    row["index"] = p;
+    row["chosen"] = std::find(chosen.begin(), chosen.end(), p) != chosen.end();
+    row["bones"] = nullptr;
+    if (input.import && p < input.import->component_bones.size())
+      row["bones"] = input.import->component_bones[p];
+    document["components"].push_back(std::move(row));
+  }
+  std::vector<std::vector<Vec3>> positions;
+  for (const Moment& moment : moments) positions.push_back(moment.positions);
+  json together = embedding_json(input.mesh, positions, moments);
+  json strategies = strategies_json(input.mesh, has_bones, together);
+  document["together"] = {{"embedding", std::move(together)}, {"strategies", std::move(strategies)}};
+  if (output) output->commit(document.dump(1) + "\n");
+  print(document);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app) {
+  auto options = std::make_shared<InspectOptions>();
+  CLI::App* command = app.add_subcommand(
+      "inspect",
+      "Say what an input is made of, component by component, and what each strategy can do with it.\n\n"
+      "  cscd inspect character.glb\n"
+      "  cscd inspect character.fbx --fill-holes 12 --json report.json");
+  command->add_option("input", options->input, kInputHelp)->required();
+  command->add_option("--json", options->output, "where the same goes for a machine to read");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  add_model_options(*command, options->model);
+  command->callback([options] { inspect(*options); });
+}
+
+}  // namespace cscd::bench

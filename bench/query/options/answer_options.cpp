@@ -1,0 +1,66 @@
+#include "bench/query/options/answer_options.h"
+
+#include <nlohmann/json.hpp>
+
+#include "bench/measure/strategies/catalogue.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// The seconds that one interval of a model file may take, unless the user sets a limit. Scenes and point
+// caches were made for this program and have no limit.
+constexpr double kModelIntervalSeconds = 60;
+
+}  // namespace
+
+void add_answer_options(CLI::App& command, AnswerRequest& request) {
+  command.add_option("input", request.input, kInputHelp)->required();
+  command.add_option("--elementary", request.elementary, "elementary test (cscd list)")
+      ->capture_default_str();
+  command.add_option("--frames", request.frames, "A:B, the intervals between frames A and B; default all");
+  command.add_flag("--first", request.answers.first,
+                   "only the contacts of the earliest time of each interval");
+  command.add_flag("--unproven", request.answers.unproven,
+                   "run the strategy even where its guarantee is void");
+  command.add_flag("--keep-rest-crossings", request.answers.keep_rest_crossings,
+                   "count pairs of triangles that cross at rest like all others");
+  command
+      .add_option("--interval-seconds", request.interval_seconds,
+                  "seconds after which an interval is given up; default 60 for model files, else none")
+      ->check(CLI::Range(0.01, 1e6));
+  add_ignore_options(command, request.ignored);
+  add_threads_option(command, request.threads);
+  add_model_options(command, request.model);
+}
+
+void add_ignore_options(CLI::App& command, IgnoreRequest& request) {
+  command
+      .add_option(
+          "--ignore", request.pairs,
+          "A:B, two bones, parts or meshes whose contacts and crossings with each other do not count;\n"
+          "* in a name stands for any letters, and A:* is A and everything; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("A:B");
+  command
+      .add_option("--ignore-neighbours", request.neighbours,
+                  "ignore bones that are at most so many joints apart, such as both sides of a knee with 1")
+      ->check(CLI::Range(0, 1000));
+}
+
+void require_sound(const AnswerRequest& request) {
+  const ElementaryTest& elementary = elementary_test_named(request.elementary);
+  // With --first, the time up to which pairs are looked at has to be right.
+  if (request.answers.first && (!elementary.apart_is_proof || !elementary.contact_is_proof))
+    throw InputError("--first: elementary test '" + std::string(elementary.name) +
+                     "' may be wrong about what touches; choose filtered_exact or exact");
+}
+
+Watchdog watchdog_of(const AnswerRequest& request, const Input& input) {
+  const double patience = request.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
+  return Watchdog(patience, "cscd: " + request.input + ": an interval, or the preparation, took more than " +
+                                nlohmann::json(patience).dump() +
+                                " s; raise --interval-seconds to wait longer");
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/ignore.h"
+#include "bench/query/input/watchdog.h"
+#include "bench/query/options/model_options.h"
+
+namespace cscd::bench {
+
+// What the commands that answer the intervals of an input have in common.
+struct AnswerRequest {
+  std::string input, elementary = "filtered_exact", frames;
+  AnswerOptions answers;
+  IgnoreRequest ignored;
+  std::optional<double> interval_seconds;
+  int threads = 1;
+  ModelOptions model;
+};
+
+// The input itself and these options. `request` must live as long as the command.
+void add_answer_options(CLI::App& command, AnswerRequest& request);
+
+// --ignore and --ignore-neighbours. `request` must live as long as the command.
+void add_ignore_options(CLI::App& command, IgnoreRequest& request);
+
+// Throws InputError where options do not go together.
+void require_sound(const AnswerRequest& request);
+
+// Ends the program if an interval takes longer than the request allows.
+Watchdog watchdog_of(const AnswerRequest& request, const Input& input);
+
+}  // namespace cscd::bench

@@ -1,0 +1,292 @@
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/progress.h"
+#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/answer_json.h"
+#include "bench/query/answer/answer_summary.h"
+#include "bench/query/input/input.h"
+#include "bench/query/options/answer_options.h"
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr char kSchema[] = "cscd.query/3";
+constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all are asked for
+
+struct QueryOptions : AnswerRequest {
+  std::string strategy, output, start_pairs, preparation;
+  bool force = false, fail_on_contact = false;
+};
+
+// Returns what an earlier run left in the file; nothing if there is no such file yet.
+std::vector<std::byte> read_preparation(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw InputError("--preparation " + path + ": cannot be read");
+  const auto bytes = std::as_bytes(std::span(text));
+  if (bytes.empty()) throw InputError("--preparation " + path + ": is empty; remove it");
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_preparation(const std::string& path, std::span<const std::byte> bytes, const Strategy& strategy) {
+  if (bytes.empty())
+    throw InputError("--preparation " + path + ": strategy " + std::string(strategy.name) +
+                     " has no preparation worth keeping; leave the option out");
+  OutputFile(path, false, ".preparation").commit({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+std::size_t most_start_pairs(const std::string& text) {
+  if (text.empty()) return kStartPairs;
+  if (text == "all") return std::numeric_limits<std::size_t>::max();
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw InputError("--start-pairs " + text + ": is neither a number nor all; give one of the two");
+  return count;
+}
+
+struct ClipAnswer {
+  json document;  // null unless it was asked for
+  bool collides = false;
+  IntervalVerdict verdict = IntervalVerdict::clear;
+};
+
+ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json) {
+  const ElementaryTest& elementary = elementary_test_named(options.elementary);
+  input.threads = options.threads;
+  ignore(input, options.ignored);
+  const Strategy& strategy =
+      options.strategy.empty() ? default_strategy(input) : strategy_named(options.strategy);
+  input.use_bones = gets_bones(strategy, input.clip->interval_count());
+  const IntervalRange range = parse_frames(options.frames, input);
+  const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
+  Watchdog watchdog = watchdog_of(options, input);
+  if (!options.preparation.empty()) input.preparation = read_preparation(options.preparation);
+  Answerer answerer(input, strategy, elementary, options.answers);
+  if (!options.preparation.empty() && input.preparation.empty())
+    write_preparation(options.preparation, answerer.saved_preparation(), strategy);
+  const SurfaceNames names(input);
+  AnswerSummary summary;
+  summary.preparation_ms = answerer.preparation_ms();
+  json intervals = json::array();
+  {
+    Progress progress("query " + options.input, range.last - range.first);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      watchdog.restart();
+      const IntervalAnswer answer = answerer.answer(i);
+      const scenes::ClipInterval interval = input.clip->load(i);
+      summary.add(answer, interval.motion, names);
+      if (with_json) intervals.push_back(interval_json(input, names, answer, interval.motion, listed_pairs));
+      progress.advance();
+    }
+  }
+  watchdog.restart();
+  const bool left_out = !options.answers.keep_rest_crossings;
+  if (answerer.new_triangles() > 0)
+    std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
+                options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());
+  std::printf("%s", summary_text(input, names, summary, answerer.rest_crossings(), left_out).c_str());
+
+  ClipAnswer result{nullptr, summary.collides(), summary.verdict()};
+  if (!with_json) return result;
+  result.document = {{"schema", kSchema},
+                     {"input", options.input},
+                     {"strategy", strategy.name},
+                     {"guarantee", to_string(strategy.guarantee)},
+                     {"elementary", elementary.name},
+                     {"threads", answerer.threads()},
+                     {"first_only", options.answers.first},
+                     {"rest_crossings", rest_json(input, names, answerer.rest_crossings(), left_out)},
+                     {"ignore", ignored_json(input)},
+                     {"summary", summary_json(input, summary)},
+                     {"intervals", std::move(intervals)}};
+  if (input.import) result.document["import"] = import_json(*input.import);
+  return result;
+}
+
+// "'walk', 'run', 'jump' and 2 more".
+std::string listed_names(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i)
+    text += (i > 0 ? ", '" : "'") + names[i] + "'";
+  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
+  return text;
+}
+
+// What the verdicts of all clips come to, as a sentence and in JSON.
+class AllVerdicts {
+ public:
+  void add(const std::string& clip, IntervalVerdict verdict) {
+    names_[static_cast<std::size_t>(verdict)].push_back(clip);
+  }
+  void pass_over(const std::string& clip) { still_.push_back(clip); }
+  std::size_t answered() const {
+    std::size_t count = 0;
+    for (const std::vector<std::string>& names : names_) count += names.size();
+    return count;
+  }
+  std::string sentence(const std::string& input) const {
+    std::string text;
+    const auto say = [&](const std::vector<std::string>& names, const char* one, const char* several) {
+      if (names.empty()) return;
+      text += (text.empty() ? " " : "; ") + std::to_string(names.size()) + " " +
+              (names.size() == 1 ? one : several) + " (" + listed_names(names) + ")";
+    };
+    say(of(IntervalVerdict::intersects_at_start), "crosses itself at the start of intervals",
+        "cross themselves at the start of intervals");
+    say(of(IntervalVerdict::touches), "touches itself", "touch themselves");
+    say(of(IntervalVerdict::undecided), "may touch itself", "may touch themselves");
+    say(of(IntervalVerdict::clear), "does not touch itself", "do not touch themselves");
+    say(still_, "is one pose and was passed over", "are one pose and were passed over");
+    const std::size_t count = answered() + still_.size();
+    return std::filesystem::path(input).filename().string() + ", " + std::to_string(count) +
+           (count == 1 ? " clip in all:" : " clips in all:") + text + ".";
+  }
+  json as_json(const std::string& input) const {
+    return {{"sentence", sentence(input)},
+            {"clear", of(IntervalVerdict::clear).size()},
+            {"touches", of(IntervalVerdict::touches).size()},
+            {"intersects_at_start", of(IntervalVerdict::intersects_at_start).size()},
+            {"undecided", of(IntervalVerdict::undecided).size()},
+            {"passed_over", still_.size()}};
+  }
+
+ private:
+  const std::vector<std::string>& of(IntervalVerdict verdict) const {
+    return names_[static_cast<std::size_t>(verdict)];
+  }
+  std::array<std::vector<std::string>, 4> names_;  // of clips, by their verdicts
+  std::vector<std::string> still_;
+};
+
+// Answers the clips of a model file, one after the other. A clip of one pose moves nothing and is passed
+// over.
+ClipAnswer answer_all_clips(QueryOptions options, Input first, bool with_json) {
+  const scenes::ImportReport seen = *first.import;
+  if (!options.frames.empty())
+    throw InputError("--frames " + options.frames + ": is for one clip, and " + options.input + " has " +
+                     std::to_string(seen.clips.size()) + "; name one with --clip (cscd inspect lists them)");
+  if (!options.preparation.empty())
+    throw InputError("--preparation: is for one clip; name one with --clip (cscd inspect lists them)");
+  std::printf("%s (%s)\n  %zu clips, %s\n%s", options.input.c_str(), seen.format.c_str(), seen.clips.size(),
+              rate_text(seen).c_str(), surface_text(seen).c_str());
+  ClipAnswer all{{{"schema", kSchema}, {"input", options.input}, {"clips", json::array()}}};
+  all.document["import"] = import_json(seen);
+  all.document["import"]["clip"] = nullptr;  // none of them alone
+  AllVerdicts verdicts;
+  for (std::size_t clip = 0; clip < seen.clips.size(); ++clip) {
+    if (seen.clips[clip].frames < 2 && !options.model.import.from_bind_pose) {
+      verdicts.pass_over(seen.clips[clip].name);
+      continue;
+    }
+    options.model.import.clip.clear();
+    options.model.import.clip_number = clip;
+    const bool is_open = seen.chosen_clip == static_cast<long>(clip);
+    ClipAnswer one = answer_clip(
+        options, is_open ? std::move(first) : open_input(options.input, options.model), with_json);
+    verdicts.add(seen.clips[clip].name, one.verdict);
+    all.collides = all.collides || one.collides;
+    if (with_json) all.document["clips"].push_back(std::move(one.document));
+  }
+  if (verdicts.answered() == 0)
+    throw InputError(options.input +
+                     ": has no clip of more than one pose, so nothing moves; pass "
+                     "--from-bind-pose to move from the bind pose to one of them");
+  std::printf("%s\n", verdicts.sentence(options.input).c_str());
+  all.document["summary"] = verdicts.as_json(options.input);
+  return all;
+}
+
+// Without a name, all clips are asked about. The first that moves has then been opened, which tells how many
+// there are; a file of one clip is read once.
+ClipAnswer answer_input(const QueryOptions& options, bool with_json) {
+  const bool all = options.model.import.clip == kAllClips && is_model_file(options.input);
+  ModelOptions model = options.model;
+  if (all) {
+    model.import.clip.clear();
+    model.import.survey = true;
+  }
+  Input input = open_input(options.input, model);
+  if (all || !input.clip_was_named) return answer_all_clips(options, std::move(input), with_json);
+  say_what_was_read(input, stdout);
+  return answer_clip(options, std::move(input), with_json);
+}
+
+void query(QueryOptions options) {
+  require_sound(options);
+  if (!options.strategy.empty()) strategy_named(options.strategy);
+  most_start_pairs(options.start_pairs);
+  std::optional<OutputFile> output;
+  if (!options.output.empty()) output.emplace(options.output, options.force);
+
+  const ClipAnswer answer = answer_input(options, output.has_value());
+  if (output) {
+    // Names of files and their text may hold anything: what is no UTF-8 is replaced.
+    output->commit(answer.document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  }
+  if (options.fail_on_contact && answer.collides) throw kContactFound;
+}
+
+}  // namespace
+
+void add_query(CLI::App& app) {
+  auto options = std::make_shared<QueryOptions>();
+  CLI::App* command = app.add_subcommand(
+      "query",
+      "Find where and when a mesh first touches itself in each interval of a clip.\n\n"
+      "  cscd query rope\n"
+      "  cscd query character.glb                    every clip of the file\n"
+      "  cscd query character.glb --clip walk        one of them\n"
+      "  cscd query character.h5 --strategy base --frames 0:10 --json answer.json\n"
+      "  cscd query character.glb --clip all --fail-on-contact --json - | jq .clips[].summary\n\n"
+      "Prints what a person wants to know. With --json FILE the whole answer goes there as JSON (schema\n"
+      "cscd.query/3); --json - is standard output, and the text then goes to standard error. A file of "
+      "several\n"
+      "clips is answered as a list, `clips`, unless --clip names one; with --clip all any file is.\n\n"
+      "Each interval is clear, touches, or intersects_at_start. What crosses at rest (eyes in sockets, "
+      "clothes\n"
+      "in skin) is how a character is made: pairs of triangles that cross in the bind pose, or in frame 0 of "
+      "a\n"
+      "point cache, are named once and left out, unless --keep-rest-crossings.\n\n"
+      "Where a start is not embedded, the guarantee first_contact is void, and the fastest complete "
+      "strategy\n"
+      "answers that interval instead (--unproven: do not). Whoever wants the earliest contact and no later "
+      "ones\n"
+      "has it sooner with --first.");
+  add_answer_options(*command, *options);
+  command->add_option("--strategy", options->strategy,
+                      "culling strategy (cscd list); without it, the best that the input allows");
+  command->add_option(
+      "--preparation", options->preparation,
+      "file in which what preparing the surface finds out is kept: written if there is none, else read, "
+      "which takes a fraction of the time, also where the surface has changed in places since");
+  command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
+  command->add_flag("--force", options->force, "replace the output if it exists");
+  command->add_option(
+      "--start-pairs", options->start_pairs,
+      "how many of the pairs of triangles that cross at a start are listed, or all; default 1000");
+  command->add_flag("--fail-on-contact", options->fail_on_contact,
+                    "exit with status 3 when anything touches or crosses");
+  command->callback([options] { query(*options); });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/query/input/input.h"
+#include "bench/query/view/position_coder.h"
+#include "bench/query/view/sections.h"
+
+namespace cscd::bench {
+
+// Throws InputError if a page of so many frames would be too large for a browser. `what` begins the error,
+// and `remedy` ends it.
+void require_page_room(std::size_t frames, std::size_t vertices, const std::string& what,
+                       const std::string& remedy);
+
+// Collects the moving surface for a page: positions on a grid, bones, and the ends of intervals that lead to
+// a prediction instead of the next frame.
+class ClipRecording {
+ public:
+  // Reads all frames of the range once, for the size of the grid. Throws InputError if a page of so many
+  // frames would be too large for a browser.
+  ClipRecording(Input& input, const IntervalRange& range);
+
+  const ViewGrid& grid() const { return grid_; }
+
+  // Adds frames, in order: range.first to range.last.
+  void add_frame(const scenes::FrameView& frame);
+  // Adds the predicted end of the interval that begins at the frame added last.
+  void add_predicted_end(std::span<const Vec3> end);
+
+  // Adds the arrays and returns what else the page has to know: counts, grid, and the time of every frame.
+  nlohmann::json write(Sections& sections) const;
+
+ private:
+  const Input& input_;
+  IntervalRange range_;
+  ViewGrid grid_;
+  PositionCoder frames_{grid_}, ends_{grid_};
+  std::vector<float> bones_;  // [frames, bones, head and tail, 3]
+  std::size_t added_ = 0;
+  std::vector<std::uint32_t> interval_of_end_;  // counted from the range's first
+};
+
+}  // namespace cscd::bench

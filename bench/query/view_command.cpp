@@ -1,0 +1,235 @@
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/command_line/version.h"
+#include "bench/cli/output/output.h"
+#include "bench/cli/output/progress.h"
+#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/catalogue.h"
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/answer_json.h"
+#include "bench/query/answer/surface_names.h"
+#include "bench/query/input/input.h"
+#include "bench/query/options/answer_options.h"
+#include "bench/query/view/clip_recording.h"
+#include "bench/query/view/html.h"
+#include "bench/query/view/recording.h"
+#include "bench/query/view_page.h"
+#include "core/base/error.h"
+#include "scenes/clip/up_axis.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostStrategies = 6;  // side by side; more could not be told apart
+
+struct ViewOptions : ViewRequest {
+  std::string output;
+  bool force = false;
+};
+
+std::vector<const Strategy*> chosen_strategies(const ViewRequest& options, const Input& input) {
+  if (options.strategies.empty()) return {&default_strategy(input)};
+  std::vector<const Strategy*> chosen;
+  for (const std::string& name : options.strategies) chosen.push_back(&strategy_named(name));
+  return chosen;
+}
+
+// For every triangle the numbers of its bone, or else its part, and of its part.
+std::vector<std::uint16_t> places_of_triangles(const TriangleMesh& mesh, const SurfaceNames& names,
+                                               TextTable& texts, bool parts) {
+  std::vector<std::uint16_t> places;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId triangle{static_cast<std::int32_t>(t)};
+    places.push_back(texts.number_of(parts ? names.part_of(triangle) : names.place_of(triangle)));
+  }
+  return places;
+}
+
+struct Contestant {
+  Answerer answerer;
+  StrategyRecording recording;
+};
+
+}  // namespace
+
+namespace {
+
+// Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it. Says on
+// standard output what was answered.
+json record_clip(const ViewRequest& options, Input input, Sections& sections) {
+  input.threads = options.threads;
+  ignore(input, options.ignored);
+  const ElementaryTest& elementary = elementary_test_named(options.elementary);
+  const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
+  const IntervalRange range = parse_frames(options.frames, input);
+  const SurfaceNames names(input);
+  TextTable texts;
+  const std::vector<std::uint16_t> places = places_of_triangles(input.mesh, names, texts, false);
+  const std::vector<std::uint16_t> parts = places_of_triangles(input.mesh, names, texts, true);
+  sections.add("place", std::span<const std::uint16_t>(places));
+  sections.add("part", std::span<const std::uint16_t>(parts));
+
+  Watchdog watchdog = watchdog_of(options, input);
+  ClipRecording clip(input, range);
+  std::vector<std::unique_ptr<Contestant>> contestants;
+  for (const Strategy* strategy : strategies) {
+    watchdog.restart();
+    input.use_bones = gets_bones(*strategy, input.clip->interval_count());
+    contestants.emplace_back(
+        new Contestant{Answerer(input, *strategy, elementary, options.answers),
+                       StrategyRecording(input, names, *strategy, elementary, clip.grid())});
+  }
+  input.use_bones = true;  // strategies that do without take no notice
+  {
+    Progress progress("view " + options.input, range.last - range.first);
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      clip.add_frame(input.clip->load_frame(i));
+      bool touches = false;
+      for (const auto& contestant : contestants) {
+        watchdog.restart();
+        const IntervalAnswer answer = contestant->answerer.answer(i);
+        contestant->recording.add(answer, input.clip->load(i), texts);
+        touches = touches || !answer.found.contacts.empty();
+      }
+      if (touches && input.clip->header().predicted) clip.add_predicted_end(input.clip->load(i).motion.end());
+      progress.advance();
+    }
+    clip.add_frame(input.clip->load_frame(range.last));
+  }
+  watchdog.restart();
+
+  const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
+  const bool left_out = !options.answers.keep_rest_crossings;
+  json rows = json::array();
+  for (std::size_t s = 0; s < contestants.size(); ++s) {
+    Contestant& contestant = *contestants[s];
+    contestant.recording.set_preparation(contestant.answerer.preparation_ms());
+    rows.push_back(contestant.recording.write(sections, "s" + std::to_string(s) + ".",
+                                              contestant.answerer.rest_crossings(), left_out));
+  }
+  const Contestant& first = *contestants.front();
+  std::printf("%s", rows[0]["text"].get<std::string>().c_str());
+  json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
+                 {"engine_colours", !options.strategies.empty()},
+                 {"clip", clip.write(sections)},
+                 {"texts", texts.texts()},
+                 {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
+                 {"strategies", std::move(rows)}};
+  if (input.import) header["import"] = import_json(*input.import);
+  return header;
+}
+
+// Adds every clip of a model file that is longer than one pose.
+void record_all_clips(const ViewRequest& options, json& header, Sections& sections) {
+  if (!options.frames.empty())
+    throw InputError("--frames " + options.frames + ": is for one clip; name one with --clip");
+  ViewRequest one = options;
+  one.model.import.clip.clear();
+  one.model.import.survey = true;
+  const Input survey = open_input(options.input, one.model);
+  one.model.import.survey = false;
+  say_what_was_read(survey, stdout);
+  const std::vector<scenes::ImportReport::Clip>& clips = survey.import->clips;
+  std::size_t frames = 0;
+  for (const scenes::ImportReport::Clip& clip : clips) frames += clip.frames;
+  require_page_room(frames, survey.mesh.vertex_count(),
+                    options.input + ": a page of all " + std::to_string(clips.size()) + " clips,",
+                    "by naming one clip with --clip");
+  header["clips"] = json::array();
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    if (clips[c].frames < 2 && !one.model.import.from_bind_pose) {
+      std::printf("clip '%s' is one pose; passed over\n", clips[c].name.c_str());
+      continue;
+    }
+    one.model.import.clip_number = c;
+    sections.set_prefix("c" + std::to_string(header["clips"].size()) + ".");
+    json recorded = record_clip(one, open_input(options.input, one.model), sections);
+    recorded["title"] = clips[c].name.empty() ? "clip " + std::to_string(c) : clips[c].name;
+    header["clips"].push_back(std::move(recorded));
+  }
+  if (header["clips"].empty())
+    throw InputError(options.input + ": has no clip of more than one pose, so nothing moves");
+}
+
+}  // namespace
+
+std::string view_page(const ViewRequest& options) {
+  require_viewer();
+  require_sound(options);
+  for (const std::string& name : options.strategies) strategy_named(name);
+  if (options.strategies.size() > kMostStrategies)
+    throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
+                     " strategies; name fewer");
+  const bool model = is_model_file(options.input);
+  json header = {{"schema", "cscd.view/1"},
+                 {"name", std::filesystem::path(options.input).filename().string()},
+                 {"kind", model                           ? "model"
+                          : is_point_cache(options.input) ? "cache"
+                                                          : "scene"},
+                 {"version", version_number()},
+                 {"elementary", elementary_test_named(options.elementary).name}};
+  Sections sections;
+  if (model && options.model.import.clip == kAllClips) {
+    record_all_clips(options, header, sections);
+  } else {
+    Input input = open_input(options.input, options.model);
+    say_what_was_read(input, stdout);
+    header.update(record_clip(options, std::move(input), sections));
+  }
+  return viewer_with(header, sections);
+}
+
+namespace {
+
+void view(const ViewOptions& options) {
+  OutputFile output(options.output, options.force || is_page_of_viewer(options.output), ".html");
+  const std::string page = view_page(options);
+  output.commit(page);
+  if (!is_standard_output(options.output))
+    std::printf("%s: %.1f MB; open it in a browser\n", options.output.c_str(),
+                static_cast<double>(page.size()) / 1e6);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+  auto options = std::make_shared<ViewOptions>();
+  CLI::App* command = app.add_subcommand(
+      "view",
+      "Write one HTML file that shows the surface in motion, and where and when it touches itself.\n\n"
+      "  cscd view character.glb                    its first clip that moves\n"
+      "  cscd view character.glb --clip all         every clip in one page, with a list to choose from\n"
+      "  cscd view octopus --strategy drvbc --strategy drvbc_fast -o octopus.html\n\n"
+      "The page needs no network and no server: open it in a browser. It begins at the first contact.\n"
+      "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across "
+      "the\n"
+      "clip's box for the page; the answers come from the exact ones.");
+  add_answer_options(*command, *options);
+  command->add_option("--strategy", options->strategies,
+                      "culling strategy (cscd list); several, each with its own --strategy, stand side by "
+                      "side;\nwithout it, the best that the input allows");
+  command
+      ->add_option("--up", options->up,
+                   "the axis that points up, where the input does not say it or says it wrongly")
+      ->check(CLI::IsMember(std::vector<std::string>(scenes::kUpAxes.begin(), scenes::kUpAxes.end())));
+  command->add_option("-o,--out", options->output,
+                      "the .html file to write; default the input's name with that extension, here");
+  command->add_flag("--force", options->force,
+                    "replace the output even if it is no page that cscd view wrote");
+  command->callback([options] {
+    if (options->output.empty())
+      options->output = std::filesystem::path(options->input).stem().string() + ".html";
+    view(*options);
+  });
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/query/view/viewer_page.h"
+#include "bench/testing/test_shell.h"
+
+// cscd report from outside: the page that it writes, and what a browser makes of it.
+namespace cscd::bench {
+namespace {
+
+class ReportPage : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    if (report_page().empty()) GTEST_SKIP() << "built without the pages";
+    const Ran ran =
+        run("cscd run --scene small --strategy base,mcd,drvbc,drvbc_fast --repetitions 2 --json small.json");
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+  }
+};
+
+TEST_F(ReportPage, ShowsTheFiguresOfItsRecord) {
+  const Ran ran = run("cscd report small.json -o site && cscd tables small.json --out .");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  const std::string page = text("site/index.html"), begin = "id=\"header\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  const auto document = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  EXPECT_EQ(document["tables"], nlohmann::json::parse(text("tables.json")));
+  EXPECT_EQ(document["records"][0]["file"], "../small.json");
+  const auto record = nlohmann::json::parse(text("small.json"));
+  for (std::size_t s = 0; s < record["strategies"].size(); ++s)
+    EXPECT_EQ(document["records"][0]["strategies"][s]["counts"]["pctp"],
+              record["strategies"][s]["counts"]["pctp"]);
+  expect_refused(run("cscd report small.json -o site"), "index.html");
+  expect_refused(run("cscd report small.json small.json -o other"), "second record of scene");
+}
+
+TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
+  ASSERT_EQ(
+      run("cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json").status,
+      0);
+  expect_refused(run("cscd report a.json -o site"), "a.json holds no record of cscd run");
+  expect_refused(run("cscd report small.json a.json a.json -o site"), "a second record of this study");
+  expect_refused(run("echo {} > empty.json; cscd report empty.json -o site"), "empty.json");
+  expect_refused(run("echo nothing > text.json; cscd report text.json -o site"), "text.json: is no record");
+  expect_refused(
+      run("sed 's/\"workloads\"/\"no\"/' a.json > broken.json; cscd report small.json broken.json -o site"),
+      "does not follow its schema");
+  expect_refused(run("cscd report small.json --history nowhere -o site"), "nowhere");
+  EXPECT_EQ(run("ls site").out, "");
+}
+
+TEST_F(ReportPage, ADamagedPageSaysSoInOneLine) {
+  ASSERT_EQ(run("cscd report small.json -o site").status, 0);
+  std::string page = text("site/index.html");
+  page.replace(page.find("id=\"header\">") + 300, 40, std::string(40, '{'));
+  put("page.html", page);
+  const Ran ran =
+      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' page.html");
+  if (ran.status == 77) GTEST_SKIP() << ran.out;
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.out.find("The page is damaged"), std::string::npos) << ran.out;
+}
+
+TEST_F(ReportPage, HostileNamesAreText) {
+  ASSERT_EQ(run("sed 's/\"name\": \"small\"/\"name\": \"<img src=x onerror=alert(1)>\"/' small.json > "
+                "hostile.json; "
+                "cscd report hostile.json -o site")
+                .status,
+            0);
+  EXPECT_EQ(text("site/index.html").find("<img"), std::string::npos);
+  EXPECT_NE(text("site/index.html").find("\\u003cimg"), std::string::npos);
+  const Ran ran =
+      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' site/index.html");
+  if (ran.status == 77) GTEST_SKIP() << ran.out;
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
+}
+
+// Everything at once: records of all kinds, a history and replays.
+TEST_F(ReportPage, ABrowserShowsIt) {
+  ASSERT_EQ(
+      run("cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json").status,
+      0);
+  ASSERT_EQ(
+      run("cscd scale --smoke --study size --scene small --strategy drvbc_fast,base --json s.json").status,
+      0);
+  ASSERT_EQ(run("sed 's/\"dirty\": true/\"dirty\": false/' small.json > clean.json; "
+                "cscd history h --keep clean.json --committed 2026-11-25T12:00:00+00:00")
+                .status,
+            0);
+  const Ran made = run("cscd report small.json a.json s.json --history h --view -o site");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const Ran ran =
+      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' site/index.html");
+  if (ran.status == 77) GTEST_SKIP() << ran.out;
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
+  std::printf("%s", ran.out.c_str());
+}
+
+}  // namespace
+}  // namespace cscd::bench

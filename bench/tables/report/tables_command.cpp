@@ -1,0 +1,90 @@
+#include <CLI/App.hpp>
+#include <array>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+
+#include "bench/cli/command_line/command.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/cli/output/output.h"
+#include "bench/tables/claims.h"
+#include "bench/tables/paper_tables.h"
+#include "bench/tables/record_inputs.h"
+#include "bench/tables/shaped_table.h"
+#include "bench/tables/tables_json.h"
+#include "bench/tables/tables_latex.h"
+#include "bench/tables/tables_text.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TableOptions {
+  std::vector<std::string> records;
+  std::string folder;
+  bool intervals = false, force = false;
+};
+
+// The report that scripts/reproduce writes beside records, or how to write one.
+std::string page_of(const TableOptions& options, const fs::path& record) {
+  const fs::path page = record.parent_path() / "site" / "index.html";
+  std::error_code unknown;
+  if (fs::exists(page, unknown)) return page.string();
+  return options.records.size() == 1 ? "cscd report " + options.records.front() + " -o site"
+                                     : "cscd report RECORDS -o site";
+}
+
+void tables(const TableOptions& options) {
+  constexpr std::array<std::string_view, 1> wanted = {kRunSchema};
+  std::vector<fs::path> files = record_files(options.records, wanted).at(std::string(kRunSchema));
+  const std::vector<Record> records = read_records(files);
+  const std::vector<PaperTable> made = paper_tables(records);
+  const std::vector<ShapedTable> shaped = shaped_tables(made, records, options.intervals);
+  const std::vector<ClaimResult> claims = judge_claims(records);
+  if (options.folder.empty()) {
+    std::fputs(tables_text(shaped, claims, records, page_of(options, files.front())).c_str(), stdout);
+    return;
+  }
+  const fs::path folder(options.folder);
+  OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force, ".md"),
+      csv(folder / "tables.csv", options.force, ".csv"), page(folder / "claims.md", options.force, ".md");
+  std::vector<ShapedTable> all = shaped;
+  all.push_back(times_of_strategies(records, options.intervals));
+  std::deque<OutputFile> floats;
+  for (const ShapedTable& table : all)
+    floats.emplace_back(folder / (table.id + ".tex"), options.force, ".tex");
+  json.commit(json_text(tables_json(made, claims, records)));
+  text.commit(tables_markdown(shaped, all.back(), claims, records));
+  csv.commit(tables_csv(made));
+  for (std::size_t i = 0; i < all.size(); ++i) floats[i].commit(latex_table(all[i]));
+  page.commit(claims_markdown(claims));
+}
+
+}  // namespace
+
+void add_tables(CLI::App& app) {
+  auto options = std::make_shared<TableOptions>();
+  CLI::App* command = app.add_subcommand(
+      "tables",
+      "Make the paper's tables from records, published figures beneath measured ones.\n\n"
+      "  cscd tables results/FOLDER                in the terminal\n"
+      "  cscd tables rope.json rope-published.json\n"
+      "  cscd tables rope.json --out results/new   tables.md, claims.md; every figure of every strategy in\n"
+      "                                            tables.json and .csv; table1.tex and so on for LaTeX.\n"
+      "                                            The folder has to exist\n\n"
+      "Times are means over the timed intervals, the median over the repetitions; ratios are paired within "
+      "a\n"
+      "repetition. A scene with a record of the pipeline `published` is shown in that one.");
+  command
+      ->add_option("records", options->records,
+                   "what cscd run wrote, at most one a scene and pipeline, or folders of it; other files of "
+                   "this program are left out")
+      ->required();
+  command->add_option("--out", options->folder, "the folder for the files");
+  command->add_flag("--intervals", options->intervals, "lines with the ends of the 95 % intervals too");
+  command->add_flag("--force", options->force, "replace files that exist");
+  command->callback([options] { tables(*options); });
+}
+
+}  // namespace cscd::bench
