@@ -79,9 +79,6 @@ int run(int argc, char** argv) {
   cscd::bench::add_accuracy(app);
   cscd::bench::add_scale(app);
   cscd::bench::add_run(app);
-  cscd::bench::add_plan(app);
-  cscd::bench::add_merge(app);
-  cscd::bench::add_submit(app);
   cscd::bench::add_tables(app);
   cscd::bench::add_report(app);
   cscd::bench::add_compare(app);

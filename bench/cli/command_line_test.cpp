@@ -51,7 +51,6 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
       {"verify --seed -1", "--seed: -1 is no whole number of 0 or more"},
       {"scale --steps 1,nan", "--steps: nan is no finite number"},
       {"hardcases --out . --hardness nan", "--hardness: nan is no finite number"},
-      {"run --plan p --into i --cell-seconds nan", "--cell-seconds: nan is no finite number"},
       {"list --names --json", "--names"},
   };
   for (const auto& one : kCases) {

@@ -65,9 +65,8 @@ answer ../figure.glb --clip walk --fps 12.5 --frames 0:3 --interval-seconds 99.5
 cscd inspect ../figure.glb --json inspect.json
 for kind in obj ply usda pvd; do cscd export ../figure.glb figure.$kind --fps 12.5 >/dev/null; done
 answer figure.0000.obj --frames 0:1
-cscd plan --scene small --strategy base,drvbc --out plan.json
-cscd run --plan plan.json --into cells; cscd merge --plan plan.json cells --out merged.json
-cscd tables merged.json; rm -r cells
+cscd run --scene small --strategy base,drvbc --counts --json counts.json
+cscd tables counts.json
 cscd hardcases --out hard --queries 5
 cscd elementary hard/needles-vf.csv --kind vf --elementary exact | sed 's/ *[0-9]*$//'
 find . -type f | sort | while read -r name; do echo "== $name"; cat "$name"; done)sh";
@@ -84,7 +83,7 @@ TEST_F(ProgramOutput, IsTheSameWhereADecimalHasAComma) {
             with_comma = run(comma + kManyNumbers);
   EXPECT_EQ(with_point.errors, "");
   for (const char* name : {"== ./figure.0000.obj", "== ./figure.usda", "== ./figure.0000.vtp",
-                           "== ./merged.json", "== ./inspect.json", "== ./hard/needles-vf.csv",
+                           "== ./counts.json", "== ./inspect.json", "== ./hard/needles-vf.csv",
                            " 30 frames a second, because the file does not say"})
     EXPECT_NE(with_point.out.find(name), std::string::npos) << name;
   EXPECT_TRUE(with_point.out == with_comma.out) << "a decimal comma changes what is written";

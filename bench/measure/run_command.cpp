@@ -3,30 +3,24 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
-#include <new>
-#include <sys/mman.h>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/json_text.h"
 #include "bench/cli/output/output.h"
-#include "bench/measure/cell_limits.h"
+#include "bench/measure/cells/cells.h"
+#include "bench/measure/cells/join.h"
 #include "bench/measure/record/record.h"
 #include "bench/measure/record/shortfall.h"
 #include "bench/measure/replay/contestant.h"
 #include "bench/measure/replay/replay.h"
 #include "bench/measure/replay_options.h"
-#include "bench/measure/shards/cell_run.h"
-#include "bench/measure/shards/code_version.h"
-#include "bench/measure/shards/shard.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/ignore.h"
 #include "bench/query/input/input.h"
 #include "bench/query/options/answer_options.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
-#include "scenes/base/output_target.h"
 #include "scenes/catalog/scene_cache.h"
-#include "scenes/sandbox/run_limited.h"
 
 namespace cscd::bench {
 namespace {
@@ -36,10 +30,10 @@ struct RunOptions {
   ReplayRequest request;
   IgnoreRequest ignored;
   std::string output;
-  bool force = false;
-  // Instead of a request: cells of a plan.
-  std::string plan, shard = "1/1", cell, into;
-  CellLimits limits;
+  bool force = false, counts = false;
+  // Where results of cells are kept. Without a folder, the run is not divided.
+  std::string cells, worker;
+  std::size_t cell_intervals = 100;
 };
 
 constexpr std::size_t kListedFailures = 5;  // of a row; the record holds all
@@ -90,18 +84,42 @@ void say_who_cannot_ignore(const Input& input, const ReplayRequest& request) {
         std::printf("without %s: %s\n", std::string(strategy->name).c_str(), reason->c_str());
 }
 
-// Whether every strategy kept its promise.
-bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile& output) {
+Input open(const RunOptions& options, const ReplayRequest& request) {
   Input input = open_input(request.scene, request.model);
   say_what_was_read(input, stdout);
   input.threads = request.threads;
   ignore(input, options.ignored);
   say_who_cannot_ignore(input, request);
-  const Record record = execute(input, resolve(input, request, ReplayKind::timings));
+  return input;
+}
+
+Replay replay_of(const RunOptions& options, Input& input, const ReplayRequest& request) {
+  return resolve(input, request, options.counts ? ReplayKind::counts : ReplayKind::timings);
+}
+
+Record measured(const RunOptions& options, Input& input, const Replay& replay) {
+  if (options.cells.empty()) return execute(input, replay);
+  const std::vector<Cell> cells = divide(input, replay, options.cell_intervals);
+  measure_cells(input, cells, {}, options.cells);
+  return join(replay, cells, options.cells);
+}
+
+// Whether every strategy kept its promise.
+bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile& output) {
+  Input input = open(options, request);
+  const Record record = measured(options, input, replay_of(options, input, request));
   print(record.verification, request.elementary);
   output.commit(json_text(to_json(record)));
   std::printf("%s", run_times_text(record).c_str());
   return record.verification.ok();
+}
+
+void make_folder(const std::filesystem::path& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
+                     "; choose another with " + option);
 }
 
 // Every scene that there is, each to its own record in the folder named as output.
@@ -110,11 +128,7 @@ bool run_all(const RunOptions& options) {
   if (is_standard_output(folder))
     throw InputError("--json " + options.output +
                      ": several records do not go to standard output; name a folder, or one scene");
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
-                     "; choose another with --json");
+  make_folder(folder, "--json");
   const std::vector<scenes::SceneSummary> all = scenes::list_scenes();
   for (const scenes::SceneSummary& scene : all)
     if (!scene.fault.empty())
@@ -136,73 +150,27 @@ bool run_all(const RunOptions& options) {
   return ok;
 }
 
-void require_same_code(const Plan& plan, const std::string& file) {
-  if (const nlohmann::ordered_json here = code_version(); here != plan.code)
-    throw InputError("plan " + file + ": was made by " + plan.code.dump() + ", and this program is " +
-                     here.dump() + "; make the plan anew, or run the program that made it");
-}
-
-// Whether the process has met a limit on its memory. Libraries that it calls may not say so: HDF5 takes a
-// lack of memory for a damaged file.
-bool is_out_of_memory() {
-  constexpr std::size_t kProbe = std::size_t{8} << 20;
-  void* const probe = mmap(nullptr, kProbe, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (probe == MAP_FAILED) return true;
-  munmap(probe, kProbe);
-  return false;
-}
-
-// The process of one cell tells by its exit status why there is no result.
-void run_one_cell(const Plan& plan, const RunOptions& options) {
-  const auto cell = std::ranges::find(plan.cells, options.cell, &PlanCell::id);
-  if (cell == plan.cells.end())
-    throw InputError("--cell " + options.cell + ": is none of plan " + options.plan + "; its cells have ids");
-  CellStatus status = CellStatus::done;
-  try {
-    if (options.limits.memory_mib) scenes::limit_memory(*options.limits.memory_mib << 20);
-    if (!run_cell(plan, *cell, options.into)) status = CellStatus::broken_promise;
-  } catch (const OutputError& error) {
-    std::fprintf(stderr, "cscd: %s\n", error.what());
-    status = status_of_refusal(error.reason);
-  } catch (const std::bad_alloc&) {
-    status = CellStatus::memory_limit;
-  } catch (const InputError&) {
-    if (!is_out_of_memory()) throw;
-    status = CellStatus::memory_limit;
-  }
-  if (status == CellStatus::memory_limit)
-    std::fprintf(stderr, "cscd: out of memory; raise --cell-memory, or use a machine with more\n");
-  if (status != CellStatus::done) throw ExitStatus{exit_status(status)};
-}
-
-void run_plan(const RunOptions& options) {
-  if (options.into.empty()) throw CLI::RequiredError("--into");
-  const Plan plan = read_plan(options.plan);
-  require_same_code(plan, options.plan);
-  std::error_code error;
-  std::filesystem::create_directories(options.into, error);
-  if (error)
-    throw InputError("folder " + options.into + ": cannot be made: " + error.message() +
-                     "; choose another with --into");
-  if (!options.cell.empty()) return run_one_cell(plan, options);
-  const std::vector<CellState> states =
-      run_shard(plan, options.plan, parse_shard(options.shard), options.into, options.limits);
-  const auto count = [&](CellStatus status) {
-    return std::ranges::count(states, status, &CellState::status);
-  };
-  const auto done = count(CellStatus::done), broken = count(CellStatus::broken_promise);
-  if (const auto left = std::ssize(states) - done - broken; left > 0)
-    throw InputError("shard " + options.shard + ": " + std::to_string(left) + " of " +
-                     std::to_string(states.size()) +
-                     " cells have no result, for the reasons above; the same command measures them again");
-  std::printf("shard %s: all %zu cells have results\n", options.shard.c_str(), states.size());
-  if (broken > 0) throw kVerificationFailed;
+// Measures this worker's cells of one scene. Whether every strategy kept its promise in them.
+bool work(const RunOptions& options) {
+  const Worker worker = parse_worker(options.worker);
+  Input input = open(options, options.request);
+  const std::vector<Cell> cells =
+      divide(input, replay_of(options, input, options.request), options.cell_intervals);
+  const bool ok = measure_cells(input, cells, worker, options.cells);
+  std::printf("worker %s is done; %zu of %zu cells have no result yet\n", options.worker.c_str(),
+              missing_cells(cells, options.cells).size(), cells.size());
+  return ok;
 }
 
 void run(const RunOptions& options) {
-  if (!options.plan.empty()) return run_plan(options);
-  if (options.output.empty()) throw CLI::RequiredError("--json");
+  const bool is_worker = !options.worker.empty();
+  if (options.output.empty() && !is_worker) throw CLI::RequiredError("--json");
   require_sound(options.request);  // before anything is opened
+  if (!options.cells.empty()) make_folder(options.cells, "--cells");
+  if (is_worker) {
+    if (!work(options)) throw kVerificationFailed;
+    return;
+  }
   if (options.request.scene == kAllScenes) {
     if (!run_all(options)) throw kVerificationFailed;
     return;
@@ -222,7 +190,8 @@ void add_run(CLI::App& app) {
       "Replay a scene with several culling strategies: verify their answers, then time them.\n\n"
       "  cscd run --scene rope --json rope.json\n"
       "  cscd run --scene all --json records         a record of every scene into that folder\n"
-      "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n\n"
+      "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n"
+      "  cscd run --cells cells --json rope.json     goes on where the same command was interrupted\n\n"
       "First every strategy answers the verified intervals with the exact elementary test and is judged "
       "against\n"
       "the complete reference under its own guarantee. If one fails, the exit status is 1 and the record "
@@ -239,26 +208,26 @@ void add_run(CLI::App& app) {
       "--json", options->output,
       "where the record goes, - is standard output; with --scene all, the folder of the records");
   command->add_flag("--force", options->force, "replace the output if it exists");
-  // A plan says what is measured, and in which files results go.
-  std::vector<CLI::Option*> of_requests;
-  for (CLI::Option* option : command->get_options())
-    if (option->get_name() != "--help") of_requests.push_back(option);
-  CLI::Option* plan = command->add_option("--plan", options->plan, "measure cells of this plan (cscd plan)");
-  for (CLI::Option* option : of_requests) plan->excludes(option);
-  command->add_option("--shard", options->shard, "I/N, the I-th of N parts of the cells")
-      ->capture_default_str();
-  command->add_option("--into", options->into, "the folder of the results");
-  add_cell_limits(*command, options->limits);
-  command->add_option(
-      "--cell", options->cell,
-      "one cell alone, by its id, in this process; exit status 4 a full disk, 5 a folder that "
-      "is\nread-only, 6 out of memory");
-  for (CLI::Option* option : command->get_options()) {
-    if (option->get_name() == "--help" || std::ranges::find(of_requests, option) != of_requests.end())
-      continue;
-    option->group("Cells of a plan");
-    if (option != plan) option->needs(plan);
-  }
+  command->add_flag("--counts", options->counts,
+                    "verdicts, counters and digests alone, which every machine repeats to the bit; no times");
+  CLI::Option* cells =
+      command
+          ->add_option("--cells", options->cells,
+                       "divide the run into cells, and keep the result of each in this folder: what is\n"
+                       "there is not measured again")
+          ->group("A long run");
+  command->add_option("--cell-intervals", options->cell_intervals, "intervals of a cell")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str()
+      ->needs(cells)
+      ->group("A long run");
+  command
+      ->add_option("--worker", options->worker,
+                   "I/N: measure every N-th cell from the I-th on, and write no record; the same command\n"
+                   "without --worker measures what is missing and writes it")
+      ->needs(cells)
+      ->excludes("--json")
+      ->group("A long run");
   command->callback([options] { run(*options); });
 }
 

@@ -1,0 +1,137 @@
+#include "bench/measure/cells/cells.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "bench/cli/output/gzip.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/measure/record/environment.h"
+#include "core/base/error.h"
+#include "core/base/output_target.h"
+#include "scenes/clip/digest.h"
+
+namespace cscd::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+// The commit and the instruction set decide which counters and digests a program finds. A program whose
+// sources differ from their commit, or have none, is told apart by a digest of its executable file.
+ordered_json code_version() {
+  const ordered_json build = build_environment();
+  ordered_json version = {build.at("commit"), build.at("dirty"), build.at("instruction_set")};
+  if (build.at("commit") != "unknown" && !build.at("dirty").get<bool>()) return version;
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  version.push_back(scenes::digest({std::istreambuf_iterator<char>(program), {}}));
+  return version;
+}
+
+template <class T>
+void append_bytes(const std::vector<T>& values, std::string& bytes) {
+  bytes += std::to_string(values.size()) + ":";
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+// Digests of what all frames share, and of the frames.
+ordered_json content_of(const Input& input) {
+  const scenes::ClipHeader& header = input.clip->header();
+  std::string surface = std::to_string(input.clip->frame_count()) + (header.predicted ? " predicted " : " ");
+  append_bytes(header.triangles, surface);
+  append_bytes(header.bone_parent, surface);
+  append_bytes(header.rest, surface);
+  scenes::DigestSink frames;
+  scenes::copy_frames(*input.clip, frames);
+  return {scenes::digest(surface), frames.text()};
+}
+
+std::vector<std::size_t> within(const std::vector<std::size_t>& ascending, const IntervalRange& range) {
+  return {std::ranges::lower_bound(ascending, range.first), std::ranges::lower_bound(ascending, range.last)};
+}
+
+// A number that this process draws once. It tells how many processes measured the cells of a record.
+std::uint64_t process_number() {
+  static const std::uint64_t number = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
+  return number;
+}
+
+void write_unless_there(const fs::path& path, const std::string& content) {
+  try {
+    UnfinishedFile file(path, false);
+    file.write(content);
+    file.finish();
+  } catch (const OutputError& error) {
+    if (error.reason != EEXIST) throw;
+  }
+}
+
+}  // namespace
+
+Worker parse_worker(const std::string& text) {
+  Worker worker{0, 0};
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, worker.number);
+  if (first.ec == std::errc{} && first.ptr != end && *first.ptr == '/') {
+    const auto second = std::from_chars(first.ptr + 1, end, worker.count);
+    if (second.ec == std::errc{} && second.ptr == end && 1 <= worker.number && worker.number <= worker.count)
+      return worker;
+  }
+  throw InputError("--worker " + text + ": is no worker; write I/N with 1 <= I <= N, such as 1/3");
+}
+
+std::vector<Cell> divide(Input& input, const Replay& replay, std::size_t cell_intervals) {
+  const ordered_json content = content_of(input), code = code_version();
+  const ChosenIntervals& all = replay.intervals;
+  std::vector<Cell> cells;
+  for (std::size_t first = all.range.first; first < all.range.last; first += cell_intervals) {
+    const IntervalRange range{first, std::min(first + cell_intervals, all.range.last)};
+    Cell cell{{}, replay};
+    cell.replay.intervals = {range, within(all.verified, range), within(all.counted, range),
+                             within(all.timed, range)};
+    const ChosenIntervals& own = cell.replay.intervals;
+    if (own.counted.empty()) continue;
+    const ordered_json decisive = {content,     replay.command, replay.kind == ReplayKind::timings,
+                                   range.first, range.last,     own.verified,
+                                   own.counted, own.timed,      code};
+    cell.file_name = scenes::digest(decisive.dump()) + ".json.gz";
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+std::vector<const Cell*> missing_cells(std::span<const Cell> cells, const fs::path& folder) {
+  std::vector<const Cell*> missing;
+  std::error_code ignored;
+  for (const Cell& cell : cells)
+    if (!fs::exists(folder / cell.file_name, ignored)) missing.push_back(&cell);
+  return missing;
+}
+
+bool measure_cells(Input& input, std::span<const Cell> cells, Worker worker, const fs::path& folder) {
+  remove_forsaken_files(folder);
+  bool ok = true;
+  for (std::size_t i = worker.number - 1; i < cells.size(); i += worker.count) {
+    const Cell& cell = cells[i];
+    const fs::path path = folder / cell.file_name;
+    if (fs::exists(path)) {
+      ok = read_record(path).verification.ok() && ok;
+      continue;
+    }
+    Record record = execute(input, cell.replay);
+    if (cell.replay.kind == ReplayKind::timings) record.environment["process"] = process_number();
+    ok = record.verification.ok() && ok;
+    write_unless_there(path, gzipped(json_text(to_json(record))));
+    const IntervalRange& range = cell.replay.intervals.range;
+    std::printf("cell %zu of %zu, intervals %zu to %zu: %s\n", i + 1, cells.size(), range.first,
+                range.last - 1, path.c_str());
+    std::fflush(stdout);
+  }
+  return ok;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/measure/replay/replay.h"
+
+// A long run can be interrupted, resumed and shared among workers. It is divided into cells, each of which
+// measures a range of the run's intervals and has a result file of its own. The files lie in one folder, and
+// a worker measures those cells of its share whose files are missing.
+namespace cscd::bench {
+
+struct Cell {
+  // The name of the result file. It holds a digest of everything that decides the result: the input's
+  // content, the command line with all defaults, the intervals, the kind, and the version of the program.
+  std::string file_name;
+  Replay replay;  // of the cell's intervals; at least one of them is counted
+};
+
+// The cells that belong to worker `number` of `count`, counted from 1: every count-th one.
+struct Worker {
+  std::size_t number = 1, count = 1;
+};
+// Reads "1/3". Throws InputError for any other text.
+Worker parse_worker(const std::string& text);
+
+// Divides a replay into cells of `cell_intervals` intervals; the last cell may have fewer.
+std::vector<Cell> divide(Input& input, const Replay& replay, std::size_t cell_intervals);
+
+// The cells that have no result file in the folder.
+std::vector<const Cell*> missing_cells(std::span<const Cell> cells, const std::filesystem::path& folder);
+
+// Measures the worker's cells that have no result file, and says on standard output which cell is done. A
+// result file, a run record, appears whole or not at all. Several workers may measure the same cell: the
+// first result is kept. Returns whether every strategy kept its promise in these cells. Throws OutputError if
+// the folder does not take a result.
+bool measure_cells(Input& input, std::span<const Cell> cells, Worker worker,
+                   const std::filesystem::path& folder);
+
+}  // namespace cscd::bench
