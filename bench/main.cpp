@@ -83,7 +83,6 @@ int run(int argc, char** argv) {
   cscd::bench::add_report(app);
   cscd::bench::add_compare(app);
   cscd::bench::add_history(app);
-  cscd::bench::add_convert(app);
   cscd::bench::add_scene(app);
   cscd::bench::add_help(app);
   cscd::bench::require_plain_numbers(app);

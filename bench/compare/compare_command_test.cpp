@@ -3,7 +3,7 @@
 #include "bench/cli/output/schema.h"
 #include "bench/testing/test_shell.h"
 
-// These tests compare, convert and keep records as a user of a shell does.
+// These tests compare and keep records as a user of a shell does.
 namespace cscd::bench {
 namespace {
 
@@ -58,15 +58,14 @@ TEST_F(CompareCommand, RefusesWhatIsNoRecord) {
   expect_refused(run("mkdir f; cscd compare f old.json"), "holds no record");
 }
 
-TEST_F(CompareCommand, ConvertsForOtherTools) {
-  ASSERT_EQ(run("cscd convert old.json --to google-benchmark --json g.json").status, 0);
+TEST_F(CompareCommand, ReadsFilesOfGoogleBenchmark) {
+  put("g.json", R"({"context": {"executable": "sort"}, "benchmarks": [
+    {"name": "sort/8", "real_time": 2, "time_unit": "ms"}, {"name": "sort/8", "real_time": 3, "time_unit": "ms"}]})");
   const Ran same = run("cscd compare g.json g.json");
   EXPECT_NE(same.out.find("times of a whole query without a verdict"), std::string::npos) << same.out;
   const Ran nothing = run("cscd compare g.json g.json --lane counters");
   EXPECT_EQ(nothing.status, 2) << "such a file has times alone";
   EXPECT_NE(nothing.out.find("share no answer and no counter"), std::string::npos) << nothing.out;
-  const Ran action = run("cscd convert old.json --to github-action --json - | cat");
-  EXPECT_EQ(ordered_json::parse(action.out).at(0).at("unit"), "ms");
 }
 
 TEST_F(CompareCommand, KeepsAHistoryThatIsNeverRewritten) {

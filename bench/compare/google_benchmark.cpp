@@ -1,11 +1,7 @@
 #include "bench/compare/google_benchmark.h"
 
-#include <cstdio>
 #include <filesystem>
-#include <map>
 
-#include "bench/compare/stage_samples.h"
-#include "bench/compare/statistics/statistics.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -19,17 +15,6 @@ double milliseconds_per(const std::string& unit, const std::string& where) {
   if (unit == "ms") return 1;
   if (unit == "s") return 1e3;
   throw InputError(where + ": its time unit is " + unit + "; use ns, us, ms or s");
-}
-
-// Calls `each` with scene, row, stage and milliseconds a repetition.
-template <class Each>
-void for_each_stage(std::span<const Record> records, const Each& each) {
-  for (const Record& record : records)
-    for (const StrategyRecord& row : record.strategies)
-      for (const std::string& stage : stages_of(row)) {
-        const std::vector<double> samples = stage_samples(record, row, stage);
-        if (!samples.empty()) each(record.scene.name, row.name, stage, samples);
-      }
 }
 
 }  // namespace
@@ -70,52 +55,6 @@ Record record_from_google_benchmark(const ordered_json& document, const std::str
 } catch (const nlohmann::json::exception& error) {
   throw InputError(where + ": is not what Google Benchmark writes (" + error.what() +
                    "); write it anew with --benchmark_format=json");
-}
-
-ordered_json google_benchmark_json(std::span<const Record> records) {
-  ordered_json benchmarks = ordered_json::array();
-  for_each_stage(records, [&](const std::string& scene, const std::string& row, const std::string& stage,
-                              const std::vector<double>& samples) {
-    const std::string name = scene + "/" + row + "/" + stage;
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      benchmarks.push_back({{"name", name},
-                            {"run_name", name},
-                            {"run_type", "iteration"},
-                            {"repetitions", samples.size()},
-                            {"repetition_index", i},
-                            {"threads", 1},
-                            {"iterations", 1},
-                            {"real_time", samples[i]},
-                            {"cpu_time", samples[i]},
-                            {"time_unit", "ms"}});
-  });
-  const ordered_json environment = records.empty() ? ordered_json::object() : records.front().environment;
-  return {{"context",
-           {{"date", environment.value("date", "unknown")},
-            {"host_name", environment.value("cpu", "unknown")},
-            {"executable", "cscd"},
-            {"num_cpus", environment.value("cores", 0)},
-            {"mhz_per_cpu", 0},
-            {"cpu_scaling_enabled", false},
-            {"caches", ordered_json::array()},
-            {"library_build_type", "release"},
-            {"cscd_commit", environment.value("commit", "unknown")}}},
-          {"benchmarks", std::move(benchmarks)}};
-}
-
-ordered_json github_action_json(std::span<const Record> records) {
-  ordered_json out = ordered_json::array();
-  for_each_stage(records, [&](const std::string& scene, const std::string& row, const std::string& stage,
-                              const std::vector<double>& samples) {
-    const Estimate estimate = bootstrap_median(samples);
-    char range[32];
-    std::snprintf(range, sizeof range, "± %.3g", (estimate.high - estimate.low) / 2);
-    out.push_back({{"name", scene + "/" + row + "/" + stage},
-                   {"unit", "ms"},
-                   {"value", estimate.value},
-                   {"range", range}});
-  });
-  return out;
 }
 
 }  // namespace cscd::bench

@@ -41,16 +41,6 @@ TEST(GoogleBenchmark, IsReadAsARecordWithoutTruth) {
   EXPECT_THROW(record_from_google_benchmark(damaged, "a file"), InputError);
 }
 
-TEST(GoogleBenchmark, KeepsEverySampleOfARecord) {
-  const std::vector<Record> records = {test::small_record()};
-  const ordered_json written = google_benchmark_json(records);
-  ASSERT_TRUE(is_google_benchmark(written));
-  const Record read = record_from_google_benchmark(written, "a file");
-  ASSERT_EQ(read.strategies.size(), 3u * 4);  // rows; refit, traversal, total, preparation
-  EXPECT_EQ(read.strategies[2].name, "hand/slow/total");
-  EXPECT_EQ(read.strategies[2].ms.at("traversal"), (std::vector<std::vector<double>>{{10}, {10}}));
-}
-
 TEST(GoogleBenchmark, FilesAreComparedWithoutTruth) {
   const Record record = record_from_google_benchmark(ordered_json::parse(kWritten), "a file");
   std::vector<Record> before, after;
@@ -63,16 +53,6 @@ TEST(GoogleBenchmark, FilesAreComparedWithoutTruth) {
   }
   const Comparison comparison = compare(side_of(before, "OLD"), side_of(after, "NEW"), Lane::all);
   EXPECT_EQ(comparison.verdict(), ComparisonVerdict::worse) << comparison_text(comparison);
-}
-
-TEST(GithubAction, HasOneEntryAStage) {
-  const std::vector<Record> records = {test::small_record()};
-  const ordered_json written = github_action_json(records);
-  ASSERT_EQ(written.size(), 3u * 4);
-  EXPECT_EQ(written[2]["name"], "hand/slow/total");
-  EXPECT_EQ(written[2]["unit"], "ms");
-  EXPECT_EQ(written[2]["value"], 10);
-  EXPECT_EQ(written[2]["range"], "± 0");
 }
 
 }  // namespace

@@ -24,7 +24,6 @@ void add_tables(CLI::App& app);
 void add_report(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_history(CLI::App& app);
-void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
 void add_list(CLI::App& app);
 void add_verify(CLI::App& app);
