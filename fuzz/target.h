@@ -5,7 +5,8 @@
 #include <string>
 
 // A fuzz target is one function that takes any bytes. libFuzzer searches for bytes that break a promise of
-// the code behind it (entry.cpp, scripts/fuzz); replay.cpp runs stored and random bytes in every build.
+// the code behind it (entry.cpp, scripts/find-faults fuzz); replay.cpp runs stored and random bytes in every
+// build.
 namespace cscd::fuzz {
 
 using Bytes = std::span<const std::uint8_t>;

@@ -45,7 +45,7 @@ void add_compare(CLI::App& app) {
       "time has changed only where the interval over processes excludes no change, the change passes the "
       "floors, and\n"
       "all pairings of layouts agree in its sign. Times need six processes a side, measured in turns, as\n"
-      "scripts/bench_commits does; each line says which change it could have seen. Where no verdict about "
+      "scripts/compare-commits does; each line says which change it could have seen. Where no verdict about "
       "times is\n"
       "possible, the times of both sides are shown all the same, with the reason.\n\n"
       "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest "

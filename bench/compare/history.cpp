@@ -211,7 +211,7 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
       entries.push_back(read_entry(file.path()));
   if (entries.empty())
     throw InputError("history " + folder.string() +
-                     ": holds no entry; add one with scripts/bench_commits --keep or cscd history --keep");
+                     ": holds no entry; add one with scripts/compare-commits --keep or cscd history --keep");
   std::stable_sort(entries.begin(), entries.end(), [](const ordered_json& a, const ordered_json& b) {
     return a.at("committed").get<std::string>() < b.at("committed").get<std::string>();
   });

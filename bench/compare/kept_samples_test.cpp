@@ -17,15 +17,15 @@
 
 // What the comparison finds on kept samples (kept_samples.json.gz): 162 processes of one program in six
 // layouts (scripts/lib/layouts.py), run in turns on a machine of two cores with a load of five to nine. In a
-// round each layout ran once, in a random order, with the options of scripts/bench_commits but eleven
+// round each layout ran once, in a random order, with the options of scripts/compare-commits but eleven
 // repetitions, on the scene hand.
-// CSCD_COMPARE_SAMPLES names another such file, which scripts/compare-samples makes.
+// CSCD_COMPARE_SAMPLES names another such file, which scripts/record samples makes.
 namespace cscd::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kPairs = 60;  // as scripts/bench_commits runs them unless told otherwise
+constexpr std::size_t kPairs = 60;  // as scripts/compare-commits runs them unless told otherwise
 
 class KeptSamples {
  public:

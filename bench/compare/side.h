@@ -29,7 +29,7 @@ Side side_of(std::vector<Record> records, const std::string& named);
 // What `environment` says under a key, as text; "unknown" where it says nothing.
 std::string environment_text(const Record& record, const char* key);
 
-// Which of several links of the same objects a record was measured with (scripts/bench_commits); "0" where
+// Which of several links of the same objects a record was measured with (scripts/compare-commits); "0" where
 // the record does not say.
 std::string layout_of(const Record& record);
 

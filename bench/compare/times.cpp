@@ -200,10 +200,10 @@ std::string times_refused(std::span<const Record> before, std::span<const Record
   if (have < least)
     return "the smaller side has " + std::to_string(have) + (have == 1 ? " process" : " processes") +
            ", and how processes vary shows from " + std::to_string(least) +
-           " on; measure with scripts/bench_commits";
+           " on; measure with scripts/compare-commits";
   if (!in_turns(before, after))
     return "one side was measured after the other, so drift of the machine cannot be told from a change; "
-           "measure in turns with scripts/bench_commits";
+           "measure in turns with scripts/compare-commits";
   return "";
 }
 

@@ -1,5 +1,5 @@
 // Prints a digest of the answers to random steps, bit by bit, and the user time that they took:
-// scripts/check-isas compares instruction sets by it, and scripts/check-threads numbers of threads.
+// scripts/check isas compares instruction sets by it, and scripts/check threads numbers of threads.
 //
 //   digest SOUPS STEPS [THREADS]
 //

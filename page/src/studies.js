@@ -84,8 +84,7 @@ export function showGrowth(study) {
   choose();
 }
 
-// A scene, a machine, and what was timed of the scene. Only times of one measurement can be held against each other, as in
-// scripts/history-chart.
+// A scene, a machine, and what was timed of the scene. Only times of one measurement can be held against each other.
 const measurementOf = ({ scene, machine, measured }) =>
   `${scene} on ${machine}: ${measured.timed_intervals.length} intervals, ${measured.rows.length} rows in turns`;
 

@@ -1,5 +1,5 @@
 # CMAKE_TOOLCHAIN_FILE for 64-bit ARM, with Debian's cross compiler. The environment variable CSCD_SYSROOT names a folder
-# with Debian's packages for arm64 (scripts/check-aarch64 makes one). Programs of the build run under qemu-user.
+# with Debian's packages for arm64 (scripts/check aarch64 makes one). Programs of the build run under qemu-user.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

@@ -2,7 +2,7 @@
 #
 #   cscd_fuzz_target(NAME RANDOM ROOM... [STORED FILE...])   fuzz/NAME.cpp, which uses the rooms
 #
-# With CSCD_FUZZ each target is a program for libFuzzer, fuzz_NAME (scripts/fuzz). Without, it is a test that runs what is
+# With CSCD_FUZZ each target is a program for libFuzzer, fuzz_NAME (scripts/find-faults fuzz). Without, it is a test that runs what is
 # stored for it, in fuzz/corpus/NAME and in the files, and RANDOM inputs made from that.
 option(CSCD_FUZZ "Build the fuzz targets for libFuzzer; needs clang" OFF)
 

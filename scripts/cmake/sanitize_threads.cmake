@@ -1,4 +1,4 @@
-# cmake -C scripts/cmake/sanitize_threads.cmake: ThreadSanitizer; programs of scripts/check-threads end at its first finding.
+# cmake -C scripts/cmake/sanitize_threads.cmake: ThreadSanitizer; programs of scripts/check threads end at its first finding.
 set(CMAKE_BUILD_TYPE Debug CACHE STRING "")
 set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -fsanitize=thread -fno-omit-frame-pointer" CACHE STRING "")
 set(CMAKE_EXE_LINKER_FLAGS_DEBUG "-fsanitize=thread" CACHE STRING "")

@@ -1,4 +1,4 @@
-"""The charts of scripts/accuracy-figures."""
+"""The charts of scripts/figures accuracy."""
 from charts import COLOURS, MARKERS, label_panels, log_axis, marker, matplotlib, panels, plt, save, test_colour
 from accuracy_sums import GROUPS, base, is_sweep, sums
 

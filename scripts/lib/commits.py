@@ -1,4 +1,4 @@
-"""Programs of commits: what scripts that compare commits build and run."""
+"""Programs of commits: what scripts that compare commits (compare-commits, record waits, record samples) build and run."""
 import difflib
 import fcntl
 import os
@@ -8,19 +8,19 @@ import shutil
 import subprocess
 
 from layouts import link_layout
-from records import refuse
+from script import ROOT, git, refuse
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "commits"
 # Valgrind knows no AVX-512, and counters are the same with AVX2 and FMA (bench/METHODOLOGY.md).
 COUNTED_FLAGS = "-march=x86-64-v3"
 
 
-def git(*words, **variables):
-    done = subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, env={**os.environ, **variables})
-    if done.returncode:
-        refuse(f"git {' '.join(words)}: {done.stderr.strip().splitlines()[-1] if done.stderr else 'failed'}")
-    return done.stdout.strip()
+# The run that stands for one process: eight intervals from the middle of a scene, where most happens, four of them timed. Most of a
+# process goes into preparing, so repetitions are cheap. About half of what processes differ by on a machine with other work comes
+# from too few of them.
+FRAMES = (116, 124)
+FRAME_RANGE = "%d:%d" % FRAMES
+OPTIONS = ["--frames", FRAME_RANGE, "--time-every", "2", "--time-contacts", "0", "--verify-every", "4", "--repetitions", "31"]
 
 
 def commit_named(name):
@@ -28,7 +28,8 @@ def commit_named(name):
     if name is None:
         # With the dates of HEAD the same changes give the same commit, so that an interrupted call finds its measurements.
         date = git("show", "-s", "--format=%cI", "HEAD")
-        return git("stash", "create", GIT_AUTHOR_DATE=date, GIT_COMMITTER_DATE=date) or git("rev-parse", "HEAD")
+        dated = {**os.environ, "GIT_AUTHOR_DATE": date, "GIT_COMMITTER_DATE": date}
+        return git("stash", "create", env=dated) or git("rev-parse", "HEAD")
     done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--verify", "--quiet", "--end-of-options", f"{name}^{{commit}}"],
                           capture_output=True, text=True)
     if done.returncode:
@@ -61,8 +62,7 @@ def scenes_of(commit):
 
 def strategies_of(commit):
     """The names and groups in a commit's catalogue of strategies."""
-    catalogue = git("ls-tree", "--name-only", commit, "bench/measure/strategies/catalogue.cpp",
-                    "bench/rows/catalogue.cpp", "bench/catalogue.cpp").splitlines()
+    catalogue = [path for path in git("ls-tree", "-r", "--name-only", commit, "bench/").splitlines() if path.endswith("/catalogue.cpp")]
     if not catalogue:
         refuse(f"commit {commit[:10]}: has no catalogue of strategies, so it cannot be measured")
     rows = git("show", f"{commit}:{catalogue[0]}").partition("playing(")[0]  # behind them are look-ups and their errors

@@ -1,4 +1,8 @@
-"""Figures that follow from those that the paper prints."""
+"""The figures that the paper prints, and what follows from them."""
+from records import read_json
+from script import ROOT
+
+PAPER = read_json(ROOT / "bench" / "tables" / "published.json")
 
 
 def over(figure, ratio, decimals):

@@ -6,13 +6,7 @@ import re
 import sys
 import zlib
 
-SCRIPT = pathlib.Path(sys.argv[0]).name
-
-
-def refuse(text):
-    """Ends the script with one line on standard error and status 2."""
-    print(f"{SCRIPT}: {text}", file=sys.stderr)
-    sys.exit(2)
+from script import refuse
 
 
 def read_json(path):
@@ -76,17 +70,3 @@ def plain(name):
     """A scene's name as part of a file's name. A record may call its scene anything, even by a path."""
     stem = name.rsplit("/", 1)[-1]
     return re.sub(r"[^\w.-]|^[.-]", "_", stem)[:64] or "unnamed"
-
-
-def existing_folder(path):
-    if not path.is_dir():
-        refuse(f"{path}: is not a folder; make it first")
-    return path
-
-
-def run(main):
-    """Runs a script; a file that cannot be written ends it with one line."""
-    try:
-        main()
-    except OSError as error:
-        refuse(f"{error.filename or 'output'}: cannot be written ({error.strerror}); choose another place or make room")

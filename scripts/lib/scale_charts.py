@@ -1,4 +1,4 @@
-"""The charts of scripts/scale-figures: a panel a scene, a curve a strategy."""
+"""The charts of scripts/figures scale: a panel a scene, a curve a strategy."""
 from charts import (STAGES, label_panels, left_out, line_style, log_axis, marker, panels, plt, save, shown, spans_decades,
                     ticks)
 from scale_record import count, per_triangle, row, series, speedups, stage

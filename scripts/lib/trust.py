@@ -16,13 +16,12 @@ row without a reason is shown as such.
 """
 import datetime
 import json
-import pathlib
 import re
-import subprocess
 
-from pages import table
-from records import read_json, refuse
-from tracked import ROOT, tracked_files
+from markdown import table
+from records import read_json
+from script import ROOT, git, refuse
+from tracked import tracked_files
 
 FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
@@ -51,20 +50,16 @@ WITHOUT = "**no reason given**"
 
 
 def write_record(record):
-    """Adds date and commit, writes the record, and returns its path."""
-    git = ["git", "-C", str(ROOT)]
-    commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
-    changes = subprocess.run([*git, "status", "--porcelain", "--", "core", "library", "CMakeLists.txt"],
-                             capture_output=True, text=True, check=True).stdout.strip()
+    """Adds date and commit, writes the record, and says where it is."""
+    commit = git("rev-parse", "HEAD") + (" with changes" if git("status", "--porcelain", "--", "core", "library", "CMakeLists.txt") else "")
     whole = {"kind": record["kind"], "title": record["title"], "date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(),
-             "commit": commit + (" with changes" if changes else ""), **record}
+             "commit": commit, **record}
     FOLDER.mkdir(parents=True, exist_ok=True)
     stem, count = f"{whole['date']}-{whole['kind']}", 1
-    while (FOLDER / (stem + (f"-{count}" if count > 1 else "") + ".json")).exists():
+    while (path := FOLDER / (stem + (f"-{count}" if count > 1 else "") + ".json")).exists():
         count += 1
-    path = FOLDER / (stem + (f"-{count}" if count > 1 else "") + ".json")
     path.write_text(json.dumps(whole, indent=1, ensure_ascii=False) + "\n")
-    return path
+    print(f"written to {path.relative_to(ROOT)}; git add the file, then run scripts/pages")
 
 
 def read_records():
@@ -94,6 +89,10 @@ def moved(row):
     return row
 
 
+def newest_records():
+    return {record["kind"]: record for _, record in read_records()}
+
+
 def reasons_of(name):
     """The reasons of a file by what they are for. Records name the file by where it was when they were made."""
     if not name:
@@ -106,10 +105,12 @@ def reason_for(row, reasons):
     return next((reasons[tuple(row[:n])] for n in range(len(row), 0, -1) if tuple(row[:n]) in reasons), None)
 
 
-def without_reason(record):
-    """How many rows lack the reason that their table asks for."""
-    return sum(reason_for(row, reasons_of(one["reasons"])) is None
-               for one in record["tables"] if "reasons" in one for row in one["rows"])
+def rows_without_reason():
+    """A line for each newest record of a kind with rows that lack the reason that their table asks for."""
+    for kind, record in newest_records().items():
+        if bare := sum(reason_for(row, reasons_of(one["reasons"])) is None
+                       for one in record["tables"] if "reasons" in one for row in one["rows"]):
+            yield f"results/trust/README.md: {bare} rows of the newest record of {kind} lack a reason"
 
 
 def cell(text):
@@ -134,9 +135,9 @@ def section(record):
 
 def page():
     records = read_records()
-    newest = {record["kind"]: record for _, record in records}
+    newest = newest_records()
     lines = ["# What was done to find faults", "",
-             "Made by `scripts/trust-page` from the records beside it; `scripts/lib/trust.py` says what a record holds. The table lists",
+             "Made by `scripts/pages` from the records beside it; `scripts/lib/trust.py` says what a record holds. The table lists",
              "every record. Below it, the newest record of each kind is shown in full.", ""]
     lines += table(["date", "what", "result", "record"],
                    [[record["date"], record["title"], record["headline"], f"[{path.name}]({path.name})"]

@@ -1,0 +1,67 @@
+#!/bin/bash
+# Answers are the same bits whatever the compiler, optimisation and instruction set.
+#
+#   scripts/check stability CSCD FOLDER          the program, which writes the queries; where to build
+#   scripts/check stability CSCD FOLDER --all    two ways more, in a minute and a half more
+#
+# Builds digest.cpp in several ways, as few translation units as names allow, and compares what they print on the hard suite.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
+source "$root/scripts/lib/setup.sh"
+if [ $# -lt 2 ] || [ $# -gt 3 ] || [ "${3:---all}" != --all ]; then die "usage: scripts/check stability CSCD FOLDER [--all]"; fi
+cscd=$(realpath "$1")
+mkdir -p "$2/queries"
+cd "$2"
+
+"$cscd" hardcases --out queries --queries 12 --force > /dev/null
+
+parts=()
+part() {
+  local name=$1
+  shift
+  printf '#include "%s.cpp"\n' "$@" > "$name.cpp"
+  parts+=("$name")
+}
+part rows core/elementary/{additive,cubic,inclusion,newton,catalogue} scenes/queries/query_file
+part filtered core/elementary/certified/{filtered_exact,integer_polynomial,integer_roots,integer_signs,integer_contact}
+part lanes core/elementary/certified/exact_lanes
+part single core/detect/single_filter
+part exact core/elementary/exact/{exact,algebraic,polynomial,touch}
+part starts core/elementary/exact/{static_contact,triangles_meet}
+part meshes core/detect/{double_filter,carried_pairs,compose,contact,filter_block,no_contact_before} \
+  core/mesh/triangle_mesh core/geometry/feature_distance
+part team core/base/team
+part exclusions core/detect/exclusions
+part bounds core/hierarchy/{bounds,scalar_bounds,tree,vertex_bounds}
+part plain core/detect/plain_sign
+part digest scripts/lib/check/digest
+
+clang=$(command -v clang++ || true) all=${3:-}
+variants=("g++ -O0")
+[ -z "$clang" ] || variants+=("clang++ -O3 -march=native")
+if [ -n "$all" ] || [ -z "$clang" ]; then variants+=("g++ -O3 -march=native"); fi
+if [ -n "$all" ] && [ -n "$clang" ]; then variants+=("clang++ -O2"); fi
+# Halves of registers, where the machine's own instructions have no need of them.
+if grep -qw avx512f /proc/cpuinfo; then variants+=("g++ -O2 -march=x86-64-v3"); fi
+failed=0 first=""
+for variant in "${variants[@]}"; do
+  read -r -a words <<< "$variant"
+  key=${variant//[^a-z0-9+=]/}
+  objects=()
+  for name in "${parts[@]}"; do
+    ${CMAKE_CXX_COMPILER_LAUNCHER:-} "${words[@]}" -std=c++20 -DNDEBUG -ffp-contract=off -w -Wno-psabi -I "$root" -isystem /usr/include/eigen3 \
+      -c "$name.cpp" -o "$key-$name.o"
+    objects+=("$key-$name.o")
+  done
+  "${words[@]}" "${objects[@]}" -lgmpxx -lgmp -ltbb -o "digest-$key"
+  "./digest-$key" queries/*.csv > "$key.txt"
+  first=${first:-$key}
+  if cmp -s "$first.txt" "$key.txt"; then
+    echo "$variant: $(wc -l < "$key.txt") digests"
+  else
+    failed=1
+    echo "$variant: answers differ from those of ${variants[0]}:"
+    diff "$first.txt" "$key.txt" | head -n 20 || true
+  fi
+done
+exit $failed

@@ -1,0 +1,349 @@
+"""Charts and the page of how cost grows, from a record of `cscd scale`.
+
+  scripts/figures scale RECORD.json.gz --out FOLDER
+
+scale.md       a page: how cost grows, and where it grows badly
+scale-size     time against triangles, scene by scene, with fitted exponents
+scale-stages   each stage of the first strategy against triangles
+scale-pairs    overlap tests and triangle pairs against triangles
+scale-memory   bytes a triangle against triangles
+scale-step     time against the length of the step
+scale-bones    time against bones (where the record has them)
+scale-threads  how many times as fast on more threads (where the record has them)
+scale-contacts time of the variants with contacts over that of the scenes (where the record has them)
+A chart shows at most eight rows, unless --all asks for all of them. The figures are PNG files; the same record gives the same
+bytes.
+"""
+import pathlib
+
+import scale_charts
+from markdown import built, picture, short, table
+from records import read_record
+from scale_record import Record, count, per_triangle, row, series, speedups, stage
+from script import existing_folder, parser_of
+
+SCHEMA = "cscd.scale/1"
+LONG = 3  # the step, in frames, at which time is to be nearly that of one frame
+FIRST = " --first"  # ends the name of a row that is asked for the earliest contact alone
+MANY = 16  # threads that the page foresees
+JUMP = 1.25  # exponent between neighbouring sizes above which one exponent over all sizes says too little
+STEEP = 1.1  # exponent above which time grows faster than the triangles
+NOWHERE = (f"Nowhere in this record, as far as these rules see: `drvbc_fast` loses where its time grows faster than with the power {STEEP} "
+           "of the triangles, or jumps from one size to the next; where another row is faster in every repetition; and where long "
+           "steps, contacts or bones cost it far more than they should. Preparation and other rows are not judged.")
+CONTACTS = 2  # times what the plain scene takes: what contacts may cost
+
+
+def bounded(ratio):
+    """A ratio and its interval, where it has one."""
+    if not ratio:
+        return "–"
+    return f"{ratio['ratio']:.2f}" + (f" [{ratio['low']:.2f}, {ratio['high']:.2f}]" if "low" in ratio else "")
+
+
+def drawing(drawn, name, title):
+    return picture(f"scale-{name}", title) if name in drawn else []
+
+
+def size_part(record, drawn):
+    scenes = record.scenes("size")
+    if not scenes:
+        return []
+    first = record.names("size")[0]
+    sizes = [s["triangles"] for s in record.of("size")]
+    text = ["## With triangles", "",
+            f"Each scene with {min(sizes):,} to {max(sizes):,} triangles in the same motion. Exponents of a least-squares line in "
+            "log-log: 1 is linear, 2 quadratic.", ""]
+    lines = []
+    for name in record.names("size"):
+        for key, title in (("total", "time"), ("refit", "refit"), ("rv_update", "classification"), ("traversal", "traversal"),
+                           ("elementary", "elementary tests"), ("make_ms", "preparation"), ("bvot", "BVOT"), ("pctp", "PCTP")):
+            cells = [record.exponent("size", scene, name, key) for scene in scenes]
+            if any(cell != "–" for cell in cells):
+                lines.append([f"`{name}`: {title}"] + cells)
+    text += table(["exponent"] + scenes, lines) + ["", "–: absent, or zero at all but two sizes.", ""]
+    text += drawing(drawn, "size", "time against triangles")
+    largest = {scene: max(record.of("size", scene), key=lambda s: s["triangles"]) for scene in scenes}
+    lines = []
+    for name in record.names("size"):
+        for title, value in (("ms", stage("total")), ("preparation, ms", lambda p, a: p["make_ms"]), ("BVOT", count("bvot")),
+                             ("PCTP", count("pctp")), ("bytes a triangle", per_triangle)):
+            cells = []
+            for scene in scenes:
+                p = next((r for r in largest[scene]["strategies"] if r["name"] == name), None)
+                a = row(largest[scene]["steps"][0], name)
+                cells.append(short(value(p, a)) if p and a else "–")
+            lines.append([f"`{name}`: {title}"] + cells)
+    text += ["At the largest size:", ""]
+    text += table(["", *(f"{scene}, {largest[scene]['triangles']:,}" for scene in scenes)], lines) + [""]
+    text += drawing(drawn, "stages", f"stages of {first} against triangles")
+    text += drawing(drawn, "pairs", "overlap tests and pairs against triangles")
+    text += ["Memory is what stays resident when the strategy has been made and has answered twice, over what was there before; "
+             "small surfaces pay for whole pages.", ""]
+    text += drawing(drawn, "memory", "bytes a triangle against triangles")
+    return text
+
+
+def step_part(record, drawn):
+    scenes = record.scenes("step")
+    if not scenes:
+        return []
+    text = ["## With the length of the step", "",
+            "The same surfaces, intervals that end more or fewer frames later. A share of a frame ends on the straight line to "
+            f"the next. Time at {LONG} frame steps over that at 1, [95 % interval]:", ""]
+    lines = []
+    for name in record.names("step"):
+        cells = []
+        for scene in scenes:
+            cells.append(bounded(record.ratios.get((scene, name, LONG))))
+        lines.append([f"`{name}`"] + cells)
+    text += table([f"{LONG}x over 1x"] + scenes, lines) + [""]
+    text += drawing(drawn, "step", "time against the length of the step")
+    steps = [step["step"] for step in record.of("step")[0]["steps"]]
+    lines = []
+    for scene in scenes:
+        cells = []
+        for length in steps:
+            step = next((s for s in record.of("step", scene)[0]["steps"] if s["step"] == length), None)
+            cells.append(f"{step['colliding']} of {len(step['starts'])}" if step else "–")
+        lines.append([scene] + cells)
+    text += ["Intervals with a contact. Beyond one frame step vertices move in straight lines where the scene's bones turn, so "
+             "that limbs pass through each other that never meet in the scene:", ""]
+    text += table(["step"] + [f"{length:g}" for length in steps], lines) + [""]
+    name = record.names("step")[0]
+    lines = []
+    for scene in scenes:
+        subject = record.of("step", scene)[0]
+        by = {s["step"]: row(s, name) for s in subject["steps"]}
+        for key in ("bvot", "pctp"):
+            lines.append([f"{scene}: {key.upper()}"] + [short(by[s]["counts"].get(key)) if s in by else "–" for s in steps])
+        lines.append([f"{scene}: ms"] + [short(by[s].get("ms", {}).get("total")) if s in by else "–" for s in steps])
+    text += [f"`{name}`, step by step:", ""] + table(
+        ["step"] + [f"{length:g}" for length in steps], lines) + [""]
+    return text
+
+
+def bones_part(record, drawn):
+    scenes = record.scenes("bones")
+    if not scenes:
+        return []
+    text = ["## With bones", "", "The same surface in the same motion; the chain's bones are merged or cut.", ""]
+    for scene in scenes:
+        subjects = record.of("bones", scene)
+        lines = []
+        for name in record.names("bones"):
+            for title, value in (("ms", stage("total")), ("preparation, ms", lambda p, a: p["make_ms"]),
+                                 ("BVOT", count("bvot")), ("PCTP", count("pctp")), ("bytes a triangle", per_triangle)):
+                found = dict(series(subjects, name, value, "bones"))
+                lines.append([f"`{name}`: {title}"] + [short(found.get(s["bones"], 0)) for s in subjects])
+        text += table([f"{scene}, bones"] + [str(s["bones"]) for s in subjects], lines) + [""]
+    return text + drawing(drawn, "bones", "time against bones")
+
+
+def predicted(subjects, name):
+    """How many times as fast as on one thread MANY would be, by Amdahl's law fitted to each stage, or None.
+
+    A stage that takes a on one thread and b on n has the serial share (n b / a - 1) / (n - 1), held to [0, 1]."""
+    most = max(s["threads"] for s in subjects)
+    if most == 1:
+        return None
+    one, many = 0, 0
+    for key in ("refit", "rv_update", "traversal", "elementary"):
+        found = dict(series(subjects, name, stage(key), "threads"))
+        if not found.get(1) or found.get(most) is None:
+            continue
+        serial = min(1, max(0, (most * found[most] / found[1] - 1) / (most - 1)))
+        one += found[1]
+        many += found[1] * (serial + (1 - serial) / MANY)
+    return one / many if many else None
+
+
+def threads_part(record, drawn):
+    scenes = record.scenes("threads")
+    if not scenes:
+        return []
+    where = record.raw["environment"]
+    text = ["## With threads", "", f"The same surface; the machine has {where['cores']} hardware threads. "
+            "–: no time, as an answer was wrong or a stage has nothing to do.", ""]
+    beyond = []
+    for scene in scenes:
+        subjects = record.of("threads", scene)
+        lines = []
+        for name in record.names("threads"):
+            for key, title in (("total", "ms"), ("refit", "refit"), ("rv_update", "classification"),
+                               ("traversal", "traversal"), ("elementary", "elementary tests")):
+                found = dict(series(subjects, name, stage(key), "threads"))
+                if found:
+                    lines.append([f"`{name}`: {title}"] + [short(found.get(s["threads"])) for s in subjects])
+            found = speedups(record, scene, name)
+            lines.append([f"`{name}`: times as fast as on one"] + [short(found.get(s["threads"])) for s in subjects])
+            if foreseen := predicted(subjects, name):
+                beyond.append([f"`{name}` on {scene}", short(foreseen)])
+        text += table([f"{scene}, {subjects[0]['triangles']:,} triangles, threads"] +
+                      [str(s["threads"]) for s in subjects], lines) + [""]
+    if beyond:
+        text += [f"Not measured: what {MANY} threads would gain if each stage kept its serial share (Amdahl's law, fitted to one thread "
+                 "and the largest number above).", "", *table(["", f"times as fast on {MANY} threads"], beyond), ""]
+    return text + drawing(drawn, "threads", "times as fast against threads")
+
+
+def contacts_part(record, drawn):
+    scenes = record.scenes("contacts")
+    if not scenes:
+        return []
+    steps = {scene: record.of("contacts", scene)[0]["steps"] for scene in scenes}
+    text = ["## With contacts", "",
+            "Each scene and its variant that collides and is pushed apart, in turn, in the intervals of their clips: the same "
+            "surface, prepared once. A row with `--first` is asked for the earliest contact alone, the others for all that they "
+            "find. Time of the median interval with contacts over that without, [95 % interval]:", ""]
+    lines = [["intervals with a contact"] + [f"{steps[s][1]['colliding']} of {len(steps[s][1]['starts'])}" for s in scenes]]
+    for name in record.names("contacts"):
+        lines.append([f"`{name}`"] + [bounded(record.contacts.get((s, name, "median_interval"))) for s in scenes])
+    text += table(["with over without"] + scenes, lines) + [""]
+    for scene in scenes:
+        reasons = {}
+        for one in record.of("contacts", scene)[0].get("left_out", []):
+            reasons.setdefault(one["why"].split(":")[0], []).append(f"`{one['name']}`")
+        text += [f"Not run on {scene}: {', '.join(names)} ({why})." for why, names in reasons.items()]
+    text += ([""] if text[-1] else []) + drawing(drawn, "contacts", "time with contacts over time without")
+    text += ["The same of all intervals together, where few with many contacts weigh as much as they take:", ""]
+    text += table(["with over without"] + scenes,
+                  [[f"`{name}`"] + [bounded(record.contacts.get((s, name, "total"))) for s in scenes]
+                   for name in record.names("contacts")]) + [""]
+    lines = []
+    for name in record.names("contacts"):
+        for title, value in (("ms, median interval", lambda r: r.get("ms", {}).get("median_interval")),
+                             ("ms, mean", lambda r: r.get("ms", {}).get("total")),
+                             ("elementary tests, ms", lambda r: r.get("ms", {}).get("elementary")),
+                             ("PCTP", lambda r: r["counts"].get("pctp"))):
+            pairs = [[row(step, name) for step in steps[scene]] for scene in scenes]
+            lines.append([f"`{name}`: {title}"] +
+                         [" → ".join(short(value(r)) if r else "–" for r in pair) for pair in pairs])
+    return text + ["Without → with:", ""] + table([""] + scenes, lines) + [""]
+
+
+def slower(mine, theirs):
+    """Whether a row took longer than another in every repetition. Less than that is noise."""
+    of = [row.get("total_samples") or [row["ms"]["total"]] for row in (mine, theirs)]
+    return min(of[0]) > max(of[1])
+
+
+def losses(record):
+    """What grows faster than it should, by rule, so that a new record changes it without a hand."""
+    found = []
+    for scene in record.scenes("size"):
+        for name in record.names("size")[:1]:
+            law = record.fit("size", scene, name, "total")
+            others = [n for n in record.names("size") if n != name]
+            subjects = sorted(record.of("size", scene), key=lambda s: s["triangles"])
+            for smaller, larger in zip(subjects, subjects[1:]):
+                growth = larger["triangles"] / smaller["triangles"]
+                times = [row(s["steps"][0], name) for s in (smaller, larger)]
+                if all(one and "ms" in one for one in times):
+                    ratio = times[1]["ms"]["total"] / times[0]["ms"]["total"]
+                    if ratio > growth ** JUMP:
+                        found.append(f"{scene}: from {smaller['triangles']:,} to {larger['triangles']:,} triangles, {growth:.1f} times as "
+                                     f"many, the time of `{name}` grows {ratio:.1f} times.")
+            if law and law["exponent"] > STEEP:
+                found.append(f"{scene}: the time of `{name}` grows with exponent {law['exponent']:.2f}, more than linearly.")
+            for subject in record.of("size", scene):
+                mine = row(subject["steps"][0], name)
+                for other in others:
+                    theirs = row(subject["steps"][0], other)
+                    if mine and theirs and "ms" in mine and "ms" in theirs and slower(mine, theirs):
+                        found.append(f"{scene} with {subject['triangles']:,} triangles: `{name}` takes "
+                                     f"{mine['ms']['total']:.3g} ms, `{other}` {theirs['ms']['total']:.3g} ms.")
+    for scene in record.scenes("step"):
+        for name in record.names("step")[:1]:
+            ratio = record.ratios.get((scene, name, LONG))
+            if ratio and ratio["ratio"] > 1.5:
+                found.append(f"{scene}: `{name}` takes {ratio['ratio']:.2f} times as long at {LONG} frame steps as at one.")
+            for step in record.of("step", scene)[0]["steps"]:
+                mine = row(step, name)
+                best = min((r for r in step["strategies"] if "ms" in r), key=lambda r: r["ms"]["total"], default=None)
+                if mine and best and "ms" in mine and slower(mine, best):
+                    found.append(f"{scene} at {step['step']:g} frame steps: `{best['name']}` is faster than `{name}`, "
+                                 f"{best['ms']['total']:.3g} against {mine['ms']['total']:.3g} ms.")
+    for scene in record.scenes("contacts"):
+        name = record.of("contacts", scene)[0]["strategies"][0]["name"]
+        for asked in (name, name + FIRST):
+            for of, title in (("median_interval", "in the median interval"), ("total", "over all intervals")):
+                ratio = record.contacts.get((scene, asked, of))
+                if ratio and ratio["ratio"] > CONTACTS:
+                    found.append(f"{scene} with contacts: `{asked}` takes {ratio['ratio']:.2f} times as long as without, {title}.")
+        for step in record.of("contacts", scene)[0]["steps"]:
+            mine = row(step, name)
+            asked_alike = [r for r in step["strategies"] if "ms" in r and not r["name"].endswith(FIRST)]
+            best = min(asked_alike, key=lambda r: r["ms"]["total"], default=None)
+            if mine and best and "ms" in mine and slower(mine, best):
+                found.append(f"{step['scene']}: `{best['name']}` is faster than `{name}`, {best['ms']['total']:.3g} against "
+                             f"{mine['ms']['total']:.3g} ms.")
+    for scene in record.scenes("bones"):
+        law = record.fit("bones", scene, record.names("bones")[0], "total")
+        if law and law["exponent"] > 0.5:
+            found.append(f"{scene}: time grows with the number of bones, exponent {law['exponent']:.2f}.")
+    return found
+
+
+def checked_part(record):
+    raw = record.raw
+    steps = [step for subject in raw["subjects"] for step in subject["steps"]]
+    failures = [f for step in steps for f in step["verified"]["failures"]]
+    against = sum(step["verified"]["by_reference"] for step in steps)
+    other = sum(step["verified"]["by_each_other"] for step in steps)
+    embedded = sum(step["embedded"] for step in steps)
+    where = raw["environment"]
+    text = ["## How to read it", "",
+            f"- {against} intervals were answered by the complete reference too and held against it"
+            + (f"; on {other} of large surfaces the strategies were held against each other" if other else "")
+            + f". {embedded} of {against + other} start embedded. "
+            + ("All answers right." if not failures else "WRONG: " + "; ".join(failures)),
+            "- BVOT counts pairs of bounding volumes that were compared, PCTP pairs of triangles that were passed on to the elementary tests.",
+            "- Where the reference answers fewer intervals, its times and counters are of those alone.",
+            "- Times are medians over repetitions of the mean over the intervals, strategies interleaved in random order; "
+            "counters are means.",
+            "- Body and limbs are subdivided above the scene's own resolution (Loop), tubes and boxes built anew.",
+            f"- {built(where)}.", "",
+            f"Command: `{' '.join(raw['command'])}`"]
+    return text
+
+
+def page(record, drawn):
+    text = ["# How cost grows", ""]
+    if record.raw["smoke"]:
+        text += ["**A small run: it shows that everything works; its times mean nothing.**", ""]
+    names = record.names("size") or record.names("step") or record.names("contacts")
+    parts = []
+    for scene in record.scenes("size"):
+        law = record.fit("size", scene, names[0], "total")
+        if law:
+            parts.append(f"{scene} {law['exponent']:.2f}")
+    if parts:
+        text += [f"`{names[0]}`, time against triangles, exponents: {', '.join(parts)}."]
+    ratios = [f"{scene} {record.ratios[(scene, names[0], LONG)]['ratio']:.2f}" for scene in record.scenes("step")
+              if (scene, names[0], LONG) in record.ratios]
+    if ratios:
+        text += [f"Time at {LONG} frame steps over that at one: {', '.join(ratios)}."]
+    for name in (names[0], names[0] + FIRST):
+        ratios = [f"{scene} {record.contacts[(scene, name, 'median_interval')]['ratio']:.2f}"
+                  for scene in record.scenes("contacts") if (scene, name, "median_interval") in record.contacts]
+        if ratios:
+            text += [f"`{name}`, the median interval's time with contacts over that without: {', '.join(ratios)}."]
+    lost = losses(record)
+    text += ["", "## Where it loses", ""] + ([f"- {line}" for line in lost] or [NOWHERE])
+    text += [""] + size_part(record, drawn) + step_part(record, drawn) + bones_part(record, drawn) + threads_part(record, drawn)
+    text += contacts_part(record, drawn)
+    text += checked_part(record)
+    return "\n".join(text) + "\n"
+
+
+def main():
+    parser = parser_of(__doc__)
+    parser.add_argument("record", type=pathlib.Path)
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="an existing folder")
+    parser.add_argument("--all", action="store_true", help="all rows in every chart")
+    arguments = parser.parse_args()
+    existing_folder(arguments.out)
+    record = Record(read_record(arguments.record, SCHEMA, "cscd scale"))
+    drawn = scale_charts.draw_all(record, arguments.out, arguments.all, CONTACTS)
+    (arguments.out / "scale.md").write_text(page(record, drawn))
