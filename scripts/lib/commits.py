@@ -1,4 +1,4 @@
-"""Programs of commits: what scripts that compare commits (compare-commits, record waits, record samples) build and run."""
+"""Programs of commits: what scripts that compare commits (compare-commits, record latency, record samples) build and run."""
 import difflib
 import fcntl
 import os

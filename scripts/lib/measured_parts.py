@@ -71,23 +71,29 @@ def picture(results):
     return f"![a hand at rest, the interval in which its fingers first touch, and where they do]({results.link}/contact.png)\n"
 
 
-def best_baseline(results, scene, over, interval=True):
-    """How many times faster drvbc_fast is than the fastest complete baseline, and which that is. `over` begins the key of the ratio."""
-    speedups = [(cell["measured"], name, cell) for name in COMPLETE_BASELINES
-                if (cell := results.cell("engine", scene, f"{over}_{name}")) and cell["measured"] is not None]
-    if not speedups:
+def best(cells, with_bounds=True):
+    """The least measured figure of some baselines' cells, by name, and whose it is."""
+    measured = [(cell["measured"], name, cell) for name, cell in cells.items() if cell and cell["measured"] is not None]
+    if not measured:
         return "not run"
-    _, name, cell = min(speedups)
-    return f"{with_interval(cell['measured'], cell.get('interval') if interval else None, short)}{mark(cell)}, `{name}`"
+    value, name, cell = min(measured)
+    return f"{with_interval(value, cell.get('interval') if with_bounds else None, short)}{mark(cell)}, `{name}`"
+
+
+def best_baseline(results, scene, over, with_bounds=True):
+    """How many times faster a row is than the fastest complete baseline, and which that is. `over` begins the key of the ratio."""
+    return best({name: results.cell("engine", scene, f"{over}_{name}") for name in COMPLETE_BASELINES}, with_bounds)
+
+
+def row(title, scenes, text):
+    """A row of a table that has a column a scene."""
+    return [title, *(text(scene) for scene in scenes)]
 
 
 def door(results):
     """What a visitor wants to know first, in five rows: the newest record of what a query runs without options."""
     measured = Results(newest("starts"), results.page)
     scenes = measured.scenes(False)
-
-    def row(title, text):
-        return [title] + [text(scene) for scene in scenes]
 
     def plain(table_id, key, variant=""):
         def text(scene):
@@ -96,12 +102,12 @@ def door(results):
         return text
 
     lines = table([""] + scenes, [
-        row("**one query, ms**", plain("beside", "drvbc_fast.with_refit_median")),
-        row("with contacts, ms", plain("beside", "drvbc_fast.with_refit_median", "_contact")),
-        row("from a start that may cross itself, ms", plain("beside", SEEING_START)),
-        row("times faster than the best package or baseline",
-            lambda scene: best_baseline(measured, scene, "fast.over", interval=False)),
-        row("times faster than DRVBC, the paper's method", plain("engine", "fast.over_drvbc")),
+        row("**one query, ms**", scenes, plain("beside", "drvbc_fast.with_refit_median")),
+        row("with contacts, ms", scenes, plain("beside", "drvbc_fast.with_refit_median", "_contact")),
+        row("from a start that may cross itself, ms", scenes, plain("beside", SEEING_START)),
+        row("times faster than the best package or baseline", scenes,
+            lambda scene: best_baseline(measured, scene, "fast.over", with_bounds=False)),
+        row("times faster than DRVBC, the paper's method", scenes, plain("engine", "fast.over_drvbc")),
     ])
     return "\n".join(lines + [
         "", "What `cscd query` and the library run without options: row `drvbc_fast`, and row `drvbc_fast_complete` where the start may "
@@ -114,20 +120,17 @@ def door(results):
 
 def rows_of(results, scenes, also_published):
     """The rows in plain words, one scene a column."""
-    def row(title, text):
-        return [title] + [text(scene) for scene in scenes]
-
     def cell(table_id, key, published=False):
         return lambda scene: shown(results.cell(table_id, scene, key), published, short)
 
     rows = [
-        row("**one query of `drvbc_fast`, ms**: the median interval", cell("beside", "drvbc_fast.with_refit_median")),
-        *([] if also_published else [row("the mean of all timed intervals, ms", cell("beside", "drvbc_fast.with_refit"))]),
-        row("times faster than the best complete baseline", lambda scene: best_baseline(results, scene, "fast.over")),
-        row("times faster than `drvbc`, the paper's method", cell("engine", "fast.over_drvbc")),
+        row("**one query of `drvbc_fast`, ms**: the median interval", scenes, cell("beside", "drvbc_fast.with_refit_median")),
+        *([] if also_published else [row("the mean of all timed intervals, ms", scenes, cell("beside", "drvbc_fast.with_refit"))]),
+        row("times faster than the best complete baseline", scenes, lambda scene: best_baseline(results, scene, "fast.over")),
+        row("times faster than `drvbc`, the paper's method", scenes, cell("engine", "fast.over_drvbc")),
     ]
     if also_published:
-        rows.append(row("`drvbc`: times faster than `base`, a plain hierarchy, both without refit (published)",
+        rows.append(row("`drvbc`: times faster than `base`, a plain hierarchy, both without refit (published)", scenes,
                         lambda scene: cell("table2", "speedup_base", True)(scene)
                         if results.cell("table2", scene, "speedup_base") else "not published"))
     return rows
@@ -160,39 +163,23 @@ def headline(results):
 SEEING_START = "drvbc_fast_complete.seeing_start_median"
 
 
-ALL_CONTACTS = "drvbc_fast_all.with_refit_median"
-
-
-def has(results, key):
-    return any(results.cell("beside", scene, key) for scene in results.scenes(False))
-
-
 def starts(results):
     """What a query takes where its start is known to be embedded, where it is not, and where that does not matter."""
-    def row(title, scenes, text):
-        return [title] + [text(scene) for scene in scenes]
-
     def measured(key):
         return lambda scene: shown(results.cell("beside", scene, key), text=short)
 
-    finds_all = has(results, ALL_CONTACTS)  # older records have no such row
-    sees = has(results, SEEING_START)  # older records test the start of the complete row apart
     lines = []
-    for scenes in (results.scenes(False), results.scenes(True)):
-        if not scenes:
-            continue
-        seeing = [row("`drvbc_fast_complete`, which sees what crosses at the start, ms", scenes,
-                      measured(SEEING_START))] if sees else []
+    for scenes in filter(None, (results.scenes(False), results.scenes(True))):
         lines += ([""] if lines else []) + table(["figure [95 % interval]"] + scenes, [
             row("`drvbc_fast`, the start is known, ms", scenes, measured("drvbc_fast.with_refit_median")),
             row("`drvbc_fast`, the start is not known, ms", scenes, measured("drvbc_fast.with_start_median")),
-            *([row("`drvbc_fast_all`, all contacts, the start is known, ms", scenes, measured(ALL_CONTACTS))] if finds_all else []),
+            row("`drvbc_fast_all`, all contacts, the start is known, ms", scenes, measured("drvbc_fast_all.with_refit_median")),
             row("`drvbc_fast_complete`, which takes any start, ms", scenes, measured("drvbc_fast_complete.with_refit_median")),
-            *seeing,
+            row("`drvbc_fast_complete`, which sees what crosses at the start, ms", scenes, measured(SEEING_START)),
             row("times faster than the best complete baseline, the start is known", scenes,
                 lambda scene: best_baseline(results, scene, "fast.over")),
             row("times faster than the best complete baseline, the start is not known", scenes,
-                lambda scene: best_baseline(results, scene, "complete.seeing_start_over" if sees else "fast.with_start_over")),
+                lambda scene: best_baseline(results, scene, "complete.seeing_start_over")),
         ])
     return "\n".join(lines + ["", f"Measured on {built(results.records[0]['environment'])}. [Tables]({results.link}/tables.md)."]) + "\n"
 
@@ -234,9 +221,6 @@ STAGES = ("refit", "rv_update", "traversal", "elementary")
 
 def cloth(results):
     """What sheets, a bag and a skirt take, with covers that follow and with covers that do not."""
-    def row(title, scenes, text):
-        return [title] + [text(scene) for scene in scenes]
-
     def measured(strategy, quantity="with_refit_median", text=short):
         return lambda scene: shown(results.cell("beside", scene, f"{strategy}.{quantity}"), text=text)
 
@@ -246,25 +230,16 @@ def cloth(results):
             return "open" if cell is None or cell["measured"] is None else shown(cell, text=short)
         return text
 
-    def best(scene):
-        cells = [(cell["measured"], name, cell) for name in COMPLETE_BASELINES
-                 if (cell := results.cell("beside", scene, f"{name}.with_refit_median")) and cell["measured"] is not None]
-        if not cells:
-            return "not run"
-        _, name, cell = min(cells)
-        return f"{with_interval(cell['measured'], cell.get('interval'), short)}, `{name}`"
-
     lines = []
-    for scenes in (results.scenes(False), results.scenes(True)):
-        if not scenes:
-            continue
+    for scenes in filter(None, (results.scenes(False), results.scenes(True))):
         lines += ([""] if lines else []) + table(["one query, ms, median interval [95 % interval]"] + scenes, [
             row("`drvbc_fast_complete`", scenes, measured("drvbc_fast_complete")),
             row("the same with covers that stay as they were cut", scenes, measured("drvbc_fast_fixed_covers_complete")),
             row("`drvbc_fast`, a closed surface and a start known to be embedded", scenes, of_closed("drvbc_fast")),
             row("the same with covers that stay as they were cut", scenes,
                 of_closed("drvbc_fast_fixed_covers")),
-            row("the best complete baseline", scenes, best),
+            row("the best complete baseline", scenes, lambda scene: best(
+                {name: results.cell("beside", scene, f"{name}.with_refit_median") for name in COMPLETE_BASELINES})),
             row("overlap tests of `drvbc_fast_complete`, thousands", scenes, measured("drvbc_fast_complete", "bvot", number)),
             row("overlap tests of `base`, thousands", scenes, measured("base", "bvot", number)),
         ])

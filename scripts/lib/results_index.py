@@ -7,8 +7,8 @@ from script import ROOT, refuse
 from tracked import tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "waits")
-PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "waits.md", "notes.md")
+KINDS = ("full", "starts", "cloth", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "latency", "waits")
+PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
 Made by `scripts/pages` from the records themselves. A folder is named by its date, its machine, its commit
@@ -22,7 +22,7 @@ and its kind.
 | accuracy | `scripts/record accuracy` | what every elementary test gets wrong, and what accuracy costs |
 | benchmark | `scripts/record benchmark` | scores of this project's strategies and today's packages on [the public benchmark](../bench/BENCHMARK.md) |
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |
-| waits | `scripts/record waits BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
+| latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
 
 The newest record of each kind is here. A record is never rewritten after its day; whatever is found out later stands in a
 `notes.md` in its folder, which says when it was written. Records (`*.json.gz`) are compressed; `cscd tables` and the scripts

@@ -1,18 +1,16 @@
 #!/bin/bash
 # Every instruction set gives the same answers, bit by bit, here and under qemu-user.
 #
-#   scripts/check isas [ROUNDS]     how many rounds of timing; default 7, and 0 leaves timing out
+#   scripts/check isas
 #
-# Builds the library for all sets that CSCD_ISA names, and asks processors without AVX-512 and without AVX, too. Then prints times
-# beside those of a build for this machine alone, and judges none.
+# Builds the library for all sets that CSCD_ISA names, and asks processors without AVX-512 and without AVX, too.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
-rounds=${1:-7}
-[[ $rounds =~ ^[0-9]+$ ]] || die "ROUNDS is a number; usage: scripts/check isas [ROUNDS]"
-all=$root/build-isas native=$root/build-isas-native
+[ $# -eq 0 ] || die "takes no arguments"
+all=$root/build-isas
 
-echo "Installs qemu-user where it is missing; builds the library four times, which takes about 15 minutes on 2 idle cores."
+echo "Installs qemu-user where it is missing; builds the library for three instruction sets, which takes about 10 minutes on 2 idle cores."
 say "packages"
 install_packages g++ cmake ninja-build libeigen3-dev libgmp-dev libtbb-dev qemu-user
 
@@ -62,29 +60,4 @@ if answer=$(CSCD_ISA=mmx "$all/digest" 1 1 2>&1) || [[ $answer != *"no such inst
   echo "CSCD_ISA=mmx: FAILED: not refused as it should be: $answer"
   failed=1
 fi
-[ "$rounds" -gt 0 ] || exit $failed
-
-say "times"
-cmake -S "$root" -B "$native" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_LIBRARY_ONLY=ON -DCSCD_NATIVE=ON >/dev/null
-ninja -C "$native" cscd_static
-link "$native/digest" "$native/libcscd.a"
-# In turns, A B B A; the median of all rounds.
-for ((round = 0; round < rounds; round++)); do
-  for build in "$all" "$native" "$native" "$all"; do
-    "$build/digest" 200 10 2>&1 >/dev/null | sed "s|^|${build##*/} |"
-  done
-done | tee "$all/times.txt" | python3 -c '
-import re
-import statistics
-import sys
-
-times_of = {}
-for line in sys.stdin:
-    build, of_all = re.match(r"(\S+) \S+ (\d+) ms", line)[1], re.findall(r"(\d+) ms", line)
-    times_of.setdefault(build, []).append([int(ms) for ms in of_all])
-for column, what in enumerate(("small random surfaces", "a ring of 12,800 triangles, preparation included")):
-    times = {build: statistics.median(row[column] for row in rows) for build, rows in times_of.items()}
-    one, native = times["build-isas"], times["build-isas-native"]
-    print(f"{what}: chosen at run time {one:g} ms, for this machine alone {native:g} ms, ratio {one / native:.3f}")
-'
 exit $failed

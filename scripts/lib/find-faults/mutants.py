@@ -4,27 +4,25 @@
   scripts/find-faults mutants --resume --stages own,rooms,proof,slow    asks those that are still alive by the other tests, too
   scripts/find-faults mutants --only core/fast/certify/stars.cpp --count 40
   scripts/find-faults mutants --list --count 0          the places, without a run
-  scripts/find-faults mutants --again --stages room,fuzz    asks all survivors once more, after tests were written for them
-  scripts/find-faults mutants --from results/trust/2026-11-26-mutants-2.json --stages room,own,rooms    the same for a record's survivors
-                                           without a reason, where the file of results is gone
-  scripts/find-faults mutants --resume --unexplained    leaves out survivors with a reason in scripts/lib/mutants.json
-  scripts/find-faults mutants --record                  writes results/trust/DATE-mutants.json from the file of results; with --from
-                                           DATE-mutants-asked-again.json
+  scripts/find-faults mutants --record                  writes results/trust/DATE-mutants.json from the file of results
+  scripts/find-faults mutants --from results/trust/2026-11-26-mutants-2.json --stages room,own,rooms
+                                           asks the survivors of a record without a reason once more, after tests were written for
+                                           them; with --record, writes DATE-mutants-asked-again.json
 
 A mutant flips a comparison, drops an error term or its factor, shifts an index, exchanges an operator or removes a statement
 in core/geometry, core/elementary or core/fast (scripts/lib/mutations.py). It is built and tested in a copy of the working
 tree below build-mutate, so no file of the working tree ever holds a mutant. The tests come in stages, and the first
 test that fails ends the mutant:
 
-  room    the tests of the mutant's room that take no longer than --quick-seconds
+  room    the tests of the mutant's room that take no longer than a second
   fuzz    the fuzz targets that use the room, on random input made from a fixed seed; of a header as part of `rooms`
   own     the tests of the mutant's room that take longer
   rooms   tests that are as quick, of the rooms of core and library above it
   proof   tests of bench/measure/replay that hold the rules of core/soundness.md and plant errors, and `cscd verify`
   slow    the tests of the rooms above that take longer
 
-Each result goes at once into a file with one JSON object a line, by default build-mutate/mutants.jsonl. A mutant that is in
-the file is not tried again, but a survivor is asked by stages that it has not seen. Results:
+Each result goes at once into build-mutate/mutants.jsonl, one JSON object a line. A mutant that is in the file is not tried again,
+but a survivor without a reason is asked by stages that it has not seen. Results:
 
   killed        a test failed, crashed, or took too much memory; `by` names it
   timed out     a test did not end
@@ -32,8 +30,8 @@ the file is not tried again, but a survivor is asked by stages that it has not s
   same code     the compiler makes the same code of the mutant, byte by byte, and so proves that nothing changed
   survived      all tests of `stages` passed
 
-A mutant that --again kills by a stage that it had survived is marked `mended`: a test was written because of it. Reasons why
-a survivor gives the same answers stand in scripts/lib/mutants.json.
+A mutant that --from kills by a stage that it had survived is marked `mended`: a test was written because of it. Reasons why a
+survivor gives the same answers stand in scripts/lib/mutants.json.
 
 Exit status: 0 the run is complete, 1 it was interrupted, 2 it could not run.
 """
@@ -74,6 +72,9 @@ FUZZ_TARGET = re.compile(r"^cscd_fuzz_target\((\w+) \d+ ([\w/ ]+)\)", re.M)
 PROOFS = "Rules.*:Saboteurs.*:HardMeshes.*:PlantedTruth.*:RandomVerification.EveryStrategy*"
 VERIFY = ["verify", "--intervals", "400"]
 MEMORY = 6 << 30
+RESULTS = ROOT / "build-mutate" / "mutants.jsonl"
+QUICK = 1  # seconds that a quick test takes at most
+QUICK_LIMIT, SLOW_LIMIT = 120, 900  # seconds for the quick tests of one program, and for the slow ones
 
 stopping = threading.Event()
 
@@ -122,8 +123,8 @@ def call(words, folder, seconds, on_line=lambda line: None, limited=True):
 class Copy:
     """A copy of the working tree with a build of its own."""
 
-    def __init__(self, folder, jobs):
-        self.source, self.binaries, self.jobs = folder / "source", folder / "build", jobs
+    def __init__(self, folder):
+        self.source, self.binaries = folder / "source", folder / "build"
         self.whole = {}  # hash of each program without a mutation
         self.refresh()
         if not (self.binaries / "build.ninja").exists():
@@ -151,7 +152,7 @@ class Copy:
         """None, or what the compiler says."""
         if not targets:  # ninja would make everything
             return None
-        status, lines = call(["ninja", "-C", self.binaries, "-j", self.jobs, *targets], ROOT, 3600, limited=False)
+        status, lines = call(["ninja", "-C", self.binaries, "-j", 1, *targets], ROOT, 3600, limited=False)
         return None if status == 0 else lines
 
     def hash(self, target):
@@ -189,8 +190,8 @@ def run_gtest(copy, target, chosen_tests, seconds):
     return (None, []) if status == 0 else ("killed", [f"{name} (crashed)" for name in running] or [target])
 
 
-def measure(copy, target, quick, times):
-    """Adds to `times` the seconds of each test that it lacks; None where a test takes much longer than `quick`."""
+def measure(copy, target, times):
+    """Adds to `times` the seconds of each test that it lacks; None where a test takes much longer than a quick one."""
     status, lines = call([copy.binaries / target, "--gtest_list_tests"], ROOT, 60)
     if status != 0:
         refuse(f"{target} does not list its tests")
@@ -214,7 +215,7 @@ def measure(copy, target, quick, times):
                     refuse(f"{target}: {found[2]} fails without a mutation")
                 times[found[2]] = int(found[3] or 0) / 1000
                 running.clear()
-            if running and time.monotonic() - running[1] > 3 * quick:
+            if running and time.monotonic() - running[1] > 3 * QUICK:
                 times[running[0]] = None
                 return True
             return False
@@ -242,7 +243,7 @@ class Runner:
 
     def filters(self, target):
         quick = [name for name, seconds in self.times[target].items()
-                 if seconds is not None and seconds <= self.options.quick_seconds]
+                 if seconds is not None and seconds <= QUICK]
         slow = [name for name in self.times[target] if name not in quick]
         return {"quick": ":".join(quick), "slow": ":".join(slow)}
 
@@ -250,7 +251,7 @@ class Runner:
         for target in targets:
             with self.measuring:
                 if target not in self.measured:
-                    measure(copy, target, self.options.quick_seconds, self.times.setdefault(target, {}))
+                    measure(copy, target, self.times.setdefault(target, {}))
                     self.measured.add(target)
                     self.times_file.write_text(json.dumps(self.times, indent=1) + "\n")
 
@@ -275,12 +276,12 @@ class Runner:
         if program in FUZZ:
             stored = ROOT / "fuzz" / "corpus" / program.removeprefix("fuzz_").removesuffix("_replay")
             status, _ = call([copy.binaries / program, "--random", FUZZ[program], *([stored] if stored.is_dir() else [])], ROOT,
-                             self.options.quick_limit)
+                             QUICK_LIMIT)
         elif program == "cscd":
-            status, _ = call([copy.binaries / program, *VERIFY, "--failures", copy.binaries], ROOT, self.options.slow_limit)
+            status, _ = call([copy.binaries / program, *VERIFY, "--failures", copy.binaries], ROOT, SLOW_LIMIT)
         else:
             wanted = PROOFS if stage == "proof" else self.filters(program)["slow" if stage in ("own", "slow") else "quick"]
-            seconds = self.options.quick_limit if stage in ("room", "rooms") else self.options.slow_limit
+            seconds = QUICK_LIMIT if stage in ("room", "rooms") else SLOW_LIMIT
             return run_gtest(copy, program, wanted, seconds) if wanted else (None, [])
         if status == 0:
             return None, []
@@ -288,7 +289,7 @@ class Runner:
 
     def attempt(self, copy, mutation, old, mutate):
         """(result, names, seen stages). `mutate` makes the mutation, once everything is built without it."""
-        seen = [] if self.options.again else list(old.get("stages", []))
+        seen = [] if self.options.origin else list(old.get("stages", []))
         wanted = [(stage, programs) for stage, programs in self.steps(mutation.file)
                   if programs and stage in self.options.stages and stage not in seen]
         for stage, programs in wanted:
@@ -337,7 +338,7 @@ class Runner:
                      "mended": self.mended(mutation.file, old, result, seen),
                      "seconds": round(time.monotonic() - began, 1)}
             with self.lock:
-                with open(self.options.out, "a") as out:
+                with open(RESULTS, "a") as out:
                     out.write(json.dumps(entry) + "\n")
                 print(f"{result}: {mutation.file}:{mutation.number}: {mutation.line}  ->  {mutation.becomes}"
                       + (f"  ({names[0]})" if names else ""), flush=True)
@@ -350,11 +351,11 @@ class Runner:
             copies.put(copy)
 
 
-def read_results(path):
+def read_results():
     """The newest result of each mutant, by its key."""
     results = {}
-    if path.exists():
-        for line in path.read_text().splitlines():
+    if RESULTS.exists():
+        for line in RESULTS.read_text().splitlines():
             entry = json.loads(line)
             results[entry["file"], entry["line"], entry["becomes"], entry["copy"]] = entry
     return results
@@ -461,16 +462,9 @@ def main():
     parser.add_argument("--seed", type=int, default=2014)
     parser.add_argument("--stages", default="room,fuzz", help="which of room,fuzz,own,rooms,proof,slow; default room,fuzz")
     parser.add_argument("--resume", action="store_true", help="try no new mutant: only survivors in the file, by further stages")
-    parser.add_argument("--again", action="store_true", help="try survivors in the file once more, from the first stage on")
-    parser.add_argument("--from", dest="origin", type=pathlib.Path, help="ask the survivors of this record that have no reason, as --again does")
-    parser.add_argument("--unexplained", action="store_true", help="with --resume or --again: leave out those with a reason")
+    parser.add_argument("--from", dest="origin", type=pathlib.Path, help="ask the survivors of this record that have no reason")
     parser.add_argument("--record", action="store_true", help="write the record of the file's results")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build-mutate" / "mutants.jsonl")
     parser.add_argument("--workers", type=int, default=2, help="copies of the working tree, one mutant each at a time")
-    parser.add_argument("--jobs", type=int, default=1, help="files that a worker compiles at a time")
-    parser.add_argument("--quick-seconds", type=float, default=1)
-    parser.add_argument("--quick-limit", type=float, default=120, help="seconds for the quick tests of one program")
-    parser.add_argument("--slow-limit", type=float, default=900, help="seconds for the slow tests of one program")
     options = parser.parse_args()
     options.stages = options.stages.split(",")
     if unknown := set(options.stages) - set(STAGES):
@@ -484,23 +478,22 @@ def main():
             print(f"{mutation.file}:{mutation.number}: {mutation.kind}\n  {mutation.line}\n  {mutation.becomes}")
         print(f"{len(wanted)} mutants of {len(places)} in {len({place.file for place in places})} files")
         return 0
-    results = read_results(options.out)
+    results = read_results()
     if options.origin:
         before = survivors_of(read_json(options.origin))
         results = {key: results.get(key, before[key]) for key in before}
-        options.again = True
     if options.record:
         write(results, places, options.origin)
         return 0
-    if options.resume or options.again:
+    if options.resume or options.origin:
         wanted = [place for place in places if place.key in results]
     todo, reasons = [], reasons_of("scripts/lib/mutants.json")
     for mutation in wanted:
-        if options.unexplained and reason_for([mutation.file, named(mutation.line, mutation.copy), mutation.becomes], reasons):
+        if mutation.key in results and reason_for([mutation.file, named(mutation.line, mutation.copy), mutation.becomes], reasons):
             continue
         old = results.get(mutation.key)
         survived = old is not None and old["result"] == "survived"
-        if old is None or (survived and (options.again or not set(options.stages) <= set(old["stages"]))):
+        if old is None or (survived and (options.origin or not set(options.stages) <= set(old["stages"]))):
             todo.append((mutation, old or {}))
     todo.sort(key=lambda task: task[0].file.endswith(".h"))  # a header takes longer, because more is compiled anew
     print(f"{len(wanted)} mutants, {len(todo)} of them to try", flush=True)
@@ -510,7 +503,7 @@ def main():
     runner.folder.mkdir(exist_ok=True)
     copies = queue.Queue()
     for i in range(options.workers):
-        copies.put(Copy(runner.folder / str(i + 1), options.jobs))
+        copies.put(Copy(runner.folder / str(i + 1)))
     with concurrent.futures.ThreadPoolExecutor(options.workers) as pool:
         for done in [pool.submit(runner.one, copies, *task) for task in todo]:
             done.result()

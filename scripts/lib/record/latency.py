@@ -1,9 +1,7 @@
-"""Preparation, all contacts, contacts, long steps and threads, before and after a commit: results/...-waits.
+"""Preparation, all contacts, contacts, long steps and threads, before and after a commit: results/...-latency.
 
-  scripts/record waits BASE          BASE and the last commit, in turns
-  scripts/record waits BASE HEAD --blocks 2
-  scripts/record waits BASE --parts preparation,queries
-                                     not the long steps, which take most of the time, nor the threads
+  scripts/record latency BASE          BASE and the last commit, in turns
+  scripts/record latency BASE HEAD --blocks 2
 
 Both commits are built below .cache/commits. `cscd scale` of either measures one scene after the other, in blocks A B B A, and
 verifies every answer before it times it. The page holds medians over the blocks, and ratios of neighbouring measurements with
@@ -24,25 +22,21 @@ from script import ROOT, SCENES, new_results, parser_of, refuse
 FIRST, ALL, KNOWN, EARLIEST = "drvbc_fast", "drvbc_fast_complete", "drvbc_fast_all", "drvbc_fast --first"
 LONG = 16  # frame steps
 SMALL, LARGE = 48000, 194000
-PARTS = {"preparation": "preparation", "queries": "queries and contacts", "long": "long steps", "threads": "threads"}
 THREAD_SCENES = json.loads((ROOT / "bench" / "studies" / "scale_plan.json").read_text())["full"]["thread_scenes"]
 
 
-def commands(scene, smoke, has_known, parts):
+def commands(scene, smoke, has_known):
     """The calls of `cscd scale` for one scene. Old programs have no row for all contacts of starts that are known."""
     sizes = [12000, 24000] if smoke else [SMALL, LARGE]
     few = ["--intervals", "1", "--repetitions", "1"] if smoke else []
     rows = ",".join([FIRST, ALL, EARLIEST, *([KNOWN] if has_known else [])])
-    if "preparation" in parts:
-        yield ["--study", "size", "--sizes", ",".join(map(str, sizes)), "--strategy", f"{FIRST},{ALL}", *few]
-        yield ["--study", "size", "--sizes", ",".join(map(str, sizes)), "--strategy", FIRST, "--threads", "2", "--intervals", "1",
-               "--repetitions", "1"]
+    yield ["--study", "size", "--sizes", ",".join(map(str, sizes)), "--strategy", f"{FIRST},{ALL}", *few]
+    yield ["--study", "size", "--sizes", ",".join(map(str, sizes)), "--strategy", FIRST, "--threads", "2", "--intervals", "1",
+           "--repetitions", "1"]
     # One after the other: covers that have followed a long step are others than those of a clip.
-    if "queries" in parts:
-        yield ["--study", "step,contacts", "--steps", "1", "--strategy", rows, *few]
-    if "long" in parts:
-        yield ["--study", "step", "--steps", str(LONG), "--strategy", FIRST, *few]
-    if "threads" in parts and scene in THREAD_SCENES:
+    yield ["--study", "step,contacts", "--steps", "1", "--strategy", rows, *few]
+    yield ["--study", "step", "--steps", str(LONG), "--strategy", FIRST, *few]
+    if scene in THREAD_SCENES:
         yield ["--study", "threads", "--strategy", f"{FIRST},{ALL}", *few]
 
 
@@ -88,44 +82,36 @@ def ratio(a, b):
     return a / b if a is not None and b else None
 
 
-ROWS = [  # title, name, what is asked for, in words
-    ("preparation on one thread, about 48 thousand triangles, ms", "preparation, small, threads 1", "60 on all threads"),
-    ("preparation on two threads, about 48 thousand triangles, ms", "preparation, small, threads 2", "60 on all threads"),
-    ("preparation on one thread, about 194 thousand triangles, ms", "preparation, large, threads 1", "250 on all threads"),
-    ("preparation on two threads, about 194 thousand triangles, ms", "preparation, large, threads 2", "250 on all threads"),
-    (f"all contacts from any start (`{ALL}`) over the first contact (`{FIRST}`)", "all over first, own", "1.3"),
-    (f"all contacts from starts known to be embedded (`{KNOWN}`) over the first contact", "known over first, own", "1.3"),
-    ("all contacts from any start over the first contact, about 194 thousand triangles", "all over first, large", "1.3"),
-    (f"a query of `{FIRST}`, ms", "query", "half of before"),
-    (f"a query of `{FIRST}` with contacts over one without, all intervals", f"contacts over none, {FIRST}", "1.8"),
-    (f"a query of `{EARLIEST}` with contacts over one without, all intervals", f"contacts over none, {EARLIEST}", "1.3"),
-    (f"a step of {LONG} frames with `{FIRST}`, ms", "long step", "to grow no faster than the number of parts"),
-    (f"time on one thread over time on two (more is better), `{FIRST}`, about 194 thousand triangles", f"one thread over two, {FIRST}", "1.7"),
-    (f"time on one thread over time on two (more is better), `{ALL}`, about 194 thousand triangles", f"one thread over two, {ALL}", "1.7"),
+ROWS = [  # title, name
+    ("preparation on one thread, about 48 thousand triangles, ms", "preparation, small, threads 1"),
+    ("preparation on two threads, about 48 thousand triangles, ms", "preparation, small, threads 2"),
+    ("preparation on one thread, about 194 thousand triangles, ms", "preparation, large, threads 1"),
+    ("preparation on two threads, about 194 thousand triangles, ms", "preparation, large, threads 2"),
+    (f"all contacts from any start (`{ALL}`) over the first contact (`{FIRST}`)", "all over first, own"),
+    (f"all contacts from starts known to be embedded (`{KNOWN}`) over the first contact", "known over first, own"),
+    ("all contacts from any start over the first contact, about 194 thousand triangles", "all over first, large"),
+    (f"a query of `{FIRST}`, ms", "query"),
+    (f"a query of `{FIRST}` with contacts over one without, all intervals", f"contacts over none, {FIRST}"),
+    (f"a query of `{EARLIEST}` with contacts over one without, all intervals", f"contacts over none, {EARLIEST}"),
+    (f"a step of {LONG} frames with `{FIRST}`, ms", "long step"),
+    (f"time on one thread over time on two (more is better), `{FIRST}`, about 194 thousand triangles", f"one thread over two, {FIRST}"),
+    (f"time on one thread over time on two (more is better), `{ALL}`, about 194 thousand triangles", f"one thread over two, {ALL}"),
 ]
-
-
-def left_out(data):
-    """Says which parts were not measured. A record that names no parts holds all of them."""
-    rest = [words for name, words in PARTS.items() if name not in data.get("parts", PARTS)]
-    return f" Not measured in this record: {', '.join(rest)}." if rest else ""
 
 
 def page(data):
     sides = data["sides"]
-    parts = "" if set(data.get("parts", PARTS)) == set(PARTS) else " --parts " + ",".join(data["parts"])
-    lines = ["# The waits around a query, before and after", "",
-             f"`scripts/record waits {data['base'][:10]} {data['head'][:10]}{parts}`. Before: {sides['A']}.", "",
-             f"After: {sides['B']}.", "",
+    lines = ["# Latency, before and after", "",
+             f"`scripts/record latency {data['base'][:10]} {data['head'][:10]}`. Before: {sides['A']}.", "", f"After: {sides['B']}.", "",
              f"The two programs were measured in turns, {data['blocks']} times in the order before, after, after, before. Figures are medians. "
              "The last column divides each measurement of the older program by its neighbour of the newer one, and shows the median "
-             "[smallest, largest]. *Asked for* is the aim that the work had. Preparation finds clusters with bones. Where no number of "
-             "triangles is named, it is the scene's own. Every answer was verified before it was timed. – means not measured: the older "
-             f"program has no such row, or the study of threads, which is of {', '.join(THREAD_SCENES)} alone, leaves the scene out."
-             + left_out(data) + (" A smoke run: times mean nothing." if data["smoke"] else ""), "",
+             "[smallest, largest]. Preparation finds clusters with bones. Where no number of triangles is named, it is the scene's own. "
+             "Every answer was verified before it was timed. – means not measured: the older program has no such row, or the study of "
+             f"threads, which is of {', '.join(THREAD_SCENES)} alone, leaves the scene out."
+             + (" A smoke run: times mean nothing." if data["smoke"] else ""), "",
              "Queries take less time here than in records of kind *full* and *scale*, probably because slower rows are measured in between "
              "there, which drive the engine's data out of the caches. Compare before with after, and not this page with another.", ""]
-    for title, name, asked in ROWS:
+    for title, name in ROWS:
         rows = []
         for scene in data["scenes"]:
             before, after = (data["samples"][scene][side] for side in "AB")
@@ -134,17 +120,15 @@ def page(data):
             quotients = [a[name] / b[name] for a, b in zip(before, after) if name in a and name in b]
             rows.append([scene, *map(short, medians),
                          f"{statistics.median(quotients):.2f} [{min(quotients):.2f}, {max(quotients):.2f}]" if quotients else "–"])
-        measured_any = any(row[1:3] != ["–", "–"] for row in rows)
-        lines += [f"## {title[0].upper()}{title[1:]}", "", f"Asked for: {asked}.", "",
-                  *(table(["scene", "before", "after", "before over after"], rows) if measured_any else ["Not measured in this record."]), ""]
+        lines += [f"## {title[0].upper()}{title[1:]}", "", *table(["scene", "before", "after", "before over after"], rows), ""]
     return "\n".join(lines)
 
 
-def measured(build, scene, smoke, parts, part):
+def measured(build, scene, smoke, part):
     """The records of one side for one scene."""
     records = []
     has_known = KNOWN in build.run([build.program(0), "list", "strategies"]).stdout
-    for words in commands(scene, smoke, has_known, parts):
+    for words in commands(scene, smoke, has_known):
         part.unlink(missing_ok=True)
         done = build.run([build.program(0), "scale", "--scene", scene, *words, "--json", part])
         if not part.exists():
@@ -162,31 +146,28 @@ def main():
     parser.add_argument("head", metavar="HEAD", nargs="?", default="HEAD", help="the new commit; default: the last one")
     parser.add_argument("--blocks", type=int, default=1, help="how many blocks A B B A; default 1")
     parser.add_argument("--scenes", default=",".join(SCENES), help="default the six")
-    parser.add_argument("--parts", default=",".join(PARTS), help="of " + ", ".join(PARTS) + "; default all")
     parser.add_argument("--smoke", action="store_true", help="small surfaces, in minutes; times mean nothing")
     options = parser.parse_args()
     if options.blocks < 1:
         refuse("--blocks: at least 1")
-    scenes, parts = options.scenes.split(","), options.parts.split(",")
-    if unknown := set(parts) - set(PARTS):
-        refuse(f"--parts: {', '.join(sorted(unknown))} is not known; choose of {', '.join(PARTS)}")
+    scenes = options.scenes.split(",")
     base, head = commit_named(options.base), commit_named(options.head)
     lock = held_lock()  # noqa: F841  (held until the script ends)
     sides = {"A": Build(base, "times", [0]), "B": Build(head, "times", [0])}
-    part = CACHE / "waits.part.json"
-    data = {"schema": "cscd.waits/1", "date": datetime.date.today().isoformat(), "base": base, "head": head, "smoke": options.smoke,
-            "blocks": options.blocks, "scenes": scenes, "parts": parts, "sides": {},
+    part = CACHE / "latency.part.json"
+    data = {"schema": "cscd.latency/1", "date": datetime.date.today().isoformat(), "base": base, "head": head, "smoke": options.smoke,
+            "blocks": options.blocks, "scenes": scenes, "sides": {},
             "samples": {scene: {"A": [], "B": []} for scene in scenes}}
-    with new_results("waits-smoke" if options.smoke else "waits") as folder:
+    with new_results("latency-smoke" if options.smoke else "latency") as folder:
         for block in range(options.blocks):
             for scene in scenes:
                 for side in "ABBA":
-                    records = measured(sides[side], scene, options.smoke, parts, part)
+                    records = measured(sides[side], scene, options.smoke, part)
                     data["sides"][side] = built(records[0]["environment"])
                     if side == "B":
                         data["environment"] = records[0]["environment"]
                     data["samples"][scene][side].append(figures(records))
                 print(f"block {block + 1}: {scene}", flush=True)
         part.unlink(missing_ok=True)
-        (folder / "waits.json").write_text(json.dumps(data, indent=1) + "\n")
-        (folder / "waits.md").write_text(page(data))
+        (folder / "latency.json").write_text(json.dumps(data, indent=1) + "\n")
+        (folder / "latency.md").write_text(page(data))
