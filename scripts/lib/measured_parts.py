@@ -21,9 +21,11 @@ def is_published(part):
 
 
 class Results:
-    """A results folder, its tables, and where a page finds it."""
+    """A results folder, its tables, and where a page finds it. Refuses a folder that holds no tables or is not of this repository."""
 
     def __init__(self, folder, page):
+        if not folder.is_relative_to(ROOT) or not any(folder.glob("tables.json*")):
+            refuse(f"{folder}: is no results folder of this repository; name one, or write it with scripts/reproduce")
         self.folder = folder
         self.page = page
         self.link = "../" * page.count("/") + folder.relative_to(ROOT).as_posix()
@@ -345,7 +347,7 @@ def page_of(page, folder, program):
         try:
             text = PARTS[match[2]](Results(of, page))
         except (OSError, ValueError) as error:
-            refuse(f"{of}: is not a results folder of this repository ({error}); run scripts/reproduce")
+            refuse(f"{of}: holds a record that cannot be read ({error}); write it anew with scripts/reproduce")
         if "\\*" in text and MARK_NOTE not in text:
             text += f"\n\\{MARK_NOTE}\n"
         return match[1] + text + match[3]
