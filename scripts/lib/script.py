@@ -104,4 +104,4 @@ def new_results(kind):
     except BaseException:
         shutil.rmtree(part)
         raise
-    print(f"written to {folder.relative_to(ROOT)}; git add the folder, then run scripts/pages")
+    print(f"written to {folder.relative_to(ROOT)}" + ("" if "-smoke" in kind else "; git add the folder, then run scripts/pages"))
