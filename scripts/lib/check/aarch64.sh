@@ -1,5 +1,5 @@
 #!/bin/bash
-# The library and the core's tests run on 64-bit ARM, under qemu-user.
+# Runs tests of the core on 64-bit ARM, under qemu-user.
 #
 #   scripts/check aarch64 [ROOM...]     the rooms whose tests run, such as core_geometry; without any, those listed below
 #

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A stranger can use Debian's packages in a bare Debian: C++, Python and the program.
+# Uses Debian's packages as a stranger would, in a bare Debian: C++, Python and the program.
 #
 #   scripts/check deb [BUILD-FOLDER]   of a build to pack; default a new one, in build-deb; in Debian 12
 #   scripts/check deb --debian 13      a bare Debian 13 makes the build, too, and runs the tests of the core, the library and the

@@ -1,4 +1,4 @@
-"""Includes point down only, and every room can be read at a sitting.
+"""Checks that includes point down only, and that every room can be read at a sitting.
 
   scripts/check includes              the repository
   scripts/check includes --self-test  planted violations must be caught

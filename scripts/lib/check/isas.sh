@@ -1,5 +1,5 @@
 #!/bin/bash
-# Every instruction set gives the same answers, bit by bit, here and under qemu-user.
+# Checks that every instruction set gives the same answers, bit by bit, here and under qemu-user.
 #
 #   scripts/check isas
 #

@@ -1,4 +1,4 @@
-"""Two orders of linking: other bytes, the same answers.
+"""Links a program in two orders: its bytes have to differ, and its answers must not.
 
   scripts/check layouts BUILD     BUILD is a ninja folder in which cscd is built
 """

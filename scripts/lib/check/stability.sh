@@ -1,5 +1,5 @@
 #!/bin/bash
-# Answers are the same bits whatever the compiler, optimisation and instruction set.
+# Checks that answers are the same bits whatever the compiler, optimisation and instruction set.
 #
 #   scripts/check stability CSCD FOLDER          the program, which writes the queries; where to build
 #   scripts/check stability CSCD FOLDER --all    two ways more, in a minute and a half more

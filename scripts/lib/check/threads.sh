@@ -1,5 +1,5 @@
 #!/bin/bash
-# No race on threads, by ThreadSanitizer, and no answer that depends on their number.
+# Looks for races with ThreadSanitizer, and for answers that depend on the number of threads.
 #
 #   scripts/check threads
 #

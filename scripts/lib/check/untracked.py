@@ -1,8 +1,8 @@
-"""The checks of this tree look at no file that git does not track: a user's records, scenes, sources.
+"""Checks that no check of this tree looks at files that git does not track.
 
   scripts/check untracked CHECK...   each CHECK is a command as one word, "scripts/pages --check", run in the root of a copy
 
-In a copy of this tree in which such files lie, every check has to pass. Then git tracks those files, and the checks that MUST_NOTICE
+Such files are a user's own records, scenes and sources. In a copy of this tree in which they lie, every check has to pass. Then git tracks those files, and the checks that MUST_NOTICE
 names have to fail and say what it names, or the files were no trial. Exit status: 0 all is so, 1 it is not, 77 this tree is no checkout.
 """
 import gzip

@@ -1,4 +1,4 @@
-"""Charts, tables and the page of what accuracy costs, from records of `cscd accuracy`.
+"""Draws charts and writes the page of what accuracy costs, from records of `cscd accuracy`.
 
   scripts/figures accuracy RECORD.json.gz... --out FOLDER
   scripts/figures accuracy RECORD.json.gz --pdf --out FOLDER      for a paper

@@ -1,4 +1,4 @@
-"""The paper's pictures of clusters and of triangles that are not positive (Figures 1, 8 and 9), of any scene.
+"""Draws the paper's Figures 1, 8 and 9 of any scene: clusters, and triangles that are not positive.
 
   scripts/figures clusters --cscd build-release/cscd --scene octopus --figure 1 --out octopus-figure1.png
 

@@ -1,4 +1,4 @@
-"""Where a scene touches itself: at rest, in the interval of a contact, and near the contact.
+"""Draws where a scene touches itself: at rest, in the interval of a contact, and near the contact.
 
   scripts/figures contact --cscd build-release/cscd --scene hand_contact --out contact.png
 

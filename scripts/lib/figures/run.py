@@ -1,4 +1,4 @@
-"""Work by interval (the paper's Figures 11 and 12) and times of stages, from records of `cscd run`.
+"""Draws the paper's Figures 11 and 12 and the times of stages, from records of `cscd run`.
 
   scripts/figures results/FOLDER --out FOLDER
   scripts/figures rope.json.gz --strategy base,aabb,drvbc_fast --out FOLDER

@@ -1,4 +1,4 @@
-"""Charts and the page of how cost grows, from a record of `cscd scale`.
+"""Draws charts and writes the page of how cost grows, from a record of `cscd scale`.
 
   scripts/figures scale RECORD.json.gz --out FOLDER
 

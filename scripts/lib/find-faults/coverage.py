@@ -1,4 +1,4 @@
-"""Lines of core/ that no test runs.
+"""Lists the lines of core/ that no test runs.
 
   scripts/find-faults coverage            builds, runs the tests of core and library, and writes the record
   scripts/find-faults coverage --count    only counts what the last run left, and prints it

@@ -1,4 +1,4 @@
-"""Inputs that break a promise, searched for with libFuzzer: crashes, hangs, memory, undefined behaviour, wrong answers.
+"""Searches with libFuzzer for inputs that crash, hang, fill the memory or are answered wrongly.
 
   scripts/find-faults fuzz [SECONDS] [TARGET]...             seconds for each target, default 60; targets are the .cpp files of fuzz/
                                                              with a function `target`, default all of them

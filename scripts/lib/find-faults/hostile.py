@@ -1,4 +1,4 @@
-"""Sample models that are damaged at random, many times over, and given to the program as anyone would.
+"""Damages sample models at random and gives each copy to the program, as anyone would.
 
   scripts/find-faults hostile [COPIES]            so many copies of each sample, default 300
   scripts/find-faults hostile --record [COPIES]   adds the figures to results/trust

@@ -1,4 +1,4 @@
-"""Small mistakes in the engine, one at a time, and the test that notices each: mutation testing of the proofs.
+"""Makes small mistakes in the engine, one at a time, and sees which test notices.
 
   scripts/find-faults mutants                           300 mutants, drawn at random from all places; goes on where it was stopped
   scripts/find-faults mutants --resume --stages own,rooms,proof,slow    asks those that are still alive by the other tests, too

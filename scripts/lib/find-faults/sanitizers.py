@@ -1,4 +1,4 @@
-"""What sanitizers find in the whole suite, and ThreadSanitizer in what works on threads.
+"""Runs the whole suite under sanitizers, and what works on threads under ThreadSanitizer.
 
   scripts/find-faults sanitizers                 runs scripts/test --sanitize and scripts/check threads, and shows what they print
   scripts/find-faults sanitizers --from RECORD   asks those tests again that failed in a record, and runs scripts/check threads

@@ -1,10 +1,11 @@
-"""What every elementary test gets wrong, and what accuracy costs: results/DATE-MACHINE-COMMIT-accuracy.
+"""Measures what every elementary test gets wrong and what accuracy costs.
 
   scripts/record accuracy
 
 Asks every elementary test the same queries (scenes, open query set, hard families), and varies every other choice on scenes with
-contacts (`cscd accuracy`). Writes the record, and the tables, charts and page of `scripts/figures accuracy`. It installs what is
-missing from Debian's packages, and takes some ten minutes on 2 idle cores when everything is built.
+contacts (`cscd accuracy`). Writes the record, and the tables, charts and page of `scripts/figures accuracy`, to a new folder
+results/DATE-MACHINE-COMMIT-accuracy. Installs what is missing from Debian's packages, and takes some ten minutes on 2 idle cores when
+everything is built.
 """
 import os
 import pathlib

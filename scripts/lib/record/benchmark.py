@@ -1,10 +1,10 @@
-"""Scores of this project's strategies and of other packages on the public benchmark: results/...-benchmark.
+"""Scores this project's strategies and other packages on the public benchmark.
 
   scripts/record benchmark
 
 Makes the public benchmark (bench/BENCHMARK.md) in .cache/benchmark, has it answered by this project's strategies and the packages
-at hand, and writes their scores and a page of them. It installs what is missing from Debian's packages, and takes a quarter of an
-hour on 2 idle cores when everything is built.
+at hand, and writes their scores and a page of them to a new folder results/DATE-MACHINE-COMMIT-benchmark. Installs what is missing
+from Debian's packages, and takes a quarter of an hour on 2 idle cores when everything is built.
 """
 
 from markdown import built, short, table

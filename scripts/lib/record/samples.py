@@ -1,4 +1,4 @@
-"""Times of one program in six layouts, which show how often `cscd compare` errs on this machine: a file of its own.
+"""Times one program in six layouts, to show how often `cscd compare` errs on this machine.
 
   scripts/record samples BUILD --out samples.json.gz     BUILD is a ninja folder in which cscd is built
   CSCD_COMPARE_SAMPLES=samples.json.gz BUILD/bench_compare_test --gtest_filter='KeptSamples.*'

@@ -1,11 +1,12 @@
-"""How time and memory grow with triangles, length of the step, bones, threads, contacts: results/...-scale.
+"""Measures how time and memory grow with triangles, length of the step, bones, threads and contacts.
 
   scripts/record scale
   scripts/record scale --largest     triangles alone, but up to 3.1 million, in an hour and a half: nearly all of it is preparation
                                      and the complete reference; it needs 5 GB of memory
 
-Verifies every answer before it is timed (`cscd scale`). Writes the record, and the charts and page of `scripts/figures scale`. It
-installs what is missing from Debian's packages, and takes half an hour on 2 idle cores when everything is built.
+Verifies every answer before it is timed (`cscd scale`). Writes the record, and the charts and page of `scripts/figures scale`, to a
+new folder results/DATE-MACHINE-COMMIT-scale. Installs what is missing from Debian's packages, and takes half an hour on 2 idle cores
+when everything is built.
 """
 
 from script import ROOT, call, measured_program, new_results, parser_of
