@@ -1,6 +1,9 @@
 """The rooms of the house, as CMakeLists.txt names them."""
 import re
 
+from script import ROOT
+
+HELPER = re.compile(r"_test\.cpp$|test_\w+\.h$|brute_referee\.h$")  # tests of core and what only they include
 ROOM = re.compile(r"^\s*cscd_room\((.*?)\)", re.M | re.S)
 
 
@@ -17,6 +20,12 @@ def read_rooms(cmake_lists):
                 lists.setdefault(keyword, []).append(word)
         rooms[room] = (lists["USES"], lists["TEST_USES"])
     return rooms
+
+
+def test_programs(rooms):
+    """The test programs of those rooms of core and of the library that have tests."""
+    return [room.replace("/", "_") + "_test" for room in rooms
+            if re.match(r"core/|library$|scenes/queries$", room) and list((ROOT / room).glob("*_test.cpp"))]
 
 
 def closure(rooms, start):

@@ -16,6 +16,7 @@ row without a reason is shown as such.
 """
 import datetime
 import json
+import pathlib
 import re
 
 from markdown import table

@@ -18,21 +18,14 @@ import pathlib
 import re
 import sys
 
-from rooms import read_rooms
-from script import ROOT, output_of, parser_of
+from rooms import HELPER, read_rooms, test_programs
+from script import ROOT, output_of, parser_of, refuse
 from trust import write_record
 
 BUILD = ROOT / "build-coverage"
-HELPER = re.compile(r"_test\.cpp$|test_\w+\.h$|brute_referee\.h$")
 FLAGS = ["-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_C_COMPILER=gcc", "-DCSCD_NATIVE=ON",
          "-DCSCD_VIEWER=OFF", "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST",
          "-DCMAKE_CXX_FLAGS=--coverage -w", "-DCMAKE_CXX_FLAGS_DEBUG=-Og -DNDEBUG"]
-
-
-def programs():
-    """Test programs of the rooms of core and of the library."""
-    rooms = [room for room in read_rooms(ROOT / "CMakeLists.txt") if re.match(r"core/|library$|scenes/queries$", room)]
-    return [room.replace("/", "_") + "_test" for room in rooms if list((ROOT / room).glob("*_test.cpp"))]
 
 
 def lines_that_ran():
@@ -104,15 +97,19 @@ def main():
     options = parser.parse_args()
     if not options.count:
         output_of("cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *FLAGS)
-        output_of("ninja", "-C", BUILD, *programs())
+        programs = test_programs(read_rooms(ROOT / "CMakeLists.txt"))
+        output_of("ninja", "-C", BUILD, *programs)
         for path in BUILD.rglob("*.gcda"):  # counts of programs that were built before
             path.unlink()
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             def run(name):
                 return output_of(BUILD / name, f"--gtest_filter=-{options.without}", cwd=ROOT)
-            for program, _ in zip(programs(), pool.map(run, programs())):
+            for program, _ in zip(programs, pool.map(run, programs)):
                 print(f"{program} passes", flush=True)
-    counted = record(lines_that_ran(), len([name for name in options.without.split(":") if name]))
+    ran = lines_that_ran()
+    if not ran:
+        refuse(f"{BUILD}: holds no tests that ran; call without --count")
+    counted = record(ran, len([name for name in options.without.split(":") if name]))
     for room, lines, _, share in counted["tables"][0]["rows"]:
         print(f"{room}: {share} of {lines}")
     for file, text, lines in counted["tables"][1]["rows"]:

@@ -53,7 +53,7 @@ import time
 
 from mutations import chosen, defined_macros, mutated, mutations_of
 from records import read_json
-from rooms import above, closure, read_rooms
+from rooms import HELPER, above, closure, read_rooms, test_programs
 from script import ROOT, parser_of, refuse
 from tracked import tracked_files
 from trust import moved, reason_for, reasons_of, write_record
@@ -61,7 +61,6 @@ from trust import moved, reason_for, reasons_of, write_record
 FOLDERS = ("core/geometry", "core/elementary", "core/fast")
 STAGES = ("room", "fuzz", "own", "rooms", "proof", "slow")
 FUZZ = {"fuzz_engine_replay": 150, "fuzz_elementary_replay": 1000, "fuzz_queries_replay": 1000}  # inputs of each
-HELPER = re.compile(r"_test\.cpp$|test_\w+\.h$|brute_referee\.h$")
 FLAGS = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_C_COMPILER=gcc", "-DCSCD_NATIVE=ON",
          "-DCSCD_VIEWER=OFF", "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST",
          # A mutant may leave a variable unused, and an index outside of its array has to show.
@@ -238,8 +237,7 @@ class Runner:
     def targets(self, file):
         """Test programs for a file: of its room first, then of rooms above it, bottom-up."""
         own = file.rpartition("/")[0]
-        rooms = [own, *(room for room in above(self.rooms, own) if re.match(r"core/|library$|scenes/queries$", room))]
-        return [room.replace("/", "_") + "_test" for room in rooms if list((ROOT / room).glob("*_test.cpp"))]
+        return test_programs([own, *above(self.rooms, own)])
 
     def filters(self, target):
         quick = [name for name, seconds in self.times[target].items()

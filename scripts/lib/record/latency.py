@@ -5,7 +5,8 @@
 
 Both commits are built below .cache/commits. `cscd scale` of either measures one scene after the other, in blocks A B B A, and
 verifies every answer before it times it. The page holds medians over the blocks, and ratios of neighbouring measurements with
-the smallest and the largest; it is written to a new folder results/DATE-MACHINE-COMMIT-latency. On 2 cores it takes about twenty minutes a block beside ten to build each commit.
+the smallest and the largest; it is written to a new folder results/DATE-MACHINE-COMMIT-latency. On 2 cores it takes about twenty
+minutes a block beside ten to build each commit.
 
 Exit status: 0 the page is written, 1 an answer was wrong, 2 it could not run.
 """
