@@ -7,15 +7,11 @@
 namespace cscd {
 namespace {
 
+using test::against_triangle;
 using test::query_of;
 using test::QueryMaker;
 
 constexpr TestParameters kUsual{.tolerance = 0.1, .steps = 10'000};
-
-MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
-  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
-  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
-}
 
 TEST(Additive, FindsWhatCrossesAndIsNeverLate) {
   QueryMaker make{3};

@@ -7,17 +7,12 @@
 namespace cscd {
 namespace {
 
+using test::against_triangle;
 using test::query_of;
 using test::QueryMaker;
+using test::still;
 
 constexpr TestParameters kFine{.tolerance = 1e-10};
-
-MovingPoint still(double x, double y, double z) {
-  return {{x, y, z}, {x, y, z}};
-}
-MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
-  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
-}
 
 TEST(Cubic, AgreesWithTheRefereeWhereFeaturesCross) {
   QueryMaker make{3};

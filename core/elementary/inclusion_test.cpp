@@ -10,13 +10,9 @@
 namespace cscd {
 namespace {
 
+using test::against_triangle;
 using test::query_of;
 using test::QueryMaker;
-
-MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
-  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
-  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
-}
 
 TEST(Inclusion, TellsTheTimeFromBelowWithinTheTolerance) {
   for (const double tolerance : {1e-2, 1e-4, 1e-8}) {

@@ -13,9 +13,11 @@
 namespace cscd {
 namespace {
 
+using test::against_triangle;
 using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
+using test::still;
 
 Answer newton(const MovingVertexFace& q) {
   return newton_vertex_face(q);
@@ -25,7 +27,7 @@ Answer newton(const MovingEdgeEdge& q) {
 }
 
 // Compares newton's answers to a family of queries with the referee's.
-struct Tally {
+struct RefereeComparison {
   int contacts = 0, misses = 0, false_alarms = 0, undecided = 0;
   double largest_time_error = 0;
   std::string first_miss, first_false_alarm;
@@ -67,7 +69,7 @@ class Newton : public testing::Test {
 };
 
 TEST_F(Newton, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
-  Tally vf, ee;
+  RefereeComparison vf, ee;
   for (int i = 0; i < 6000; ++i) {
     vf.add<MovingVertexFace>(make_.any());
     ee.add<MovingEdgeEdge>(make_.any());
@@ -79,7 +81,7 @@ TEST_F(Newton, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
 }
 
 TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
-  Tally vf, ee;
+  RefereeComparison vf, ee;
   for (int i = 0; i < 3000; ++i) {
     const double t = make_.uniform(0.01, 0.99), u = make_.uniform(0.01, 0.49), v = make_.uniform(0.01, 0.49);
     vf.add<MovingVertexFace>(test::vertex_meets_face(make_, t, u, v));
@@ -93,7 +95,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
 
 // Features touch or miss at any of their borders, by a hundred thousandth of the feature's size.
 TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
-  Tally vf, ee;
+  RefereeComparison vf, ee;
   for (int i = 0; i < 3000; ++i) {
     const double t = make_.uniform(0.05, 0.95), hair = i % 2 ? 1e-5 : -1e-5;
     const double along = make_.uniform(0.1, 0.9);
@@ -106,15 +108,15 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
   }
   vf.expect_spotless();
   ee.expect_spotless();
-  for (const Tally* tally : {&vf, &ee}) {
-    EXPECT_GT(tally->contacts, 1000);
-    EXPECT_LT(tally->contacts, 2000);
+  for (const RefereeComparison* comparison : {&vf, &ee}) {
+    EXPECT_GT(comparison->contacts, 1000);
+    EXPECT_LT(comparison->contacts, 2000);
   }
 }
 
 // Rules degenerate and closed-interval. Small integer coordinates meet every degenerate case.
 TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
-  Tally vf, ee;
+  RefereeComparison vf, ee;
   for (int i = 0; i < 12'000; ++i) {
     vf.add<MovingVertexFace>(make_.lattice(1 + i % 3));
     ee.add<MovingEdgeEdge>(make_.lattice(1 + i % 3));
@@ -123,16 +125,9 @@ TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
   EXPECT_EQ(ee.misses, 0) << ee.first_miss;
   EXPECT_EQ(vf.false_alarms, 0) << vf.first_false_alarm;
   EXPECT_EQ(ee.false_alarms, 0) << ee.first_false_alarm;
-  for (const Tally* tally : {&vf, &ee}) EXPECT_GT(tally->contacts, 3000);
+  for (const RefereeComparison* comparison : {&vf, &ee}) EXPECT_GT(comparison->contacts, 3000);
   RecordProperty("undecided of 12000, vertex-face", vf.undecided);
   RecordProperty("undecided of 12000, edge-edge", ee.undecided);
-}
-
-MovingPoint still(double x, double y, double z) {
-  return {{x, y, z}, {x, y, z}};
-}
-MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
-  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
 }
 
 template <class Query>

@@ -17,7 +17,7 @@ bool positive_towards(const TriangleMesh& mesh, std::span<const Vec3> x, Triangl
          Orientation::positive;
 }
 
-struct Tube {
+struct UnevenTube {
   test::Shape shape = test::uneven_tube(8, 12, 12, [](double x) { return 0.7 + 0.5 * std::sin(1.5 * x); });
   TriangleMesh mesh = shape.mesh();
   Rig rig = test::straight_chain(4, {0.5, 0, 0}, {11.5, 0, 0});
@@ -25,7 +25,7 @@ struct Tube {
   AtomicClusters clusters;
   std::vector<ObserverKind> kinds;
 
-  explicit Tube(unsigned seed) {
+  explicit UnevenTube(unsigned seed) {
     std::mt19937 random(seed);
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       double x = 0;
@@ -51,7 +51,7 @@ struct Tube {
 
 TEST(Refinement, TrianglesThatArePositiveStay) {
   for (unsigned seed = 0; seed < 5; ++seed) {
-    const Tube tube(seed);
+    const UnevenTube tube(seed);
     const std::vector<BoneId> refined = tube.refined();
     ASSERT_EQ(refined.size(), tube.mesh.triangle_count());
     for (std::size_t t = 0; t < refined.size(); ++t)
@@ -64,7 +64,7 @@ TEST(Refinement, TrianglesThatArePositiveStay) {
 TEST(Refinement, MakesMoreTrianglesPositiveNeverFewer) {
   bool more = false;
   for (unsigned seed = 0; seed < 5; ++seed) {
-    const Tube tube(seed);
+    const UnevenTube tube(seed);
     const std::vector<BoneId> refined = tube.refined();
     const auto count = [&](const std::vector<BoneId>& bone_of) {
       std::size_t positive = 0;
@@ -82,7 +82,7 @@ TEST(Refinement, MakesMoreTrianglesPositiveNeverFewer) {
 // the cluster of a neighbour that is.
 TEST(Refinement, GrowsAsFarAsOrientationAllows) {
   for (unsigned seed = 0; seed < 5; ++seed) {
-    const Tube tube(seed);
+    const UnevenTube tube(seed);
     const std::vector<BoneId> refined = tube.refined();
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(refined.size()); ++i) {
       const TriangleId t{i};

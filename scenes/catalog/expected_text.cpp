@@ -7,7 +7,7 @@
 namespace cscd::scenes {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // A half-open range of bytes; empty where nothing was found.
 struct Span {
@@ -47,7 +47,7 @@ Span find_value(const std::string& text) {
 
 std::string with_expected(const std::string& text, const Expected& expected, const std::string& where) {
   try {
-    Json wanted = Json::parse(text);
+    OrderedJson wanted = OrderedJson::parse(text);
     if (!wanted.is_object()) throw InputError(where + ": must be an object");
     wanted["expected"] = {{"vertices", expected.vertices.value()},
                           {"triangles", expected.triangles.value()},
@@ -56,7 +56,7 @@ std::string with_expected(const std::string& text, const Expected& expected, con
     const std::string value = "{\"vertices\": " + std::to_string(*expected.vertices) +
                               ", \"triangles\": " + std::to_string(*expected.triangles) +
                               ", \"bones\": " + std::to_string(*expected.bones) +
-                              ", \"digest\": " + Json(*expected.digest).dump() + "}";
+                              ", \"digest\": " + OrderedJson(*expected.digest).dump() + "}";
     std::string changed = text;
     if (const Span old = find_value(text); old.end > 0) {
       changed.replace(old.begin, old.end - old.begin, value);
@@ -67,8 +67,8 @@ std::string with_expected(const std::string& text, const Expected& expected, con
     }
     // If the edited text does not have the wanted meaning, because the file is written in an unforeseen
     // way, the whole text is written anew: the file loses its white space and keeps its meaning.
-    return Json::parse(changed, nullptr, false) == wanted ? changed : wanted.dump(2) + "\n";
-  } catch (const Json::exception& error) {
+    return OrderedJson::parse(changed, nullptr, false) == wanted ? changed : wanted.dump(2) + "\n";
+  } catch (const OrderedJson::exception& error) {
     throw InputError(where + ": is not JSON: " + error.what());
   }
 }

@@ -3,7 +3,7 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr std::size_t kMostBytes = 64;
+constexpr std::size_t kMostNameBytes = 64;
 
 bool is_safe(char c) {
   const bool letter_or_digit = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -24,8 +24,8 @@ std::string plain_name(const std::filesystem::path& path) {
     if (!is_safe(c)) c = '_';
   if (name.empty()) return "unnamed";
   if (name.front() == '.' || name.front() == '-') name.front() = '_';
-  if (name.size() > kMostBytes) {
-    std::size_t end = kMostBytes;
+  if (name.size() > kMostNameBytes) {
+    std::size_t end = kMostNameBytes;
     while (end > 0 && goes_on(name[end])) --end;
     name.resize(end);
   }

@@ -8,7 +8,7 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr double kNear = 1e-12;
+constexpr double kNearTransform = 1e-12;
 
 Quaternion about_z(double radians) {
   return {std::cos(radians / 2), 0, 0, std::sin(radians / 2)};
@@ -30,7 +30,7 @@ TEST(Transform, ComposesAndInverts) {
   for (int i = 0; i < 100; ++i) {
     const Transform a = random_map(random), b = random_map(random);
     const Vec3 x(0.3, -1, 2);
-    EXPECT_LT((composed(a, b)(x) - a(b(x))).norm(), kNear);
+    EXPECT_LT((composed(a, b)(x) - a(b(x))).norm(), kNearTransform);
     if (std::abs(a.determinant()) > 0.1) expect_near(composed(inverse(a), a), Transform(), 1e-10);
   }
 }
@@ -45,8 +45,8 @@ TEST(Slerp, TurnsAtConstantSpeedTheShorterWay) {
       const Quaternion want = about_z(s * angle), whole = about_z(angle);
       for (const double sign : {1.0, -1.0}) {  // q and -q are the same rotation
         const Quaternion got = slerp({}, {sign * whole.w, sign * whole.x, sign * whole.y, sign * whole.z}, s);
-        EXPECT_NEAR(got.w, want.w, kNear) << angle << " " << s;
-        EXPECT_NEAR(got.z, want.z, kNear) << angle << " " << s;
+        EXPECT_NEAR(got.w, want.w, kNearTransform) << angle << " " << s;
+        EXPECT_NEAR(got.z, want.z, kNearTransform) << angle << " " << s;
       }
     }
   }
@@ -62,9 +62,9 @@ TEST(Parts, GiveTheMapBackMirrorsAndShearsToo) {
     expect_near(composed(from_parts(parts.move, parts.rotation, {1, 1, 1}), rest), map, 1e-11);
   }
   const Parts scaled = parts_of(from_parts({1, 2, 3}, about_z(0.5), {2, 3, 4}));
-  EXPECT_NEAR(scaled.rest[0].x(), 2, kNear);
-  EXPECT_NEAR(scaled.rest[1].y(), 3, kNear);
-  EXPECT_NEAR(scaled.rest[2].z(), 4, kNear);
+  EXPECT_NEAR(scaled.rest[0].x(), 2, kNearTransform);
+  EXPECT_NEAR(scaled.rest[1].y(), 3, kNearTransform);
+  EXPECT_NEAR(scaled.rest[2].z(), 4, kNearTransform);
 }
 
 TEST(Blend, HasExactEndsAndTurnsBetween) {
@@ -72,8 +72,8 @@ TEST(Blend, HasExactEndsAndTurnsBetween) {
   EXPECT_EQ(blend(a, b, 0).origin, a.origin);
   EXPECT_EQ(blend(a, b, 1).column[0], b.column[0]);
   const Transform middle = blend(a, b, 0.5);
-  EXPECT_LT((middle.origin - Vec3(2, 0, 0)).norm(), kNear);
-  EXPECT_LT((middle.column[0] - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), kNear);
+  EXPECT_LT((middle.origin - Vec3(2, 0, 0)).norm(), kNearTransform);
+  EXPECT_LT((middle.column[0] - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), kNearTransform);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr std::string_view kFormat = "format of mesh files (scenes/clip/mesh_file.h)";
-constexpr std::size_t kMost = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
+constexpr std::string_view kMeshFormat = "format of mesh files (scenes/clip/mesh_file.h)";
+constexpr std::size_t kMostElements = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Bone) == 6 * sizeof(double));
 
@@ -126,10 +126,10 @@ struct MeshFileReader::File {
   }
 
   Dataset open(const std::string& name, H5T_class_t type, std::size_t rank) const {
-    Dataset dataset = open_dataset(file.get(), path, kFormat, name, type, rank);
+    Dataset dataset = open_dataset(file.get(), path, kMeshFormat, name, type, rank);
     hsize_t elements = 1;
     for (const hsize_t extent : dataset.shape) {
-      if (extent > kMost || elements > (hsize_t{1} << 40))
+      if (extent > kMostElements || elements > (hsize_t{1} << 40))
         throw InputError(dataset.where + ": has shape " + shown(dataset.shape) + ", which is too large");
       elements *= extent;
     }

@@ -11,8 +11,8 @@
 namespace cscd::scenes {
 namespace {
 
-constexpr std::string_view kFormat = "point cache format";
-constexpr std::size_t kMost = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
+constexpr std::string_view kCacheFormat = "point cache format";
+constexpr std::size_t kMostShown = std::size_t{1} << 28;  // vertices or triangles, as in TriangleMesh
 constexpr std::size_t kMostBones = std::size_t{1} << 20;
 constexpr std::size_t kMostFrames = std::size_t{1} << 40;
 
@@ -65,7 +65,7 @@ struct PointCacheReader::File {
 
   explicit File(const std::filesystem::path& name) : path(name.string()) {
     open();
-    shown_frames.positions = open_dataset(file.get(), path, kFormat, "/positions", H5T_FLOAT, 3);
+    shown_frames.positions = open_dataset(file.get(), path, kCacheFormat, "/positions", H5T_FLOAT, 3);
     read_sizes();
     read_triangles();
     if (has_object(file.get(), "/bones")) open_bones();
@@ -95,15 +95,15 @@ struct PointCacheReader::File {
     if (frames < 2)
       throw InputError(positions.where + ": has " + std::to_string(frames) +
                        " frames; an interval needs at least 2");
-    if (frames > kMostFrames || header.vertex_count > kMost || header.vertex_count < 3)
+    if (frames > kMostFrames || header.vertex_count > kMostShown || header.vertex_count < 3)
       throw InputError(positions.where + ": has shape " + shown(positions.shape) +
                        "; from 3 to 2^28 vertices and at most 2^40 frames are supported");
     require_stored(positions, header.vertex_count * 3);
   }
 
   void read_triangles() {
-    const Dataset triangles = open_dataset(file.get(), path, kFormat, "/triangles", H5T_INTEGER, 2);
-    if (triangles.shape[0] == 0 || triangles.shape[0] > kMost)
+    const Dataset triangles = open_dataset(file.get(), path, kCacheFormat, "/triangles", H5T_INTEGER, 2);
+    if (triangles.shape[0] == 0 || triangles.shape[0] > kMostShown)
       throw InputError(triangles.where + ": has shape " + shown(triangles.shape) +
                        "; from 1 to 2^28 triangles are supported");
     require_stored(triangles, triangles.shape[0] * 3);
@@ -119,13 +119,13 @@ struct PointCacheReader::File {
   }
 
   Dataset open_frames(const std::string& name, hsize_t count, hsize_t points, const std::string& why) {
-    Dataset dataset = open_dataset(file.get(), path, kFormat, name, H5T_FLOAT, 3);
+    Dataset dataset = open_dataset(file.get(), path, kCacheFormat, name, H5T_FLOAT, 3);
     require_shape(dataset, {count, points, 3}, why);
     return dataset;
   }
 
   void open_bones() {
-    const Dataset parent = open_dataset(file.get(), path, kFormat, "/bones/parent", H5T_INTEGER, 1);
+    const Dataset parent = open_dataset(file.get(), path, kCacheFormat, "/bones/parent", H5T_INTEGER, 1);
     if (parent.shape[0] == 0 || parent.shape[0] > kMostBones)
       throw InputError(parent.where + ": has " + std::to_string(parent.shape[0]) +
                        " bones; from 1 to 2^20 are supported; leave /bones out for none");
@@ -154,7 +154,7 @@ struct PointCacheReader::File {
   }
 
   void read_rest() {
-    const Dataset rest = open_dataset(file.get(), path, kFormat, "/rest", H5T_FLOAT, 2);
+    const Dataset rest = open_dataset(file.get(), path, kCacheFormat, "/rest", H5T_FLOAT, 2);
     require_shape(rest, {header.vertex_count, 3}, "/positions");
     require_stored(rest, header.vertex_count * 3);
     header.rest.resize(header.vertex_count);

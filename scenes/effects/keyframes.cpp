@@ -9,7 +9,7 @@
 namespace cscd::scenes {
 namespace {
 
-// Poses bones by keys, as an animator does. Every parameter other than those in kRows names bones. If
+// Poses bones by keys, as an animator does. Every parameter other than those in kKeyframeRows names bones. If
 // several parameters name a bone, their rotation vectors add up.
 class Keyframes final : public Effect {
  public:
@@ -58,7 +58,7 @@ class Keyframes final : public Effect {
   std::size_t root_ = SIZE_MAX;                    // the curve of the translation
 };
 
-const ParameterRow kRows[] = {
+const ParameterRow kKeyframeRows[] = {
     {.name = "root",
      .kind = ParameterKind::table,
      .unit = "frame, length",
@@ -108,10 +108,10 @@ const ParameterRow kRows[] = {
 }  // namespace
 
 EffectRow keyframes_row() {
-  return {"keyframes", "poses bones by keys of rotation, interpolated smoothly", Pace::substep, kRows,
+  return {"keyframes", "poses bones by keys of rotation, interpolated smoothly", Pace::substep, kKeyframeRows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
             return std::make_unique<Keyframes>(parameters, shape,
-                                               std::span(kRows).first(std::size(kRows) - 1));
+                                               std::span(kKeyframeRows).first(std::size(kKeyframeRows) - 1));
           }};
 }
 

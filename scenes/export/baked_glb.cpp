@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "glTF buffers are litt
 constexpr int kFloat = 5126, kUnsigned = 5125;  // the specification's component types
 
 // The buffer, and the accessors of it; each has a view of its own.
-struct Buffer {
+struct BakedBuffer {
   std::string bytes;
   Json views = Json::array(), accessors = Json::array();
 
@@ -66,7 +66,7 @@ std::string baked_glb(ClipSource& clip, const std::string& name, double fps) {
   const std::size_t frames = clip.frame_count(), targets = frames - 1;
   if (12 * clip.header().vertex_count * frames > UINT32_MAX)
     throw InputError("the frames are more than the 4 GiB of a .glb file; export them as .pc2 or .h5");
-  Buffer buffer;
+  BakedBuffer buffer;
   std::vector<std::uint32_t> corners;
   for (const Triangle& triangle : clip.header().triangles)
     for (const VertexId v : triangle) corners.push_back(static_cast<std::uint32_t>(v));

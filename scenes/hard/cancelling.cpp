@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind, Random& random) {
+Query make_cancelling(Kind, Random& random) {
   const Vec3 e1 = lattice_direction(random, 1 << 10), e2 = lattice_direction(random, 1 << 10);
   Query query;
   for (MovingPoint& p : query.points) {
@@ -24,6 +24,6 @@ const Family kCancelling = {
     "cancelling",
     "Within a lattice step of one plane throughout, with coordinates of a million: the cubic is a sum of "
     "products of 1e18 that cancel to a number of a few digits, or to none.",
-    make};
+    make_cancelling};
 
 }  // namespace cscd::scenes::hard

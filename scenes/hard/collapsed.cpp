@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_collapsed(Kind kind, Random& random) {
   const Vec3 a = lattice_point(random, 6), d = lattice_direction(random, 3),
              way = lattice_direction(random, 5);
   const int s = random.integer(-1, 5), b = random.integer(0, 4), c = random.integer(0, 4);
@@ -25,6 +25,6 @@ Query make(Kind kind, Random& random) {
 const Family kCollapsed = {"collapsed",
                            "Triangles without area, edges without length, from the start, throughout, or for "
                            "one instant: nothing has a normal, and a division by its length is one by zero.",
-                           make};
+                           make_collapsed};
 
 }  // namespace cscd::scenes::hard

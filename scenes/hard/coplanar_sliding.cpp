@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind, Random& random) {
+Query make_coplanar_sliding(Kind, Random& random) {
   const Vec3 o = lattice_point(random, 8), e1 = lattice_direction(random, 3),
              e2 = lattice_direction(random, 3);
   const Vec3 drift = flip(random) ? lattice_point(random, 4) : Vec3::Zero();
@@ -25,6 +25,6 @@ const Family kCoplanarSliding = {
     "coplanar_sliding",
     "All four points stay in one plane, which may move. The coplanarity cubic is zero throughout, so tests "
     "that look for its roots find none, or all times. Contact is a question of two dimensions.",
-    make};
+    make_coplanar_sliding};
 
 }  // namespace cscd::scenes::hard

@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_extreme_scale(Kind kind, Random& random) {
   Query query = crossing(kind, random);
   const bool mixed = flip(random);
   const double all = pick(random, {0x1p-1074, 0x1p-1060, 0x1p-1000, 0x1p-500, 0x1p498, 0x1p990});
@@ -19,6 +19,6 @@ const Family kExtremeScale = {"extreme_scale",
                               "From the smallest subnormal numbers to 1e300, and both at once along "
                               "different axes: products of coordinates underflow to zero, which looks like "
                               "touching, or overflow to infinity and NaN, which compare as nothing.",
-                              make};
+                              make_extreme_scale};
 
 }  // namespace cscd::scenes::hard

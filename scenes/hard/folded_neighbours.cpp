@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_folded_neighbours(Kind kind, Random& random) {
   const Vec3 p = lattice_point(random, 6), pq = lattice_direction(random, 4),
              pr = lattice_direction(random, 4);
   const Vec3 normal = pq.cross(pr);
@@ -22,6 +22,6 @@ const Family kFoldedNeighbours = {
     "folded_neighbours",
     "Two triangles with a common edge that fold shut to exact coplanarity, or through each other. What is "
     "tested are the features that they do not share; they start and stay next to each other.",
-    make};
+    make_folded_neighbours};
 
 }  // namespace cscd::scenes::hard

@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_grazing(Kind kind, Random& random) {
   // The height of one feature over the other is z0 - 2 r s (x0 + 2 p s) / 8, with s = t - 1/2.
   const double ulp = 0x1p-52;
   const double p = random.integer(1, 6), r = pick(random, {-3, -1, 1, 2, 5});
@@ -32,6 +32,6 @@ const Family kGrazing = {"grazing",
                          "The features come to one plane, touch, and part on the side they came from: a "
                          "double root, or two roots as little as one ulp apart, or none by as little. Roots "
                          "of the rounded cubic are wrong by the square root of the rounding.",
-                         make};
+                         make_grazing};
 
 }  // namespace cscd::scenes::hard

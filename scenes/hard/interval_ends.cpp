@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_interval_ends(Kind kind, Random& random) {
   const Query query = crossing(kind, random);
   const bool at_start = flip(random);
   Query cut;
@@ -21,6 +21,6 @@ const Family kIntervalEnds = {
     "interval_ends",
     "Contact at t = 0 exactly, on the way apart, or at t = 1 exactly. A root of 1 that is rounded to 1 + "
     "2^-52 is lost here and found in contact in the next interval, at its start.",
-    make};
+    make_interval_ends};
 
 }  // namespace cscd::scenes::hard

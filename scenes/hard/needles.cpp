@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_needles(Kind kind, Random& random) {
   const double length = 0x1p26, x = random.integer(1, (1 << 26) - 1);
   const auto height = [&] {
     const int middle = random.integer(0, 1), half = random.integer(1, 3);
@@ -33,6 +33,6 @@ const Family kNeedles = {
     "needles",
     "Triangles and pairs of edges with an aspect of a hundred million: the normal is small beside the edges "
     "that it is made of, and barycentric coordinates divide by its square.",
-    make};
+    make_needles};
 
 }  // namespace cscd::scenes::hard

@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_parallel(Kind kind, Random& random) {
   const Vec3 d = lattice_direction(random, 3), a = lattice_point(random, 8);
   const int length = random.integer(1, 6), from = random.integer(-8, 8), other = random.integer(-6, 6);
   // The motion of the second feature relative to the line of the first: across the line, along the line, or
@@ -25,6 +25,6 @@ const Family kParallel = {
     "parallel",
     "Edges that are parallel, or on one line, when they meet: the normal of the two is zero where it is "
     "needed. For a vertex and a face: a path along the line of one of its edges.",
-    make};
+    make_parallel};
 
 }  // namespace cscd::scenes::hard

@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind, Random& random) {
+Query make_symmetric(Kind, Random& random) {
   const int half = random.integer(1, 4), motion = random.integer(0, 3);
   const auto corner = [&] {
     const double x = flip(random) ? half : -half, y = flip(random) ? half : -half,
@@ -30,6 +30,6 @@ const Family kSymmetric = {
     "symmetric",
     "Corners of a cube that turn inside out, mirror or rotate: several pairs of features touch at one "
     "instant, at one point, and which is first must not depend on who is asked first.",
-    make};
+    make_symmetric};
 
 }  // namespace cscd::scenes::hard

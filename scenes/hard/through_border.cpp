@@ -3,7 +3,7 @@
 namespace cscd::scenes::hard {
 namespace {
 
-Query make(Kind kind, Random& random) {
+Query make_through_border(Kind kind, Random& random) {
   const Vec3 way = lattice_direction(random, 6), drift = lattice_point(random, 2);
   const Vec3 a = lattice_point(random, 8), ab = lattice_direction(random, 4),
              ac = lattice_direction(random, 4);
@@ -29,6 +29,6 @@ const Family kThroughBorder = {
     "through_border",
     "A vertex goes exactly through an edge or a corner of the face, an end of an edge through the other edge "
     "or its end. One rounding to the wrong side loses it, here and for the neighbour that shares the border.",
-    make};
+    make_through_border};
 
 }  // namespace cscd::scenes::hard

@@ -132,7 +132,7 @@ TEST(LimbedSphere, HasSmoothWeights) {
   EXPECT_EQ(shape.rig.parent[2], BoneId{1});
 }
 
-std::string refusal(const std::function<void(LimbedSphereParameters&)>& change) {
+std::string limb_refusal(const std::function<void(LimbedSphereParameters&)>& change) {
   LimbedSphereParameters p = ball(10);
   p.limbs = {limb("arm", {0, true}, 1, 1, 3, 8, 10), limb("leg", {0, true}, 5, 5, 3, 8, 10)};
   change(p);
@@ -147,45 +147,46 @@ std::string refusal(const std::function<void(LimbedSphereParameters&)>& change) 
 
 TEST(LimbedSphere, SaysWhatCannotBe) {
   using P = LimbedSphereParameters;
-  EXPECT_EQ(refusal([](P&) {}), "");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[1].cell_u = p.limbs[1].cell_v = 3; }),
+  EXPECT_EQ(limb_refusal([](P&) {}), "");
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[1].cell_u = p.limbs[1].cell_v = 3; }),
             "limbed_sphere: limb leg: its patch overlaps that of limb arm in cell 3, 3; move one of them");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].rings = 0; }), "limbed_sphere: limb arm: needs at least 2 rings");
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].rings = 0; }),
+            "limbed_sphere: limb arm: needs at least 2 rings");
   EXPECT_EQ(
-      refusal([](P& p) { p.limbs[0].size = 11; }),
+      limb_refusal([](P& p) { p.limbs[0].size = 11; }),
       "limbed_sphere: limb arm: its patch of 11 x 11 cells at 1, 1 leaves the face of 10 x 10 cells; move or "
       "shrink it");
-  EXPECT_NE(refusal([](P& p) { p.limbs[0].cell_v = 8; }).find("leaves the face"), std::string::npos);
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].parent = "tail"; }),
+  EXPECT_NE(limb_refusal([](P& p) { p.limbs[0].cell_v = 8; }).find("leaves the face"), std::string::npos);
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].parent = "tail"; }),
             "limbed_sphere: limb arm: its parent tail is no bone of the body");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[1].bones[0] = "arm_2"; }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[1].bones[0] = "arm_2"; }),
             "limbed_sphere: two bones are called arm_2; give each a name of its own");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].bones.pop_back(); }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].bones.pop_back(); }),
             "limbed_sphere: limb arm: needs one joint more than bones; it has 3 joints and 1 bones");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].form.joints[0] *= 2; }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.joints[0] *= 2; }),
             "limbed_sphere: limb arm: its first joint lies outside the body; move it inside");
-  EXPECT_EQ(refusal([](P& p) {
+  EXPECT_EQ(limb_refusal([](P& p) {
               for (Vec3& joint : p.limbs[0].form.joints) joint *= 0.3;
             }),
             "limbed_sphere: limb arm: never leaves the body; lengthen it");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].collar = 5; }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].collar = 5; }),
             "limbed_sphere: limb arm: no room between body, collar and tip; lengthen it");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].form.joints[2] = p.limbs[0].form.joints[1]; }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.joints[2] = p.limbs[0].form.joints[1]; }),
             "limbed_sphere: limb arm: two neighbouring joints are one point");
   EXPECT_EQ(
-      refusal([](P& p) { p.limbs[0].form.sections[1][0] = 0; }),
+      limb_refusal([](P& p) { p.limbs[0].form.sections[1][0] = 0; }),
       "limbed_sphere: limb arm: sections must be given in order, at shares from 0 to 1, with positive radii");
-  EXPECT_EQ(refusal([](P& p) { p.limbs[0].form.tip = 9; }),
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.tip = 9; }),
             "limbed_sphere: limb arm: the rounded tip must be shorter than the limb");
-  EXPECT_NE(refusal([](P& p) { p.limbs[0].collar = 0; }).find("flare, collar and root_blend"),
+  EXPECT_NE(limb_refusal([](P& p) { p.limbs[0].collar = 0; }).find("flare, collar and root_blend"),
             std::string::npos);
-  EXPECT_NE(refusal([](P& p) { p.cells = 0; }).find("cells must be from 1 to 4000"), std::string::npos);
-  EXPECT_NE(refusal([](P& p) { p.body_joints.pop_back(); }).find("one joint more than bones"),
+  EXPECT_NE(limb_refusal([](P& p) { p.cells = 0; }).find("cells must be from 1 to 4000"), std::string::npos);
+  EXPECT_NE(limb_refusal([](P& p) { p.body_joints.pop_back(); }).find("one joint more than bones"),
             std::string::npos);
-  EXPECT_NE(refusal([](P& p) { p.body.sections.pop_back(); }).find("at least two sections"),
+  EXPECT_NE(limb_refusal([](P& p) { p.body.sections.pop_back(); }).find("at least two sections"),
             std::string::npos);
-  EXPECT_NE(refusal([](P& p) { p.body.end_power = 3; }).find("must be even"), std::string::npos);
-  EXPECT_NE(refusal([](P& p) { p.limbs[0].rings = 100000000; }).find("more than 2^27 vertices"),
+  EXPECT_NE(limb_refusal([](P& p) { p.body.end_power = 3; }).find("must be even"), std::string::npos);
+  EXPECT_NE(limb_refusal([](P& p) { p.limbs[0].rings = 100000000; }).find("more than 2^27 vertices"),
             std::string::npos);
 }
 

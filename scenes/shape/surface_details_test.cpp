@@ -9,7 +9,7 @@
 namespace cscd::scenes {
 namespace {
 
-Shape tube() {
+Shape plain_tube() {
   const test::Shape given = test::uneven_tube(24, 40, 10, [](double) { return 1.0; });
   Shape shape;
   shape.positions = given.positions;
@@ -19,7 +19,7 @@ Shape tube() {
 }
 
 TEST(SurfaceDetails, RaiseAndDentWithinTheirReachAlone) {
-  const Shape before = tube();
+  const Shape before = plain_tube();
   for (const double height : {0.3, -0.3}) {
     Shape shape = before;
     const SurfaceDetail detail{{5, 1, 0}, {1, 0.8, 0.8}, height, 0, Vec3::Zero()};
@@ -40,7 +40,7 @@ TEST(SurfaceDetails, RaiseAndDentWithinTheirReachAlone) {
 
 // Mutation: the cosine of the folds is left out.
 TEST(SurfaceDetails, FoldsRiseAndFallAcrossTheirDirection) {
-  const Shape before = tube();
+  const Shape before = plain_tube();
   Shape shape = before;
   const SurfaceDetail detail{{5, 0, 0}, {4, 9, 9}, 0.1, 2, Vec3::UnitX()};
   add_details(std::span(&detail, 1), shape);

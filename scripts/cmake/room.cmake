@@ -5,19 +5,40 @@ set(CSCD_PARSED <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory
                 <vector> <Eigen/Geometry>)
 # gcc 12 forgets that precompiled headers are system headers, and warns of code within std::string.
 set(CSCD_PARSED_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
-function(cscd_parse_once target)
+# cscd_parse_once(TARGET LEVEL HEADER...): LEVEL is how far the target is optimised. gcc 14 takes no headers that were parsed at
+# another level.
+function(cscd_parse_once target level)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
   target_compile_options(${target} PRIVATE ${CSCD_PARSED_OPTIONS})
-  get_property(maker GLOBAL PROPERTY "cscd_parsed ${ARGN}")
+  set(maker_of "cscd_parsed ${level} ${ARGN}")
+  get_property(maker GLOBAL PROPERTY "${maker_of}")
   if(maker)
     target_precompile_headers(${target} REUSE_FROM ${maker})
   else()
     target_precompile_headers(${target} PRIVATE ${ARGN})
-    set_property(GLOBAL PROPERTY "cscd_parsed ${ARGN}" ${target})
+    set_property(GLOBAL PROPERTY "${maker_of}" ${target})
   endif()
 endfunction()
+
+# The compiler spends most of its time on templates of outside libraries, once for each file that uses them. So the files of a
+# room that nobody times, and those of a room's tests, are compiled several at once. Every file still includes what it uses:
+# builds that set CSCD_UNITY to OFF (debug, sanitize) see to that. Helpers in the anonymous namespaces of one room need names of
+# their own.
+option(CSCD_UNITY "Compile several files of a room at once" ON)
+function(cscd_compile_together target)
+  if(CSCD_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    # gcc takes a file that another one includes for a header.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
+
+# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
+set(CSCD_TIMED_ROOMS "^(core|library|baselines)(/|$)|^bench/(rows|kernels|front|measure/strategies|measure/kernels)$")
+# Rooms that run once for each command. Optimising these takes longer than it saves.
+set(CSCD_BRIEF_ROOMS "^scenes/(import|export)(/|$)|^bench/(cli|tables|compare|record|command_line|commands|history|view)(/|$)|^bench/(measure/record|query/view|query/options)$|^bench/(query|measure)$")
 
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
@@ -48,7 +69,15 @@ function(cscd_room path)
     add_library(${room} STATIC ${sources})
     target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
     target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
-    cscd_parse_once(${room} ${CSCD_PARSED} ${ROOM_PARSED})
+    set(level full)
+    if(NOT path MATCHES "${CSCD_TIMED_ROOMS}")
+      cscd_compile_together(${room})
+    endif()
+    if(path MATCHES "${CSCD_BRIEF_ROOMS}")
+      set(level brief)
+      target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
+    cscd_parse_once(${room} ${level} ${CSCD_PARSED} ${ROOM_PARSED})
   else()
     add_library(${room} INTERFACE)
     target_include_directories(${room} INTERFACE ${PROJECT_SOURCE_DIR})
@@ -65,7 +94,8 @@ function(cscd_room path)
     target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${ROOM_TEST_LINK} GTest::gtest_main cscd_flags)
     # A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
     target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
-    cscd_parse_once(${room}_test ${CSCD_PARSED} ${ROOM_PARSED} <gtest/gtest.h>)
+    cscd_compile_together(${room}_test)
+    cscd_parse_once(${room}_test brief ${CSCD_PARSED} ${ROOM_PARSED} <gtest/gtest.h>)
     gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()
 endfunction()

@@ -8,7 +8,7 @@
 namespace cscd {
 namespace {
 
-constexpr std::size_t kAll = 1'000'000;
+constexpr std::size_t kAllPairs = 1'000'000;
 
 // A small ball looks out of a larger one, as an eye does.
 struct Eye {
@@ -24,19 +24,19 @@ struct Eye {
   }
   std::size_t unexplained(const RestCrossings& rest, const std::vector<Vec3>& positions) {
     std::size_t count = 0;
-    for (const CrossingPair& pair : test.find_all(positions, kAll).pairs) count += !rest.explains(pair);
+    for (const CrossingPair& pair : test.find_all(positions, kAllPairs).pairs) count += !rest.explains(pair);
     return count;
   }
 };
 
 TEST(RestCrossings, ExplainThemselvesAndWhereTheyShiftTo) {
   Eye eye;
-  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAll);
+  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAllPairs);
   ASSERT_GT(at_rest.total, 20u);
   const RestCrossings rest(eye.mesh, at_rest);
   EXPECT_EQ(eye.unexplained(rest, eye.shape.positions), 0u);
   EXPECT_EQ(eye.unexplained(rest, eye.moved({0.02, 0.01, 0})), 0u);
-  EXPECT_NE(eye.test.find_all(eye.moved({0.02, 0.01, 0}), kAll).pairs, at_rest.pairs)
+  EXPECT_NE(eye.test.find_all(eye.moved({0.02, 0.01, 0}), kAllPairs).pairs, at_rest.pairs)
       << "the line must shift";
   EXPECT_GT(eye.unexplained(rest, eye.moved({-1.8, 0, 0})), 20u) << "out at the back of the head";
   EXPECT_GT(eye.unexplained(RestCrossings(), eye.shape.positions), 20u);
@@ -44,7 +44,7 @@ TEST(RestCrossings, ExplainThemselvesAndWhereTheyShiftTo) {
 
 TEST(RestCrossings, ExplainFeaturePairsOfTheirTriangles) {
   Eye eye;
-  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAll);
+  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAllPairs);
   const RestCrossings rest(eye.mesh, at_rest);
   const auto [head, ball] = at_rest.pairs.front();
   EXPECT_TRUE(rest.explains(FeaturePair::of(eye.mesh.corners(head)[0], ball)));
@@ -59,7 +59,7 @@ TEST(RestCrossings, InsideOneComponentExplainThePairsAlone) {
   test::Shape shape = test::icosphere(2);
   shape.positions[0] = -1.05 * shape.positions[0];
   const TriangleMesh mesh = shape.mesh();
-  const Crossings at_rest = EmbeddingTest(mesh, shape.positions).find_all(shape.positions, kAll);
+  const Crossings at_rest = EmbeddingTest(mesh, shape.positions).find_all(shape.positions, kAllPairs);
   ASSERT_GT(at_rest.total, 1u);
   const RestCrossings rest(mesh, at_rest);
   std::size_t neighbours = 0, explained = 0;

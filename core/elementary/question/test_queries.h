@@ -26,6 +26,15 @@ inline MovingEdgeEdge query_of(const FourMovingPoints& p) {
   return {{p[0], p[1]}, {p[2], p[3]}};
 }
 
+inline MovingPoint still(double x, double y, double z) {
+  return {{x, y, z}, {x, y, z}};
+}
+
+// A vertex that moves, and a face that does not.
+inline MovingVertexFace against_triangle(const Vec3& from, const Vec3& to) {
+  return {{from, to}, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
+}
+
 class QueryMaker {
  public:
   explicit QueryMaker(unsigned seed) : random_(seed) {}

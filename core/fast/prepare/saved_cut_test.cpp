@@ -12,8 +12,8 @@
 namespace cscd::fast {
 namespace {
 
-struct Cut : test::Body, CutSurface {
-  Cut() : test::Body(0.01, 0), CutSurface(cut_surface(mesh, shape.positions, atomic.of_triangle)) {}
+struct SavableCut : test::Body, CutSurface {
+  SavableCut() : test::Body(0.01, 0), CutSurface(cut_surface(mesh, shape.positions, atomic.of_triangle)) {}
   std::vector<std::byte> saved() const { return saved_cut(mesh, shape.positions, *this, 2); }
   RestoredCut restored(std::span<const std::byte> bytes) const {
     return restored_cut(mesh, shape.positions, bytes);
@@ -22,7 +22,7 @@ struct Cut : test::Body, CutSurface {
 
 // Mutations: a cover is left out; the cells are not kept; heights are not kept.
 TEST(SavedCut, IsTheCutThatWasSaved) {
-  Cut cut;
+  SavableCut cut;
   cut.covers[1].observers[0].stand_off(0.5F);
   const auto [again, covers, new_triangles] = cut.restored(cut.saved());
   EXPECT_EQ(covers, 2u);
@@ -46,7 +46,7 @@ TEST(SavedCut, IsTheCutThatWasSaved) {
 
 // Mutation: the digest of the contents is not compared.
 TEST(SavedCut, DamagedOnesAreRefused) {
-  const Cut cut;
+  const SavableCut cut;
   const std::vector<std::byte> whole = cut.saved();
   for (std::size_t i = 0; i < whole.size(); i += i < 64 ? 1 : 997) {
     std::vector<std::byte> changed = whole;
@@ -61,7 +61,7 @@ TEST(SavedCut, DamagedOnesAreRefused) {
 
 // Mutation: the digest of the surface is not compared.
 TEST(SavedCut, KnowsWhatIsNewOnAnotherSurface) {
-  Cut cut;
+  SavableCut cut;
   const std::vector<std::byte> saved = cut.saved();
   EXPECT_EQ(cut.restored(saved).new_triangles, 0u);
   cut.shape.positions[5].x() += 1e-12;
@@ -70,8 +70,8 @@ TEST(SavedCut, KnowsWhatIsNewOnAnotherSurface) {
 
 // What the theorems ask of a cut is checked even where the bytes are whole. Mutations: each of the checks.
 TEST(SavedCut, OneThatBreaksARuleIsRefused) {
-  const auto expect_refused = [](const char* what, const std::function<void(Cut&)>& spoil) {
-    Cut cut;
+  const auto expect_refused = [](const char* what, const std::function<void(SavableCut&)>& spoil) {
+    SavableCut cut;
     spoil(cut);
     try {
       cut.restored(cut.saved());
@@ -81,31 +81,32 @@ TEST(SavedCut, OneThatBreaksARuleIsRefused) {
     }
   };
   expect_refused("a triangle in two patches",
-                 [](Cut& cut) { cut.tree.triangles[0][0] = cut.tree.triangles[1][0]; });
-  expect_refused("a patch in two clusters", [](Cut& cut) {
+                 [](SavableCut& cut) { cut.tree.triangles[0][0] = cut.tree.triangles[1][0]; });
+  expect_refused("a patch in two clusters", [](SavableCut& cut) {
     std::swap(cut.covers[0].cluster_of[+cut.tree.triangles[0][0]],
               cut.covers[0].cluster_of[+cut.tree.triangles.back()[0]]);
   });
-  expect_refused("a triangle without a cluster", [](Cut& cut) {
+  expect_refused("a triangle without a cluster", [](SavableCut& cut) {
     for (const TriangleId t : cut.tree.triangles_of(0)) cut.covers[0].cluster_of[+t] = kNone;
   });
-  expect_refused("a wrong cluster", [](Cut& cut) {
+  expect_refused("a wrong cluster", [](SavableCut& cut) {
     for (const TriangleId t : cut.tree.triangles_of(0)) cut.covers[0].cluster_of[+t] = 1 << 20;
   });
   expect_refused("an empty cluster",
-                 [](Cut& cut) { cut.covers[0].observers.emplace_back(cut.covers[0].observers[0]); });
-  expect_refused("too large weights", [](Cut& cut) {
+                 [](SavableCut& cut) { cut.covers[0].observers.emplace_back(cut.covers[0].observers[0]); });
+  expect_refused("too large weights", [](SavableCut& cut) {
     cut.covers[1].observers[0] = {};
     cut.covers[1].observers[0].add(VertexId{0}, 1e9F);
   });
-  expect_refused("a wrong observer", [](Cut& cut) { cut.covers[1].observers[0] = {}; });
+  expect_refused("a wrong observer", [](SavableCut& cut) { cut.covers[1].observers[0] = {}; });
   for (const float height : {1e30F, -2000.0F, std::numeric_limits<float>::quiet_NaN()})
-    expect_refused("a wrong observer", [&](Cut& cut) { cut.covers[1].observers[0].stand_off(height); });
+    expect_refused("a wrong observer",
+                   [&](SavableCut& cut) { cut.covers[1].observers[0].stand_off(height); });
 }
 
 // Places of vertices are saved, so one that follows no vertex cannot be.
 TEST(SavedCut, AnObserverAtAVertexThatTheMeshLacksIsRefused) {
-  Cut cut;
+  SavableCut cut;
   for (const int vertex : {-1, 1 << 20}) {
     cut.covers[1].observers[0] = {};
     cut.covers[1].observers[0].add(VertexId{vertex}, 1);

@@ -12,7 +12,7 @@ using Filter = CompressedView::Filter;
 // sixteen equal bytes, and a byte of triangles for three indices.
 constexpr std::size_t kDensest = 64;
 
-[[noreturn]] void refuse(const std::string& what, const std::string& why) {
+[[noreturn]] void refuse_compressed(const std::string& what, const std::string& why) {
   throw InputError(what + ": their EXT_meshopt_compression " + why + "; export it again");
 }
 
@@ -20,7 +20,7 @@ std::size_t whole(const tinygltf::Value& extension, const char* member, bool req
                   const std::string& what) {
   // json.cpp has checked that a member of this name is a whole number.
   if (extension.Has(member)) return static_cast<std::size_t>(extension.Get(member).GetNumberAsInt());
-  if (required) refuse(what, std::string("has no ") + member);
+  if (required) refuse_compressed(what, std::string("has no ") + member);
   return 0;
 }
 
@@ -33,7 +33,7 @@ Mode mode_of(const std::string& name, const std::string& what) {
   if (name == "ATTRIBUTES") return Mode::attributes;
   if (name == "TRIANGLES") return Mode::triangles;
   if (name == "INDICES") return Mode::indices;
-  refuse(what, "has the unknown mode '" + name + "'");
+  refuse_compressed(what, "has the unknown mode '" + name + "'");
 }
 
 Filter filter_of(const std::string& name, const std::string& what) {
@@ -41,7 +41,7 @@ Filter filter_of(const std::string& name, const std::string& what) {
   if (name == "OCTAHEDRAL") return Filter::octahedral;
   if (name == "QUATERNION") return Filter::quaternion;
   if (name == "EXPONENTIAL") return Filter::exponential;
-  refuse(what, "has the unknown filter '" + name + "'");
+  refuse_compressed(what, "has the unknown filter '" + name + "'");
 }
 
 // Checks what the decompressing library only asserts, because the library is built without assertions.
@@ -68,22 +68,24 @@ CompressedView compressed_view(const tinygltf::Value& extension, std::size_t vie
   view.count = whole(extension, "count", true, what);
   view.mode = mode_of(word(extension, "mode"), what);
   view.filter = filter_of(word(extension, "filter"), what);
-  if (!consistent(view)) refuse(what, "has a byteStride or count that does not fit its mode and filter");
-  if (view.stride * view.count != view_length) refuse(what, "does not have as many bytes as its buffer view");
+  if (!consistent(view))
+    refuse_compressed(what, "has a byteStride or count that does not fit its mode and filter");
+  if (view.stride * view.count != view_length)
+    refuse_compressed(what, "does not have as many bytes as its buffer view");
   return view;
 }
 
 Bytes decompress(const CompressedView& view, std::span<const unsigned char> compressed,
                  const std::string& what) {
   if (view.count * view.stride / kDensest > compressed.size())
-    refuse(what, "holds fewer elements than it says");
+    refuse_compressed(what, "holds fewer elements than it says");
   Bytes out(view.count * view.stride);
   using Decode = int(void*, std::size_t, std::size_t, const unsigned char*, std::size_t);
   Decode* decode = meshopt_decodeVertexBuffer;
   if (view.mode == Mode::triangles) decode = meshopt_decodeIndexBuffer;
   if (view.mode == Mode::indices) decode = meshopt_decodeIndexSequence;
   if (decode(out.data(), view.count, view.stride, compressed.data(), compressed.size()) != 0)
-    refuse(what, "is damaged");
+    refuse_compressed(what, "is damaged");
   if (view.filter == Filter::octahedral) meshopt_decodeFilterOct(out.data(), view.count, view.stride);
   if (view.filter == Filter::quaternion) meshopt_decodeFilterQuat(out.data(), view.count, view.stride);
   if (view.filter == Filter::exponential) meshopt_decodeFilterExp(out.data(), view.count, view.stride);
