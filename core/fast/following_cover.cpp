@@ -240,7 +240,7 @@ void FollowingCover::assign(std::size_t cluster, std::size_t node, const Followi
   targets_.clear();
   const std::size_t stride = (all.size() + kMostTargets - 1) / kMostTargets;
   for (std::size_t i = stride / 2; i < all.size(); i += stride) targets_.push_back(all[i]);
-  certificates_->cut(cluster, builder_, mesh_, all, targets_, positions_);
+  certificates_->set_cluster(cluster, builder_, mesh_, all, targets_, positions_);
 }
 
 std::size_t FollowingCover::add(std::size_t node, const FollowingPoint& observer) {

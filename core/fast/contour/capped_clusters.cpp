@@ -69,7 +69,7 @@ CappedClusters::CappedClusters(const TriangleMesh& mesh, std::span<const Vec3> r
           TriangleId{static_cast<std::int32_t>(t)});
   CapBuilder builder(mesh);
   for (std::size_t i = 0; i < members.size(); ++i)
-    cut(i, builder, mesh, members[i], members[i], reference, cover.observers[i]);
+    set_cluster(i, builder, mesh, members[i], members[i], reference, cover.observers[i]);
 }
 
 void CappedClusters::resize(std::size_t count) {
