@@ -138,7 +138,7 @@ Subject scene_subject(Input& input, const std::string& scene, std::size_t count)
   const scenes::ClipHeader& header = input.clip->header();
   const std::size_t intervals = input.clip->interval_count();
   const auto detector =
-      complete_stand_in().make(input.setup(elementary_test_named("filtered_exact"))).detector;
+      complete_fallback().make(input.setup(elementary_test_named("filtered_exact"))).detector;
   const std::vector<std::size_t> touching = intervals_with_contacts(input, *detector, {0, intervals});
   std::vector<std::size_t> chosen = spread(count, intervals);
   if (!touching.empty() && count > 1) {

@@ -100,7 +100,7 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
     if (column == strategy.ms.end() && stage == kStartTest &&
         (strategy.guarantee == kFirstContact || strategy.guarantee == kAllFromEmbedded))
       throw Missing{"this record does not have the time of the test of the start"};
-    if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_stand_in().name)
+    if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_fallback().name)
       throw Missing{"this record does not have the time of looking at the start"};
     if (column == strategy.ms.end()) continue;
     if (sums.empty()) sums.assign(column->second.size(), std::vector<double>(column->second.front().size()));

@@ -118,8 +118,8 @@ std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& ra
                                            const ReplayRequest& request) {
   const std::vector<std::size_t> regular = every_kth(range, request.time_every);
   if (request.time_contacts == 0) return regular;
-  const Prepared fastest = complete_stand_in().make(
-      measured_setup(input, complete_stand_in(), elementary_test_named("filtered_exact")));
+  const Prepared fastest = complete_fallback().make(
+      measured_setup(input, complete_fallback(), elementary_test_named("filtered_exact")));
   return with_contacts(regular, intervals_with_contacts(input, *fastest.detector, range),
                        request.time_contacts);
 }

@@ -111,7 +111,7 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
       const Strategy& strategy = *contestants[c].strategy;
       if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken.count(), records[c].ms, repetition);
-      if (&strategy != &complete_stand_in()) continue;
+      if (&strategy != &complete_fallback()) continue;
       lead_up(strategy, *contestants[c].timed, *input.clip, i);
       interval = input.clip->load(i);
       stream_positions(interval.motion);

@@ -386,7 +386,7 @@ const Strategy& all_pairs() {
   return strategy_named("brute");
 }
 
-const Strategy& complete_stand_in() {
+const Strategy& complete_fallback() {
   return strategy_named(kDrvbcFastComplete.name);
 }
 

@@ -30,9 +30,9 @@ std::vector<const ElementaryTest*> elementary_tests_named(std::string_view names
 // The simplest complete strategy that is not quadratic: the reference that others are verified against.
 const Strategy& complete_reference();
 
-// The fastest complete strategy that takes any surface: what stands in where a surface is not closed or the
+// The fastest complete strategy that takes any surface: the fallback where a surface is not closed or the
 // start of an interval not embedded.
-const Strategy& complete_stand_in();
+const Strategy& complete_fallback();
 
 // All pairs of triangles: the oracle for small meshes.
 const Strategy& all_pairs();

@@ -37,7 +37,7 @@ std::string_view to_string(IntervalVerdict verdict) {
 Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                    const AnswerOptions& options)
     : input_(input),
-      session_(input.name, input.setup(elementary), strategy, complete_stand_in(), input.rest(),
+      session_(input.name, input.setup(elementary), strategy, complete_fallback(), input.rest(),
                with_ignored(options, input)) {}
 
 IntervalAnswer Answerer::answer(std::size_t index) {

@@ -156,7 +156,7 @@ bool allows(const Input& input, const Strategy& strategy) {
 }
 
 const Strategy& default_strategy(const Input& input) {
-  const Strategy* chosen = &complete_stand_in();
+  const Strategy* chosen = &complete_fallback();
   for (const Strategy* strategy : strategies_in(""))
     if (strategy->guarantee == Guarantee::first_contact && allows(input, *strategy)) chosen = strategy;
   return *chosen;
