@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 // A row of this guarantee relies on a test of the start, whose time is a stage of this name.
 constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact",
                            kAllFromEmbedded = "all_from_embedded";
-// The stage in which the stand-in, a complete row, finds which triangles cross at the start.
+// The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
 
 // Why there is no figure.

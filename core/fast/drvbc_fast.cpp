@@ -18,7 +18,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
                      " threads; give at least one");
   StageClock clock;
   clock.enter(Stage::decomposition);
-  fast::Candidate best = fast::best_candidate(setup, options, clock);
+  fast::TrialCuller best = fast::best_trial_culler(setup, options, clock);
   if (options.follows) best.culler->follow();
   clock.stop();
   Preparation preparation;
@@ -37,7 +37,8 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
 EmbeddingTest make_embedding_test(const Setup& setup) {
   StageClock clock;
   clock.enter(Stage::decomposition);
-  fast::Candidate best = fast::best_candidate(setup, {.name = "embedding test", .complete = true}, clock);
+  fast::TrialCuller best =
+      fast::best_trial_culler(setup, {.name = "embedding test", .complete = true}, clock);
   return {setup.mesh, std::move(best.culler)};
 }
 

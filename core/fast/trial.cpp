@@ -57,9 +57,9 @@ std::size_t most_triangles_for_clusters(std::size_t triangles, bool with_caps) {
 
 // Returns the work of all trials, for a complete culler by signs or by caps. Stops early, and returns a sum
 // above `most`, once the work is more than `most`.
-std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, bool by_signs, std::uint64_t most) {
+std::uint64_t work(FastCuller& culler, std::span<const PosePair> trials, bool by_signs, std::uint64_t most) {
   std::uint64_t tests = 0;
-  for (const Trial& trial : trials) {
+  for (const PosePair& trial : trials) {
     if (tests > most) break;
     CountingSink sink;
     const Motion motion(trial[0], trial[1]);
@@ -72,7 +72,7 @@ std::uint64_t work(FastCuller& culler, std::span<const Trial> trials, bool by_si
   return tests;
 }
 
-Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
+TrialCuller made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
   const Team team(setup.threads);
   auto culler = std::make_unique<FastCuller>(
       setup, cut_surface(setup.mesh, setup.reference, cluster_of, kLeastCell, team), options);
@@ -80,9 +80,9 @@ Candidate made(const Setup& setup, std::vector<std::int32_t> cluster_of, const D
 }
 
 // Takes over what an earlier preparation of the surface has decided.
-Candidate restored(const Setup& setup, const DrvbcFastOptions& options) {
+TrialCuller restored(const Setup& setup, const DrvbcFastOptions& options) {
   RestoredCut restored = restored_cut(setup.mesh, setup.reference, setup.preparation);
-  Candidate candidate{restored.cut.covers[0].cluster_of, nullptr, restored.new_triangles};
+  TrialCuller candidate{restored.cut.covers[0].cluster_of, nullptr, restored.new_triangles};
   candidate.culler = std::make_unique<FastCuller>(setup, std::move(restored.cut), options);
   candidate.culler->use_covers(std::min(restored.covers, options.covers));
   return candidate;
@@ -97,7 +97,8 @@ struct TrialResult {
 // Tries a candidate with three covers, two and one. A trial stops early once it has made more work than
 // `most()`, so a result above most() may be less than the candidate's work.
 template <class Most>
-TrialResult tried_with(FastCuller& culler, std::span<const Trial> trials, bool by_signs, const Most& most) {
+TrialResult tried_with(FastCuller& culler, std::span<const PosePair> trials, bool by_signs,
+                       const Most& most) {
   TrialResult least;
   for (std::size_t count = kCovers; count > 0; --count) {
     culler.use_covers(count);
@@ -196,7 +197,7 @@ void for_both(int threads, const Work& work) {
 // The clusters along which the trial surface is cut, and the number of covers to look from. If there was a
 // trial, the winner comes with the culler that was tried; otherwise there is no culler.
 struct Decision {
-  Candidate taken;
+  TrialCuller taken;
   std::size_t covers = kCovers;
 };
 Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, StageClock& clock) {
@@ -210,8 +211,8 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
   };
   if (options.clusters == Clusters::of_bones) return {{of_bones(parts_of(surfaces, clock).bone_of), nullptr}};
 
-  std::vector<Trial> trials;
-  std::array<Candidate, 2> candidates;
+  std::vector<PosePair> trials;
+  std::array<TrialCuller, 2> candidates;
   for_both(tried.threads, [&](std::size_t i) {
     if (i == 0) {
       const Parts parts = parts_of(surfaces, clock);
@@ -236,7 +237,7 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
 
 }  // namespace
 
-Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
+TrialCuller best_trial_culler(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
   if (!setup.preparation.empty()) return restored(setup, options);
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.
@@ -249,7 +250,7 @@ Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, St
                              most_triangles_for_clusters(setup.mesh.triangle_count(), with_caps));
   const bool tried_on_coarse = coarse.is_coarser() && !with_caps;
   Decision decision = decided({setup, coarse, tried_on_coarse}, whole, clock);
-  Candidate best = std::move(decision.taken);
+  TrialCuller best = std::move(decision.taken);
   if (tried_on_coarse) best.cluster_of = coarse.carried(std::move(best.cluster_of));
   renumber(best.cluster_of);
   if (!best.culler || tried_on_coarse || options != whole)

@@ -10,7 +10,7 @@
 namespace cscd::fast {
 
 // A prepared culler, and the cluster of each triangle that its surface was cut along.
-struct Candidate {
+struct TrialCuller {
   std::vector<std::int32_t> cluster_of;  // [triangles]
   std::unique_ptr<FastCuller> culler;
   std::size_t new_triangles = 0;  // that Setup::preparation did not know
@@ -28,6 +28,6 @@ inline constexpr std::size_t kManyTriangles = 16000;
 // clusters are found on a coarser surface. Where signs suffice, candidates are tried on the coarser surface
 // too, and only the culler that is returned is cut from the surface itself. With Setup::preparation, nothing
 // is tried or cut, and what the preparation says is taken. Leaves the clock in the stage `decomposition`.
-Candidate best_candidate(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
+TrialCuller best_trial_culler(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
 
 }  // namespace cscd::fast

@@ -95,12 +95,12 @@ void smooth(const Neighbours& neighbours, std::vector<Shift>& shifts) {
 
 }  // namespace
 
-std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> reference, const Rig& rig,
-                               std::span<const BoneId> bone_of, std::size_t count) {
+std::vector<PosePair> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> reference, const Rig& rig,
+                                  std::span<const BoneId> bone_of, std::size_t count) {
   std::mt19937 random(kPreparationSeed);
   const auto dice = [&] { return static_cast<double>(random() >> 8) * 0x1p-23 - 1; };
   const Neighbours neighbours(mesh);
-  std::vector<Trial> trials;
+  std::vector<PosePair> trials;
   for (std::size_t i = 0; i < count; ++i) {
     std::vector<Vec3> axes;
     for (std::size_t b = 0; b < rig.parent.size(); ++b) {
@@ -111,7 +111,7 @@ std::vector<Trial> trial_poses(const TriangleMesh& mesh, std::span<const Vec3> r
     std::vector<Shift> shifts = turned_shifts(
         mesh, reference, bone_of, {turned(rig, axes, kTurned), turned(rig, axes, kTurned + kFurther)});
     smooth(neighbours, shifts);
-    Trial& trial = trials.emplace_back();
+    PosePair& trial = trials.emplace_back();
     for (std::size_t end = 0; end < 2; ++end)
       for (std::size_t v = 0; v < shifts.size(); ++v)
         trial[end].push_back(reference[v] +

@@ -19,7 +19,7 @@ std::vector<BoneId> bones_of(const test::Body& body) {
 TEST(TrialPoses, ALimbFollowsItsParentsAndKeepsItsLength) {
   const test::Body body(0, 0);
   const std::vector<BoneId> bone_of = bones_of(body);
-  const std::vector<Trial> trials = trial_poses(body.mesh, body.shape.positions, body.rig, bone_of, 4);
+  const std::vector<PosePair> trials = trial_poses(body.mesh, body.shape.positions, body.rig, bone_of, 4);
   ASSERT_EQ(trials.size(), 4u);
   const std::vector<Vec3>& at_rest = body.shape.positions;
   const auto length = [&](const std::vector<Vec3>& positions) {
@@ -27,7 +27,7 @@ TEST(TrialPoses, ALimbFollowsItsParentsAndKeepsItsLength) {
     for (const Triangle& c : body.mesh.triangles()) sum += (positions[+c[0]] - positions[+c[1]]).norm();
     return sum;
   };
-  for (const Trial& trial : trials)
+  for (const PosePair& trial : trials)
     for (const std::vector<Vec3>& positions : trial) {
       ASSERT_EQ(positions.size(), at_rest.size());
       EXPECT_GT((positions.back() - at_rest.back()).norm(), 1) << "the last bone is far from the root";

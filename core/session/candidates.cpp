@@ -73,7 +73,7 @@ void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePai
   if (!culler_) {
     StageClock clock;
     clock.enter(Stage::decomposition);
-    culler_ = fast::best_candidate(setup_, {.name = "candidates", .complete = true}, clock).culler;
+    culler_ = fast::best_trial_culler(setup_, {.name = "candidates", .complete = true}, clock).culler;
   }
   CandidateSink sink(set_, motion, 0, out);
   culler_->refit(motion);
