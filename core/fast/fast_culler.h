@@ -7,11 +7,11 @@
 #include "core/base/team.h"
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
+#include "core/fast/adaptive_cover.h"
 #include "core/fast/certify/certificates.h"
 #include "core/fast/certify/stars.h"
 #include "core/fast/classify/grid_bounds.h"
 #include "core/fast/descent.h"
-#include "core/fast/following_cover.h"
 #include "core/fast/options.h"
 #include "core/fast/prepare/cut_surface.h"
 #include "core/fast/prepare/saved_cut.h"
@@ -35,7 +35,7 @@ class FastCuller : public Culler {
   // culler.
   FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options);
 
-  // From the next interval on, the first cover follows the surface (following_cover.h).
+  // From the next interval on, the first cover follows the surface (adaptive_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }
   // From the next interval on, looks from the first `count` covers alone, at least one.
   void use_covers(std::size_t count) {
@@ -107,7 +107,7 @@ class FastCuller : public Culler {
   SharedDescent descent_;
   Grid grid_{1};
   std::vector<NodeBounds> bounds_;  // [nodes]
-  std::optional<FollowingCover> following_;
+  std::optional<AdaptiveCover> following_;
   std::optional<std::uint64_t> tests_;  // that the last interval or part took; none before the first one
   std::optional<Motion> motion_;
   // Of long steps alone: the ends of a part, and what its descents have found.

@@ -15,7 +15,7 @@ struct DrvbcFastOptions {
       true;             // bounds at both ends of the interval (classify/grid_bounds.h); false: swept bounds
   bool stars = true;    // certify/stars.h
   bool planes = true;   // certify/parting.h
-  bool follows = true;  // following_cover.h
+  bool follows = true;  // adaptive_cover.h
   // A step in which the surface moves far is looked at in parts (fast_culler.h) if its descent takes more
   // than this many overlap tests for each patch; kNever: no step is looked at in parts.
   std::uint32_t long_descent = 288;

@@ -37,7 +37,7 @@ class Certificates {
   std::size_t looks_per_interval() const;
 
   // The next four are called between two intervals, after whoever owns the first cover and the tree has
-  // changed them (following_cover.h).
+  // changed them (adaptive_cover.h).
   //
   // Takes over how many clusters the first cover has.
   void resize_first_cover();

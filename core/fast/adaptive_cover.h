@@ -21,11 +21,11 @@ namespace cscd::fast {
 // What an interval costs decides how much is done after it, and its certificates decide where. No clock is
 // asked: the same intervals in the same order are always answered alike. Another order makes other clusters,
 // which by the theorems of core/soundness.md changes counters and nothing that a strategy promises.
-class FollowingCover {
+class AdaptiveCover {
  public:
   // `cut` is what will be cut anew. It, the mesh, and the pose in which it was cut, `reference` [vertices],
   // must outlive this.
-  FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> reference, CutSurface& cut);
+  AdaptiveCover(const TriangleMesh& mesh, std::span<const Vec3> reference, CutSurface& cut);
 
   // Between two intervals: puts everything back to what preparation made.
   void forget(Certificates& certificates);

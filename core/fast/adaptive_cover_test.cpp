@@ -1,4 +1,4 @@
-#include "core/fast/following_cover.h"
+#include "core/fast/adaptive_cover.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +93,7 @@ class Interval {
   CutSurface cut_;
   LocalPositions local_;
   Certificates certificates_;
-  FollowingCover following_;
+  AdaptiveCover following_;
   bool asked_ = false;
 };
 
@@ -111,7 +111,7 @@ std::vector<Vec3> folded(std::vector<Vec3> flat, double turn) {
 }
 
 // Mutations: count_uncertified() counts nothing; join_halves() joins nothing.
-TEST(FollowingCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
+TEST(AdaptiveCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
   const test::Shape flat = test::sheet(40);
   const TriangleMesh mesh = flat.mesh();
   Interval interval(mesh, flat.positions, true);
@@ -139,7 +139,7 @@ TEST(FollowingCover, HalvesASheetThatIsFoldedAndJoinsItAgain) {
 }
 
 // Mutations: forget() leaves the observers or the caps as they are.
-TEST(FollowingCover, AnswersLikeANewOneOnceItHasForgotten) {
+TEST(AdaptiveCover, AnswersLikeANewOneOnceItHasForgotten) {
   const test::Shape flat = test::sheet(30);
   const TriangleMesh mesh = flat.mesh();
   Interval used(mesh, flat.positions, true), fresh(mesh, flat.positions, true);
@@ -158,7 +158,7 @@ TEST(FollowingCover, AnswersLikeANewOneOnceItHasForgotten) {
 }
 
 // A sheet is crumpled by random waves until it touches itself, in an order that jumps forwards and backwards.
-TEST(FollowingCover, DropsNoPairThatTouchesInAnyOrderOfIntervals) {
+TEST(AdaptiveCover, DropsNoPairThatTouchesInAnyOrderOfIntervals) {
   const test::Shape flat = test::sheet(20);
   const TriangleMesh mesh = flat.mesh();
   std::size_t touched = 0, most = 0;

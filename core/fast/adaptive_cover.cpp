@@ -1,4 +1,4 @@
-#include "core/fast/following_cover.h"
+#include "core/fast/adaptive_cover.h"
 
 #include <algorithm>
 #include <bit>
@@ -41,7 +41,7 @@ constexpr std::uint64_t kLasting = 64;
 
 }  // namespace
 
-FollowingCover::FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> reference, CutSurface& cut)
+AdaptiveCover::AdaptiveCover(const TriangleMesh& mesh, std::span<const Vec3> reference, CutSurface& cut)
     : mesh_(mesh),
       reference_(reference),
       cut_(cut),
@@ -81,7 +81,7 @@ FollowingCover::FollowingCover(const TriangleMesh& mesh, std::span<const Vec3> r
   for (const std::size_t node : prepared_nodes_) clusters_.push_back({node, 0, false, 0, 0});
 }
 
-void FollowingCover::forget(Certificates& certificates) {
+void AdaptiveCover::forget(Certificates& certificates) {
   if (interval_ == 0 && whole_) return;
   whole_ = false;
   begun_ = false;
@@ -104,8 +104,7 @@ void FollowingCover::forget(Certificates& certificates) {
   whole_ = true;
 }
 
-void FollowingCover::follow(std::span<const Vec3> positions, std::uint64_t tests,
-                            Certificates& certificates) {
+void AdaptiveCover::follow(std::span<const Vec3> positions, std::uint64_t tests, Certificates& certificates) {
   ++interval_;
   positions_ = positions;
   certificates_ = &certificates;
@@ -122,7 +121,7 @@ void FollowingCover::follow(std::span<const Vec3> positions, std::uint64_t tests
 }
 
 // Counts what is not certified, and collects the clusters that fail, the one with most to win first.
-void FollowingCover::count_uncertified(const Certificates& certificates) {
+void AdaptiveCover::count_uncertified(const Certificates& certificates) {
   for (Cluster& cluster : clusters_) cluster.uncertified = cluster.negative = 0;
   certificates.for_each_uncertified([&](std::size_t p, Mask16 uncertain, Mask16 negative) {
     Cluster& cluster = clusters_[static_cast<std::size_t>(cut_.tree.patches[p].cluster[0])];
@@ -154,7 +153,7 @@ void FollowingCover::count_uncertified(const Certificates& certificates) {
 }
 
 // Gives failing clusters other observers or halves them, as long as the budget lasts.
-void FollowingCover::cut_failing() {
+void AdaptiveCover::cut_failing() {
   for (std::size_t next = 0; next < failing_.size() && budget_ > 0; ++next) {
     const std::size_t c = failing_[next], node = clusters_[c].node;
     const bool large = below_[node].triangles >= least_halved_;
@@ -172,7 +171,7 @@ void FollowingCover::cut_failing() {
   }
 }
 
-void FollowingCover::halve(std::size_t cluster) {
+void AdaptiveCover::halve(std::size_t cluster) {
   const std::size_t node = clusters_[cluster].node;
   const std::size_t left = cut_.tree.nodes[node].left(), right = cut_.tree.nodes[node].right();
   below_[node].cluster = kNone;
@@ -187,12 +186,12 @@ void FollowingCover::halve(std::size_t cluster) {
     }
 }
 
-void FollowingCover::put_off(Below& whole) const {
+void AdaptiveCover::put_off(Below& whole) const {
   whole.not_before = interval_ + whole.wait;
   whole.wait = std::min(2 * whole.wait, kLongestWait);
 }
 
-void FollowingCover::join_halves() {
+void AdaptiveCover::join_halves() {
   for (std::size_t tried = 0; tried < clusters_.size() && budget_ > 0; ++tried) {
     next_to_join_ = (next_to_join_ + 1) % clusters_.size();
     const std::size_t c = next_to_join_;
@@ -217,7 +216,7 @@ void FollowingCover::join_halves() {
   }
 }
 
-std::span<const TriangleId> FollowingCover::triangles_below(std::size_t node) {
+std::span<const TriangleId> AdaptiveCover::triangles_below(std::size_t node) {
   triangles_.clear();
   for (std::size_t p = below_[node].first; p < below_[node].last; ++p) {
     const std::span<const TriangleId> of_patch = cut_.tree.triangles_of(p);
@@ -226,12 +225,12 @@ std::span<const TriangleId> FollowingCover::triangles_below(std::size_t node) {
   return triangles_;
 }
 
-Sight FollowingCover::sight_of(std::size_t node) {
+Sight AdaptiveCover::sight_of(std::size_t node) {
   budget_ -= kSearch;
   return brief_sight_of(mesh_, positions_, triangles_below(node));
 }
 
-void FollowingCover::assign(std::size_t cluster, std::size_t node, const FollowingPoint& observer) {
+void AdaptiveCover::assign(std::size_t cluster, std::size_t node, const FollowingPoint& observer) {
   budget_ -= kTriangle * below_[node].triangles;
   clusters_[cluster] = {node, interval_, false, 0, 0};
   cut_.covers[0].observers[cluster] = observer;
@@ -243,7 +242,7 @@ void FollowingCover::assign(std::size_t cluster, std::size_t node, const Followi
   certificates_->set_cluster(cluster, builder_, mesh_, all, targets_, positions_);
 }
 
-std::size_t FollowingCover::add(std::size_t node, const FollowingPoint& observer) {
+std::size_t AdaptiveCover::add(std::size_t node, const FollowingPoint& observer) {
   clusters_.emplace_back();
   cut_.covers[0].observers.emplace_back();
   certificates_->resize_first_cover();
@@ -252,7 +251,7 @@ std::size_t FollowingCover::add(std::size_t node, const FollowingPoint& observer
 }
 
 // The last cluster takes the number of the one that goes.
-void FollowingCover::remove(std::size_t cluster) {
+void AdaptiveCover::remove(std::size_t cluster) {
   const std::size_t last = clusters_.size() - 1;
   if (cluster != last) {
     clusters_[cluster] = clusters_[last];
@@ -266,7 +265,7 @@ void FollowingCover::remove(std::size_t cluster) {
 }
 
 // Enters a cluster wherever the clusters of triangles and patches are kept.
-void FollowingCover::relabel(std::size_t cluster) {
+void AdaptiveCover::relabel(std::size_t cluster) {
   Below& below = below_[clusters_[cluster].node];
   below.cluster = static_cast<std::int32_t>(cluster);
   for (std::size_t p = below.first; p < below.last; ++p) {
