@@ -18,7 +18,7 @@
 // A dropped pair is proven apart, because its swept boxes are disjoint.
 namespace cscd {
 
-Prepared make_aabb(const Setup& setup) {
+Prepared make_aabb(const StrategyInput& setup) {
   return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup), {}};
 }
 

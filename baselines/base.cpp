@@ -5,7 +5,7 @@
 
 namespace cscd {
 
-Prepared make_base(const Setup& setup) {
+Prepared make_base(const StrategyInput& setup) {
   return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
 }
 

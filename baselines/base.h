@@ -6,6 +6,6 @@ namespace cscd {
 
 // "Base" of the paper's section 7.1: a plain hierarchy of swept 16-DOPs, split at the
 // median (Klosowski et al. 1998).
-Prepared make_base(const Setup& setup);
+Prepared make_base(const StrategyInput& setup);
 
 }  // namespace cscd

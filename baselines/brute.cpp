@@ -22,7 +22,7 @@ class BruteCuller : public Culler {
 
 }  // namespace
 
-Prepared make_brute(const Setup& setup) {
+Prepared make_brute(const StrategyInput& setup) {
   auto culler = std::make_unique<BruteCuller>(static_cast<std::int32_t>(setup.mesh.triangle_count()));
   return {compose(std::move(culler), setup), {}};
 }

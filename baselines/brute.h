@@ -5,6 +5,6 @@
 namespace cscd {
 
 // All pairs of triangles, the oracle for small meshes. Quadratic.
-Prepared make_brute(const Setup& setup);
+Prepared make_brute(const StrategyInput& setup);
 
 }  // namespace cscd

@@ -22,8 +22,8 @@ namespace {
 
 class RvbcCuller : public Culler {
  public:
-  RvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
-             const RvbcOptions& options)
+  RvbcCuller(const StrategyInput& setup, radial::AtomicClusters clusters,
+             std::vector<radial::ObserverKind> kinds, const RvbcOptions& options)
       : clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
         hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
@@ -68,7 +68,7 @@ class RvbcCuller : public Culler {
 
 }  // namespace
 
-Prepared make_rvbc(const Setup& setup, const RvbcOptions& options) {
+Prepared make_rvbc(const StrategyInput& setup, const RvbcOptions& options) {
   radial::require_radial_setup(setup, std::string(options.name));
   StageClock clock;
   clock.enter(Stage::distance_and_heat);

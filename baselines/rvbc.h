@@ -17,6 +17,6 @@ struct RvbcOptions {
 
 // Radial view based culling with fixed clusters (Wong, Lin, Hung, Huang and Lii, ACM TOG 32(4), 2013). Throws
 // InputError unless the setup has a closed, consistently oriented mesh and a rig.
-Prepared make_rvbc(const Setup& setup, const RvbcOptions& options = {});
+Prepared make_rvbc(const StrategyInput& setup, const RvbcOptions& options = {});
 
 }  // namespace cscd

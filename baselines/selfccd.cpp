@@ -90,7 +90,7 @@ std::unique_ptr<const FeatureAssignment> representative_triangles(const Triangle
   return std::make_unique<Representatives>(mesh);
 }
 
-Prepared make_selfccd(const Setup& setup) {
+Prepared make_selfccd(const StrategyInput& setup) {
   PairOptions options;
   options.assignment = representative_triangles(setup.mesh);
   return {compose(std::make_unique<PlainCuller<Kdop16, false>>(setup), setup, std::move(options)), {}};

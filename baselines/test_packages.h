@@ -13,14 +13,14 @@ namespace cscd::test {
 // Expects that the package reports exactly the pairs of boxes that overlap: the same number
 // of triangle pairs, and the same feature pairs and contacts as the hierarchy of boxes, on
 // fresh detectors and on used ones.
-inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
+inline void expect_the_pairs_of_boxes(Prepared (*make)(const StrategyInput&)) {
   const ElementaryTest& newton = *find_elementary_test("newton");
   std::uint64_t pairs = 0;
   for (std::uint64_t seed = 1; seed <= 110; ++seed) {
     const scenes::RandomInterval random = scenes::make_random_interval(seed);
     const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
     const Motion there = random.clip.interval(0).motion, back(there.end(), there.start());
-    const Setup setup{mesh, there.start(), nullptr, newton};
+    const StrategyInput setup{mesh, there.start(), nullptr, newton};
     const auto package = make(setup).detector, boxes = make_aabb(setup).detector;
     for (const Motion& motion : {there, back, there}) {
       ContactSet found[2];
@@ -40,12 +40,13 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&)) {
 
 // Expects the same for triangles at rest without common vertices. `corners`:
 // three positions for each triangle.
-inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std::vector<Vec3>& corners) {
+inline void expect_the_pairs_of_boxes(Prepared (*make)(const StrategyInput&),
+                                      const std::vector<Vec3>& corners) {
   std::vector<Triangle> triangles;
   for (int v = 0; v < static_cast<int>(corners.size()); v += 3)
     triangles.push_back({VertexId{v}, VertexId{v + 1}, VertexId{v + 2}});
   const TriangleMesh mesh(triangles, corners.size());
-  const Setup setup{mesh, corners, nullptr, *find_elementary_test("newton")};
+  const StrategyInput setup{mesh, corners, nullptr, *find_elementary_test("newton")};
   ContactSet found, expected;
   const Report a = make(setup).detector->detect({Motion(corners, corners)}, found),
                b = make_aabb(setup).detector->detect({Motion(corners, corners)}, expected);
@@ -56,7 +57,7 @@ inline void expect_the_pairs_of_boxes(Prepared (*make)(const Setup&), const std:
 }
 
 // Expects the same for triangles that reach beyond the floats, beside one triangle that does not.
-inline void expect_pairs_beyond_floats(Prepared (*make)(const Setup&)) {
+inline void expect_pairs_beyond_floats(Prepared (*make)(const StrategyInput&)) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(0, 4), near(-0.5, 0.5);
   for (const double far : {1e30, 1e39, -1e39, 1e300}) {
@@ -73,7 +74,7 @@ inline void expect_pairs_beyond_floats(Prepared (*make)(const Setup&)) {
 
 // Expects the same for subnormal triangles that are all apart. Their pairs are so many that some are tested
 // while others are still being sought.
-inline void expect_pairs_of_subnormal_triangles(Prepared (*make)(const Setup&)) {
+inline void expect_pairs_of_subnormal_triangles(Prepared (*make)(const StrategyInput&)) {
   std::vector<Vec3> corners;
   for (int t = 0; t < 260; ++t)
     for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(1, 1.001, 1)})

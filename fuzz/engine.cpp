@@ -84,7 +84,7 @@ void target(Bytes bytes) {
   if (triangles.empty()) return;
   const TriangleMesh mesh(triangles, start.size());
   const Motion motion(start, end);
-  const Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
+  const StrategyInput setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
   const ContactSet truth = sorted_contacts(*make_brute(setup).detector, motion);
 
   const Prepared complete =

@@ -186,7 +186,7 @@ ContactSet all_pairs(const Surface& surface, const ByRow<double>& start, const B
   }
   const std::vector<Vec3> reference = points(surface.positions), from = points(start), to = points(end);
   const TriangleMesh mesh(triangles, reference.size());
-  const Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
+  const StrategyInput setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
   const Motion motion(from, to);
   ContactSet found;
   make_brute(setup).detector->detect({motion}, found);

@@ -242,7 +242,7 @@ class SelfCollision::Engine {
   }
 
   static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
-  Setup setup(bool first, const cscd::Exclusions* exclusions) const {
+  StrategyInput setup(bool first, const cscd::Exclusions* exclusions) const {
     return {.mesh = mesh_,
             .reference = reference_,
             .rig = nullptr,

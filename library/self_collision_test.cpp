@@ -110,13 +110,13 @@ TEST(SelfCollision, RemembersNothingThatChangesAnAnswer) {
 // Sessions on several threads over one const mesh answer as each would alone.
 TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");
-  const auto make = [](const cscd::Setup& setup) {
+  const auto make = [](const StrategyInput& setup) {
     return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
   };
   const Strategy complete{"drvbc_fast_complete", "", Guarantee::complete, {}, make};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Step step(seed);
-    const cscd::Setup setup{step.mesh, step.all_start, nullptr, exact};
+    const StrategyInput setup{step.mesh, step.all_start, nullptr, exact};
     const auto answers = [&] {
       Session session("mesh", setup, complete, complete, step.all_start, {.keep_rest_crossings = true});
       std::vector<std::string> out;

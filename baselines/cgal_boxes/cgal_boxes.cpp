@@ -29,7 +29,7 @@ using Box = CGAL::Box_intersection_d::Box_d<float, 3, CGAL::Box_intersection_d::
 
 class CgalBoxesCuller : public Culler {
  public:
-  explicit CgalBoxesCuller(const Setup& setup)
+  explicit CgalBoxesCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), of_vertex_(mesh_.vertex_count()), boxes_(mesh_.triangle_count()) {}
 
   void refit(const Motion& motion) override {
@@ -64,7 +64,7 @@ class CgalBoxesCuller : public Culler {
 
 }  // namespace
 
-Prepared make_cgal_boxes(const Setup& setup) {
+Prepared make_cgal_boxes(const StrategyInput& setup) {
   return {compose(std::make_unique<CgalBoxesCuller>(setup), setup), {}};
 }
 

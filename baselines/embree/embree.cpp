@@ -42,7 +42,7 @@ constexpr float kFarthest = 1.8e18F;
 
 class EmbreeCuller : public Culler {
  public:
-  explicit EmbreeCuller(const Setup& setup)
+  explicit EmbreeCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), of_vertex_(mesh_.vertex_count()), box_(mesh_.triangle_count()) {
     device_ = rtcNewDevice("start_threads=0,set_affinity=0");
     if (device_ == nullptr)
@@ -120,7 +120,7 @@ class EmbreeCuller : public Culler {
 
 }  // namespace
 
-Prepared make_embree(const Setup& setup) {
+Prepared make_embree(const StrategyInput& setup) {
   return {compose(std::make_unique<EmbreeCuller>(setup), setup), {}};
 }
 

@@ -14,6 +14,6 @@ inline constexpr char kEmbreeTitle[] = "Embree 4, rtcCollide of boxes";
 // Takes Embree's rtcCollide of a scene with itself (Intel's ray tracing kernels, version 3 or 4) as the broad
 // phase. Throws InputError if Embree has no device on this machine. The detector throws
 // std::runtime_error if Embree fails.
-Prepared make_embree(const Setup& setup);
+Prepared make_embree(const StrategyInput& setup);
 
 }  // namespace cscd

@@ -63,7 +63,7 @@ class Traversal : public FclTraversal {
 
 class FclDetector : public Detector {
  public:
-  explicit FclDetector(const Setup& setup)
+  explicit FclDetector(const StrategyInput& setup)
       : mesh_(setup.mesh), positions_(setup.reference.begin(), setup.reference.end()) {
     std::vector<fcl::Triangle> triangles;
     for (const Triangle& corner : mesh_.triangles())
@@ -145,7 +145,7 @@ class FclDetector : public Detector {
 
 }  // namespace
 
-Prepared make_fcl(const Setup& setup) {
+Prepared make_fcl(const StrategyInput& setup) {
   if (setup.exclusions != nullptr)
     throw InputError(
         "strategy fcl: brings its own elementary test and cannot leave pairs out; choose another strategy");

@@ -8,6 +8,6 @@ namespace cscd {
 // (Pan, Chitta and Manocha, "FCL: A General Purpose Library for Collision and Proximity Queries", ICRA 2012).
 // The strategy asks its own elementary tests, whatever test the setup names. Its `detect` throws InputError
 // if a coordinate lies beyond kFclFarthest (fcl_elementary.h).
-Prepared make_fcl(const Setup& setup);
+Prepared make_fcl(const StrategyInput& setup);
 
 }  // namespace cscd

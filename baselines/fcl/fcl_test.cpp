@@ -21,7 +21,7 @@ TEST(Fcl, FindsWhatIsPlainToSee) {
   for (std::size_t i = 8; i < 16; ++i) end[i].z() -= 1;
   const TriangleMesh mesh = shape.mesh();
   const ElementaryTest& exact = *find_elementary_test("exact");
-  const cscd::Setup setup{mesh, shape.positions, nullptr, exact};
+  const StrategyInput setup{mesh, shape.positions, nullptr, exact};
   ContactSet found, truth;
   const auto fcl = make_fcl(setup).detector, base = make_base(setup).detector;
   for (int visit = 0; visit < 2; ++visit) {
@@ -56,7 +56,7 @@ TEST(Fcl, FindsMostContactsOfRandomIntervals) {
     const scenes::RandomInterval random = scenes::make_random_interval(seed);
     const TriangleMesh mesh(random.clip.header().triangles, random.clip.header().vertex_count);
     const Motion motion = random.clip.interval(0).motion;
-    const cscd::Setup setup{mesh, motion.start(), nullptr, exact};
+    const StrategyInput setup{mesh, motion.start(), nullptr, exact};
     ContactSet found, truth;
     make_fcl(setup).detector->detect({motion}, found);
     make_base(setup).detector->detect({motion}, truth);

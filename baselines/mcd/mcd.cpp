@@ -43,7 +43,7 @@ constexpr std::size_t kFewest = 4;
 
 class McdCuller : public Culler {
  public:
-  explicit McdCuller(const Setup& setup)
+  explicit McdCuller(const StrategyInput& setup)
       : mesh_(setup.mesh),
         tree_(build_tree(mesh_, setup.reference)),
         bounds_(mesh_, tree_, setup.pipeline),
@@ -92,7 +92,7 @@ class McdCuller : public Culler {
 
 }  // namespace
 
-Prepared make_mcd(const Setup& setup) {
+Prepared make_mcd(const StrategyInput& setup) {
   return {compose(std::make_unique<McdCuller>(setup), setup), {}};
 }
 

@@ -295,7 +295,7 @@ TEST(Mcd, FindsAllContactsOfOpenSurfaces) {
     const double squeeze = uniform(random, -1, 1.2);
     for (Vec3& p : end) p.z() *= squeeze;
     const TriangleMesh mesh = shape.mesh();
-    const cscd::Setup setup{mesh, start, nullptr, exact()};
+    const StrategyInput setup{mesh, start, nullptr, exact()};
     Report by_mcd, by_brute;
     const std::string found = contacts(make_mcd(setup), Motion(start, end), by_mcd);
     const std::string truth = contacts(make_brute(setup), Motion(start, end), by_brute);

@@ -25,7 +25,8 @@ class Asked {
     if (row.strategy->needs.closed_mesh && !mesh_.closed_and_oriented())
       throw InputError("needs a closed, consistently oriented surface");
     if (const auto reason = why_not(*row.strategy, mesh_, rig_.has_value())) throw InputError(*reason);
-    const Setup setup{mesh_, posed.reference.positions, rig_ ? &*rig_ : nullptr, elementary, 1, row.first};
+    const StrategyInput setup{mesh_,    posed.reference.positions, rig_ ? &*rig_ : nullptr, elementary, 1,
+                              row.first};
     detector_ = row.strategy->make(setup).detector;
     // These promises need to know the start, and these strategies do not see it themselves.
     if (needs_embedded_start(row.strategy->guarantee))

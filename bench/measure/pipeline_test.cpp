@@ -20,7 +20,8 @@ struct Answered {
   ContactSet found;
 };
 
-Answered answered(const Strategy& strategy, const Setup& setup, const scenes::ClipInterval& interval) {
+Answered answered(const Strategy& strategy, const StrategyInput& setup,
+                  const scenes::ClipInterval& interval) {
   Answered out;
   out.report = strategy.make(setup).detector->detect({interval.motion, &*interval.bones}, out.found);
   out.found.sort();
@@ -54,7 +55,7 @@ TEST(Pipeline, ChangesNothingThatTheMethodCounts) {
     const scenes::ClipInterval interval = random.clip.interval(0);
     for (const Strategy& strategy : strategies()) {
       if (!strategy.published) continue;
-      cscd::Setup setup{mesh, random.clip.frame(0).positions, &*rig, exact};
+      StrategyInput setup{mesh, random.clip.frame(0).positions, &*rig, exact};
       const Answered today = answered(strategy, setup, interval);
       setup.pipeline = Pipeline::published;
       const Answered published = answered(strategy, setup, interval);

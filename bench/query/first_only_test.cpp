@@ -22,7 +22,7 @@ TEST(FirstOnly, EveryStrategyKeepsItsContactsOfTheEarliestTime) {
     const std::optional<Rig> rig = scenes::rig_of(random.clip);
     const scenes::ClipInterval interval = random.clip.interval(0);
     for (const Strategy& strategy : strategies()) {
-      cscd::Setup setup{mesh, random.clip.frame(0).positions, &*rig, test};
+      StrategyInput setup{mesh, random.clip.frame(0).positions, &*rig, test};
       const auto all = strategy.make(setup).detector;
       setup.first_only = true;
       if (strategy.own_test) {

@@ -119,7 +119,7 @@ TEST(Rules, ClosedMeshMissingBonesAreRefusedByThoseThatNeedThem) {
   const Rig none;
   for (const Strategy& strategy : strategies())
     for (const Rig* rig : {static_cast<const Rig*>(nullptr), &none}) {
-      const cscd::Setup setup{mesh, ball.positions, rig, exact()};
+      const StrategyInput setup{mesh, ball.positions, rig, exact()};
       if (!strategy.needs.bones) {
         EXPECT_NO_THROW(strategy.make(setup));
         continue;
@@ -172,7 +172,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
         bones.back().push_back({(1 - t) * first.bones[i].head + t * last.bones[i].head,
                                 (1 - t) * first.bones[i].tail + t * last.bones[i].tail});
     }
-    const cscd::Setup exactly{mesh, first.positions, &rig, exact};
+    const StrategyInput exactly{mesh, first.positions, &rig, exact};
     const auto reference = complete_reference().make(exactly).detector;
     EmbeddingTest embedding(mesh, first.positions);
     const auto judged = [&](std::size_t from, std::size_t to) {
@@ -183,7 +183,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
     };
     for (const Strategy& strategy : strategies()) {
       // A promise holds with a test that is right.
-      const cscd::Setup setup{mesh, first.positions, &rig, strategy.follows ? exact : newton};
+      const StrategyInput setup{mesh, first.positions, &rig, strategy.follows ? exact : newton};
       const auto ask = [&](Detector& detector, std::size_t from, std::size_t to) {
         const Rig::Interval pose{bones[from], bones[to]};
         ContactSet found;

@@ -45,7 +45,7 @@ struct Case {
         rig{{BoneId{-1}}, {bone}},
         bones_end{bone} {}
 
-  Setup setup() const { return {mesh, start, &rig, exact()}; }
+  StrategyInput setup() const { return {mesh, start, &rig, exact()}; }
   ContactSet ask(Detector& detector) const {
     const Rig::Interval bones{rig.reference, bones_end};
     ContactSet found;

@@ -48,7 +48,7 @@ enum class Flaw {
 template <Flaw flaw>
 class PlainCuller : public Culler {
  public:
-  explicit PlainCuller(const Setup& setup)
+  explicit PlainCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override {
@@ -101,7 +101,7 @@ class PlainCuller : public Culler {
 template <Flaw flaw>
 class ConeCuller : public Culler {
  public:
-  explicit ConeCuller(const Setup& setup)
+  explicit ConeCuller(const StrategyInput& setup)
       : mesh_(setup.mesh),
         tree_(build_tree(mesh_, setup.reference)),
         bounds_(mesh_, tree_),
@@ -141,7 +141,8 @@ class ConeCuller : public Culler {
 template <Flaw flaw>
 class RadialCuller : public Culler {
  public:
-  RadialCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds)
+  RadialCuller(const StrategyInput& setup, radial::AtomicClusters clusters,
+               std::vector<radial::ObserverKind> kinds)
       : mesh_(setup.mesh),
         clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
@@ -201,7 +202,7 @@ class RadialCuller : public Culler {
 template <Flaw flaw>
 class ManyCoversCuller : public Culler {
  public:
-  explicit ManyCoversCuller(const Setup& setup)
+  explicit ManyCoversCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }
@@ -266,7 +267,7 @@ class ManyCoversCuller : public Culler {
 };
 
 template <Flaw flaw>
-Prepared make_many_covers(const Setup& setup) {
+Prepared make_many_covers(const StrategyInput& setup) {
   radial::require_radial_setup(setup, "a saboteur");
   return {compose(std::make_unique<ManyCoversCuller<flaw>>(setup), setup), {}};
 }
@@ -274,7 +275,7 @@ Prepared make_many_covers(const Setup& setup) {
 // Every vertex and edge belongs to the first triangle at it, and is tested with that triangle alone.
 class RepresentativeDetector : public Detector {
  public:
-  RepresentativeDetector(std::unique_ptr<Culler> culler, const Setup& setup)
+  RepresentativeDetector(std::unique_ptr<Culler> culler, const StrategyInput& setup)
       : culler_(std::move(culler)), mesh_(setup.mesh), test_(setup.elementary) {}
 
   Report detect(const Step& step, ContactSet& out) override {
@@ -347,7 +348,7 @@ class ForgetfulDetector : public Detector {
 };
 
 template <Flaw flaw>
-Prepared make_plain(const Setup& setup) {
+Prepared make_plain(const StrategyInput& setup) {
   auto detector = compose(std::make_unique<PlainCuller<flaw>>(setup), setup);
   if (flaw == Flaw::one_feature_pair_in_10000_lost)
     return {std::make_unique<ForgetfulDetector>(std::move(detector)), {}};
@@ -355,7 +356,7 @@ Prepared make_plain(const Setup& setup) {
 }
 
 template <Flaw flaw>
-Prepared make_cones(const Setup& setup) {
+Prepared make_cones(const StrategyInput& setup) {
   return {compose(std::make_unique<ConeCuller<flaw>>(setup), setup), {}};
 }
 
@@ -377,7 +378,7 @@ inline radial::AtomicClusters clusters_across_components(const TriangleMesh& mes
 
 // From clusters and observers that are given.
 template <Flaw flaw>
-std::unique_ptr<Detector> make_radial(const Setup& setup, radial::AtomicClusters clusters,
+std::unique_ptr<Detector> make_radial(const StrategyInput& setup, radial::AtomicClusters clusters,
                                       std::vector<radial::ObserverKind> kinds) {
   auto culler = std::make_unique<RadialCuller<flaw>>(setup, std::move(clusters), std::move(kinds));
   if (flaw == Flaw::representative_triangles)
@@ -387,7 +388,7 @@ std::unique_ptr<Detector> make_radial(const Setup& setup, radial::AtomicClusters
 
 // Clusters in the way of rvbc, all of them viewed from their bones as segments or from the bones' centres.
 template <Flaw flaw, radial::ObserverKind kind>
-Prepared make_radial(const Setup& setup) {
+Prepared make_radial(const StrategyInput& setup) {
   radial::require_radial_setup(setup, "a saboteur");
   const std::vector<BoneId> bone_of =
       radial::nearest_bone_by_heat(setup.mesh, setup.reference, *setup.rig, {8, 0});

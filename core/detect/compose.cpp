@@ -41,7 +41,7 @@ struct Tests {
 // Turns triangle pairs into contacts. It is the sink of the culler.
 class PairTester : public TrianglePairSink {
  public:
-  PairTester(const Setup& setup, PairOptions options, StageClock& clock)
+  PairTester(const StrategyInput& setup, PairOptions options, StageClock& clock)
       : mesh_(setup.mesh),
         test_(setup.elementary),
         first_only_(setup.first_only),
@@ -249,7 +249,7 @@ class PairTester : public TrianglePairSink {
 
 class ComposedDetector : public Detector {
  public:
-  ComposedDetector(std::unique_ptr<Culler> culler, const Setup& setup, PairOptions options)
+  ComposedDetector(std::unique_ptr<Culler> culler, const StrategyInput& setup, PairOptions options)
       : starts_embedded_(options.starts_embedded),
         excludes_(setup.exclusions != nullptr),
         first_only_(setup.first_only),
@@ -303,7 +303,8 @@ class ComposedDetector : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup, PairOptions options) {
+std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const StrategyInput& setup,
+                                  PairOptions options) {
   return std::make_unique<ComposedDetector>(std::move(culler), setup, std::move(options));
 }
 

@@ -33,7 +33,7 @@ struct PairOptions {
 // touches or is undecided, it is asked for the rest, unless the caller wants the first contact alone. In the
 // pipeline `published`, the filter is the plain sign, whatever the options say. What `setup` refers to must
 // outlive the detector.
-std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const Setup& setup,
+std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const StrategyInput& setup,
                                   PairOptions options = {});
 
 }  // namespace cscd

@@ -80,7 +80,7 @@ Report run(const TriangleMesh& mesh, const std::vector<Vec3>& start, const std::
            std::vector<TrianglePair> pairs, ContactSet& out, const ElementaryTest& test,
            PairOptions options = {}) {
   const auto detector = compose(std::make_unique<ListCuller>(std::move(pairs)),
-                                cscd::Setup{mesh, start, nullptr, test}, std::move(options));
+                                StrategyInput{mesh, start, nullptr, test}, std::move(options));
   const Report report = detector->detect({Motion(start, end)}, out);
   out.sort();
   return report;
@@ -233,7 +233,7 @@ TEST(Compose, KeepsNothingBetweenIntervals) {
   const Crumple a(1), b(2);
   const ElementaryTest& exact = *find_elementary_test("exact");
   const auto detector =
-      compose(std::make_unique<ListCuller>(all_pairs(a.mesh)), cscd::Setup{a.mesh, {}, nullptr, exact});
+      compose(std::make_unique<ListCuller>(all_pairs(a.mesh)), StrategyInput{a.mesh, {}, nullptr, exact});
   ContactSet out;
   std::mt19937 random(1);
   std::string expected[2];
@@ -295,7 +295,7 @@ TEST(Compose, StagesThatDoNotExistAreAbsent) {
   for (const bool classifies : {false, true}) {
     const auto detector =
         compose(std::make_unique<ListCuller>(std::vector<TrianglePair>{pair_of(0, 1)}, classifies),
-                cscd::Setup{mesh, x, nullptr, kRecorder});
+                StrategyInput{mesh, x, nullptr, kRecorder});
     ContactSet out;
     const Report report = detector->detect({Motion(x, x)}, out);
     EXPECT_EQ(report.ms.rv_update.has_value(), classifies);

@@ -41,8 +41,8 @@ class Detector {
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
   // that follow the surface (Strategy::follows) have anything to forget.
   virtual void forget() {}
-  // Returns what preparation has found out about the surface, for Setup::preparation of another detector.
-  // Empty for strategies whose preparation takes no time worth saving.
+  // Returns what preparation has found out about the surface, for StrategyInput::preparation of another
+  // detector. Empty for strategies whose preparation takes no time worth saving.
   virtual std::vector<std::byte> saved_preparation() const { return {}; }
   virtual RadialView radial_view() const { return {}; }
 };

@@ -77,7 +77,7 @@ TEST(FirstOnly, NothingTouchesBeforeTheBoundAndTheBoundIsOfUse) {
     for (unsigned seed = 0; seed < 24; ++seed) {
       const Crash crash(seed, size);
       const auto detector = compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()),
-                                    cscd::Setup{crash.mesh, {}, nullptr, exact});
+                                    StrategyInput{crash.mesh, {}, nullptr, exact});
       for (const Contact& contact : sorted_answer(*detector, crash).contacts)
         for (const TrianglePair& pair : carriers(crash.mesh, contact.pair)) {
           const TrianglePair both[] = {{pair.b, pair.a}, pair};
@@ -105,7 +105,7 @@ TEST(FirstOnly, ReportsTheContactsOfTheEarliestTimeForFewerTests) {
   for (unsigned seed = 0; seed < 24; ++seed) {
     const Crash crash(seed);
     const auto make = [&](bool first_only) {
-      const cscd::Setup setup{
+      const StrategyInput setup{
           .mesh = crash.mesh, .reference = {}, .rig = nullptr, .elementary = exact, .first_only = first_only};
       return compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), setup);
     };

@@ -13,7 +13,8 @@ namespace cscd {
 template <class Volume, bool kAdjacent = true>
 class PlainCuller : public Culler {
  public:
-  explicit PlainCuller(const Setup& setup) : PlainCuller(setup.mesh, setup.reference, setup.pipeline) {}
+  explicit PlainCuller(const StrategyInput& setup)
+      : PlainCuller(setup.mesh, setup.reference, setup.pipeline) {}
   // `mesh` must outlive the culler. `reference`, [vertices], shapes the tree.
   PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference, Pipeline pipeline = Pipeline::today)
       : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_, pipeline) {}

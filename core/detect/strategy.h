@@ -34,8 +34,8 @@ constexpr bool promises_all(Guarantee guarantee, bool starts_embedded) {
 // Returns the name of the enumerator.
 std::string_view to_string(Guarantee guarantee);
 
-// The input for which a detector is made. The referenced objects must outlive the detector.
-struct Setup {
+// What a strategy needs to make a detector. The referenced objects must outlive the detector.
+struct StrategyInput {
   const TriangleMesh& mesh;
   std::span<const Vec3> reference;  // [vertices]; positions in the reference pose (frame 0)
   const Rig* rig;                   // null for a mesh without bones
@@ -74,7 +74,7 @@ struct Preparation {
   std::vector<std::int32_t> atomic_cluster;    // [triangles]; empty for a strategy without clusters
   int atomic_clusters = 0;
   int threads = 1;                // the number of threads that the strategy makes use of
-  std::size_t new_triangles = 0;  // that Setup::preparation, if given, did not know
+  std::size_t new_triangles = 0;  // that StrategyInput::preparation, if given, did not know
 };
 
 struct Prepared {
@@ -93,7 +93,8 @@ struct Strategy {
   std::string_view source;  // paper or package, in one line
   Guarantee guarantee;
   Needs needs;
-  Prepared (*make)(const Setup& setup);  // throws InputError when the setup lacks what the strategy needs
+  Prepared (*make)(
+      const StrategyInput& setup);  // throws InputError when the setup lacks what the strategy needs
   // A row with a group is run only where the row or its group is named; rows without one are run wherever the
   // input allows it.
   std::string_view group = "";

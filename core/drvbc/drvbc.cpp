@@ -28,8 +28,8 @@ namespace {
 
 class DrvbcCuller : public Culler {
  public:
-  DrvbcCuller(const Setup& setup, radial::AtomicClusters clusters, std::vector<radial::ObserverKind> kinds,
-              const DrvbcOptions& options)
+  DrvbcCuller(const StrategyInput& setup, radial::AtomicClusters clusters,
+              std::vector<radial::ObserverKind> kinds, const DrvbcOptions& options)
       : clusters_(std::move(clusters)),
         hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
         table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign,
@@ -64,7 +64,7 @@ class DrvbcCuller : public Culler {
 
 }  // namespace
 
-Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options) {
+Prepared make_drvbc(const StrategyInput& setup, const DrvbcOptions& options) {
   radial::require_radial_setup(setup, std::string(options.name));
   StageClock clock;
   radial::AtomicClusters clusters =

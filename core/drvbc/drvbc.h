@@ -27,6 +27,6 @@ struct DrvbcOptions {
 
 // Prepares the strategy `drvbc`: Dynamic Radial View Based Culling (Wong, Lin, Wang, Hung, Huang, I3D 2014).
 // Throws InputError if the mesh is not closed and consistently oriented, or if the set-up has no bones.
-Prepared make_drvbc(const Setup& setup, const DrvbcOptions& options = {});
+Prepared make_drvbc(const StrategyInput& setup, const DrvbcOptions& options = {});
 
 }  // namespace cscd

@@ -10,7 +10,7 @@
 
 namespace cscd {
 
-Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
+Prepared make_drvbc_fast(const StrategyInput& setup, const DrvbcFastOptions& options) {
   if (!options.complete || options.starts_embedded)
     require_closed_and_oriented(setup.mesh, "strategy " + std::string(options.name));
   if (setup.threads < 1)
@@ -34,7 +34,7 @@ Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options) {
           preparation};
 }
 
-EmbeddingTest make_embedding_test(const Setup& setup) {
+EmbeddingTest make_embedding_test(const StrategyInput& setup) {
   StageClock clock;
   clock.enter(Stage::decomposition);
   fast::TrialCuller best =

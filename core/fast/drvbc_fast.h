@@ -11,11 +11,11 @@ namespace cscd {
 // the clusters of the surface and the clusters of the bones, and chooses the number of covers to look from.
 // Throws InputError if the set-up asks for no thread, or if the mesh is not closed and consistently oriented
 // and the options do not say `complete`, or say that starts are embedded.
-Prepared make_drvbc_fast(const Setup& setup, const DrvbcFastOptions& options = {});
+Prepared make_drvbc_fast(const StrategyInput& setup, const DrvbcFastOptions& options = {});
 
 // Prepares the exact test whether a pose is embedded, culled as `drvbc_fast_complete` culls. It takes any
 // mesh. The test uses as many threads as the set-up asks for. The mesh of the set-up must outlive the test.
-EmbeddingTest make_embedding_test(const Setup& setup);
+EmbeddingTest make_embedding_test(const StrategyInput& setup);
 
 // The two rows of the engine that the library asks, too.
 inline constexpr Strategy kDrvbcFast{
@@ -23,7 +23,7 @@ inline constexpr Strategy kDrvbcFast{
     .source = "radial view based culling with overlapping covers",
     .guarantee = Guarantee::first_contact,
     .needs = {.closed_mesh = true},
-    .make = [](const Setup& setup) { return make_drvbc_fast(setup); },
+    .make = [](const StrategyInput& setup) { return make_drvbc_fast(setup); },
     .follows = true,
 };
 inline constexpr Strategy kDrvbcFastComplete{
@@ -32,7 +32,7 @@ inline constexpr Strategy kDrvbcFastComplete{
     .guarantee = Guarantee::complete,
     .needs = {},
     .make =
-        [](const Setup& setup) {
+        [](const StrategyInput& setup) {
           return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
         },
     .follows = true,

@@ -23,7 +23,7 @@ struct Scene {
     for (const Vec3& p : shape.positions)
       end.push_back(p + Vec3(dice(), std::sin(p.x() / 3) + dice(), dice()));
   }
-  Setup setup(int threads) const {
+  StrategyInput setup(int threads) const {
     return {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact"), threads};
   }
   Motion motion() const { return Motion(shape.positions, end); }

@@ -17,7 +17,7 @@ using test::Shape;
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-Setup setup_of(const TriangleMesh& mesh, std::span<const Vec3> reference, int threads = 1) {
+StrategyInput setup_of(const TriangleMesh& mesh, std::span<const Vec3> reference, int threads = 1) {
   return {mesh, reference, nullptr, *find_elementary_test("filtered_exact"), threads};
 }
 

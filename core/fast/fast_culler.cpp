@@ -12,7 +12,7 @@ constexpr std::size_t kAhead = 2;          // positions are fetched so many patc
 constexpr std::size_t kSampled = 256;      // about so many patches are asked how far they move
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
-std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
+std::vector<CappedClusters> capped(const StrategyInput& setup, const Covers& covers,
                                    const DrvbcFastOptions& options) {
   std::vector<CappedClusters> capped;
   if (options.complete)
@@ -23,7 +23,7 @@ std::vector<CappedClusters> capped(const Setup& setup, const Covers& covers,
 
 }  // namespace
 
-FastCuller::FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options)
+FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFastOptions& options)
     : mesh_(setup.mesh),
       reference_(setup.reference),
       cut_(std::move(cut)),

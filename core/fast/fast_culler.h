@@ -33,7 +33,7 @@ class FastCuller : public Culler {
  public:
   // Takes over a surface that has been cut (prepare/cut_surface.h). The mesh of the set-up must outlive the
   // culler.
-  FastCuller(const Setup& setup, CutSurface cut, const DrvbcFastOptions& options);
+  FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFastOptions& options);
 
   // From the next interval on, the first cover follows the surface (adaptive_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }

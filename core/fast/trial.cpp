@@ -19,12 +19,12 @@
 namespace cscd::fast {
 namespace {
 
-bool has_bones(const Setup& setup) {
+bool has_bones(const StrategyInput& setup) {
   return setup.rig != nullptr && !setup.rig->parent.empty();
 }
 
 // Labels that are all alike say nothing.
-bool has_labels(const Setup& setup) {
+bool has_labels(const StrategyInput& setup) {
   return !has_bones(setup) &&
          std::ranges::adjacent_find(setup.labels, std::not_equal_to{}) != setup.labels.end();
 }
@@ -72,7 +72,8 @@ std::uint64_t work(FastCuller& culler, std::span<const PosePair> trials, bool by
   return tests;
 }
 
-TrialCuller made(const Setup& setup, std::vector<std::int32_t> cluster_of, const DrvbcFastOptions& options) {
+TrialCuller made(const StrategyInput& setup, std::vector<std::int32_t> cluster_of,
+                 const DrvbcFastOptions& options) {
   const Team team(setup.threads);
   auto culler = std::make_unique<FastCuller>(
       setup, cut_surface(setup.mesh, setup.reference, cluster_of, kLeastCell, team), options);
@@ -80,7 +81,7 @@ TrialCuller made(const Setup& setup, std::vector<std::int32_t> cluster_of, const
 }
 
 // Takes over what an earlier preparation of the surface has decided.
-TrialCuller restored(const Setup& setup, const DrvbcFastOptions& options) {
+TrialCuller restored(const StrategyInput& setup, const DrvbcFastOptions& options) {
   RestoredCut restored = restored_cut(setup.mesh, setup.reference, setup.preparation);
   TrialCuller candidate{restored.cut.covers[0].cluster_of, nullptr, restored.new_triangles};
   candidate.culler = std::make_unique<FastCuller>(setup, std::move(restored.cut), options);
@@ -112,16 +113,16 @@ TrialResult tried_with(FastCuller& culler, std::span<const PosePair> trials, boo
 // and tried either on the coarse surface too, or on the surface itself: candidates that look with caps come
 // out in another order on a fine surface than on a coarse one.
 struct Surfaces {
-  const Setup& setup;
+  const StrategyInput& setup;
   const CoarseSurface& coarse;
   bool tried_on_coarse;
 
-  Setup coarse_setup() const {
-    Setup coarser{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
+  StrategyInput coarse_setup() const {
+    StrategyInput coarser{coarse.mesh(), coarse.positions(), setup.rig, setup.elementary};
     coarser.threads = setup.threads;
     return coarser;
   }
-  Setup trial_setup() const { return tried_on_coarse ? coarse_setup() : setup; }
+  StrategyInput trial_setup() const { return tried_on_coarse ? coarse_setup() : setup; }
   std::size_t trials() const { return tried_on_coarse || !coarse.is_coarser() ? kTrials : kFewTrials; }
   // Takes labels of the coarse surface's triangles to the surface that candidates are tried on.
   std::vector<std::int32_t> on_trial_surface(std::vector<std::int32_t> label_of) const {
@@ -170,7 +171,7 @@ struct Parts {
   std::vector<BoneId> bone_of;  // [triangles of the trial surface]
 };
 Parts parts_of(const Surfaces& surfaces, StageClock& clock) {
-  const Setup tried = surfaces.trial_setup();
+  const StrategyInput tried = surfaces.trial_setup();
   if (has_bones(tried)) return {*tried.rig, bones_of_triangles(surfaces, clock)};
   const std::vector<std::int32_t> part_of = labelled_parts(surfaces);
   Parts parts{joints_of_parts(tried.mesh, tried.reference, part_of), {}};
@@ -202,7 +203,7 @@ struct Decision {
 };
 Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, StageClock& clock) {
   using Clusters = DrvbcFastOptions::Clusters;
-  const Setup tried = surfaces.trial_setup();
+  const StrategyInput tried = surfaces.trial_setup();
   const bool has_parts = has_bones(tried) || has_labels(surfaces.setup);
   if (!has_parts || options.clusters == Clusters::of_surface || !tried.mesh.closed_and_oriented())
     return {{clusters_of_surface(surfaces), nullptr}};
@@ -237,7 +238,8 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
 
 }  // namespace
 
-TrialCuller best_trial_culler(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock) {
+TrialCuller best_trial_culler(const StrategyInput& setup, const DrvbcFastOptions& options,
+                              StageClock& clock) {
   if (!setup.preparation.empty()) return restored(setup, options);
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.

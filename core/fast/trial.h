@@ -13,7 +13,7 @@ namespace cscd::fast {
 struct TrialCuller {
   std::vector<std::int32_t> cluster_of;  // [triangles]
   std::unique_ptr<FastCuller> culler;
-  std::size_t new_triangles = 0;  // that Setup::preparation did not know
+  std::size_t new_triangles = 0;  // that StrategyInput::preparation did not know
 };
 
 // The clusters of a surface of more triangles than this are found on a coarser surface of at most this many
@@ -23,11 +23,12 @@ inline constexpr std::size_t kManyTriangles = 16000;
 // Prepares several cullers and returns the one that makes the least work in a few trial poses
 // (trial_poses.h). The candidates are cut along the clusters of bones or of the surface, and look from one,
 // two or three covers. They are prepared and tried side by side on the threads of the set-up. Where there are
-// no bones, labels of vertices (Setup::labels) stand for them. Without either, on an open surface, or where
-// the options name the clusters, there is one candidate and no trial. On a surface of many triangles,
+// no bones, labels of vertices (StrategyInput::labels) stand for them. Without either, on an open surface, or
+// where the options name the clusters, there is one candidate and no trial. On a surface of many triangles,
 // clusters are found on a coarser surface. Where signs suffice, candidates are tried on the coarser surface
-// too, and only the culler that is returned is cut from the surface itself. With Setup::preparation, nothing
-// is tried or cut, and what the preparation says is taken. Leaves the clock in the stage `decomposition`.
-TrialCuller best_trial_culler(const Setup& setup, const DrvbcFastOptions& options, StageClock& clock);
+// too, and only the culler that is returned is cut from the surface itself. With StrategyInput::preparation,
+// nothing is tried or cut, and what the preparation says is taken. Leaves the clock in the stage
+// `decomposition`.
+TrialCuller best_trial_culler(const StrategyInput& setup, const DrvbcFastOptions& options, StageClock& clock);
 
 }  // namespace cscd::fast

@@ -55,7 +55,7 @@ TEST(Trial, DecidesWhichClustersAreTaken) {
     const TriangleMesh mesh = tube.mesh();
     const Rig rig = test::straight_chain(bones, {0.5, 0, 0}, {14.5, 0, 0});
     const auto clusters = [&](Clusters wanted) {
-      const cscd::Setup setup{mesh, tube.positions, &rig, elementary_tests().front()};
+      const StrategyInput setup{mesh, tube.positions, &rig, elementary_tests().front()};
       return make_drvbc_fast(setup, {.clusters = wanted}).preparation.atomic_cluster;
     };
     EXPECT_NE(clusters(Clusters::of_bones), clusters(Clusters::of_surface));
@@ -73,7 +73,7 @@ TEST(Trial, DecidesWhichClustersAreTaken) {
 TEST(Trial, DecidesHowManyCoversAreUsed) {
   const auto observers = [](const test::Shape& shape, const Rig& rig, DrvbcFastOptions options) {
     const TriangleMesh mesh = shape.mesh();
-    const cscd::Setup setup{mesh, shape.positions, &rig, elementary_tests().front()};
+    const StrategyInput setup{mesh, shape.positions, &rig, elementary_tests().front()};
     ContactSet found;
     return make_drvbc_fast(setup, options)
         .detector->detect({Motion(shape.positions, shape.positions)}, found)

@@ -14,7 +14,7 @@ double BoneClusterOptions::theta() const {
   return theta_degrees * std::numbers::pi / 180;
 }
 
-std::vector<BoneId> bones_of_triangles(const Setup& setup, const BoneClusterOptions& options,
+std::vector<BoneId> bones_of_triangles(const StrategyInput& setup, const BoneClusterOptions& options,
                                        StageClock& clock) {
   clock.enter(Stage::distance_and_heat);
   const int full = resolution_of_mean_edge(setup.mesh, setup.reference);

@@ -20,7 +20,7 @@ struct BoneClusterOptions {
 
 // Returns the bone of each triangle, [triangles], by heat and then refined. Leaves the clock in the stage
 // `decomposition`.
-std::vector<BoneId> bones_of_triangles(const Setup& setup, const BoneClusterOptions& options,
+std::vector<BoneId> bones_of_triangles(const StrategyInput& setup, const BoneClusterOptions& options,
                                        StageClock& clock);
 
 }  // namespace cscd::radial

@@ -4,7 +4,7 @@
 
 namespace cscd::radial {
 
-void require_radial_setup(const Setup& setup, const std::string& strategy) {
+void require_radial_setup(const StrategyInput& setup, const std::string& strategy) {
   require_closed_and_oriented(setup.mesh, "strategy " + strategy);
   if (setup.rig == nullptr || setup.rig->parent.empty())
     throw InputError(

@@ -8,6 +8,6 @@ namespace cscd::radial {
 
 // Throws InputError, which names what is missing, unless the mesh is closed and consistently oriented and
 // there are bones.
-void require_radial_setup(const Setup& setup, const std::string& strategy);
+void require_radial_setup(const StrategyInput& setup, const std::string& strategy);
 
 }  // namespace cscd::radial

@@ -52,7 +52,7 @@ class CandidateSink : public TrianglePairSink {
 class CandidateSearch {
  public:
   // What `setup` refers to must outlive the search. `first_only` is not looked at.
-  explicit CandidateSearch(const Setup& setup) : setup_(setup), set_(setup.mesh, setup.exclusions) {}
+  explicit CandidateSearch(const StrategyInput& setup) : setup_(setup), set_(setup.mesh, setup.exclusions) {}
 
   // Replaces the content of `out` by feature pairs that hold every one that comes within `radius` at some t
   // and is not excluded. With a radius above 0 these are all pairs that CandidateSet takes. With radius 0
@@ -64,7 +64,7 @@ class CandidateSearch {
   void find_touching(const Motion& motion, std::vector<FeaturePair>& out);
   void find_near(const Motion& motion, double radius, std::vector<FeaturePair>& out);
 
-  Setup setup_;
+  StrategyInput setup_;
   CandidateSet set_;
   std::unique_ptr<Culler> culler_;  // for radius 0
   std::optional<Tree> tree_;        // for others

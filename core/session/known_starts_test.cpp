@@ -39,7 +39,7 @@ class KnownStartsTest : public testing::Test {
     return out;
   }
   ContactSet contacts_of(const Motion& motion) {
-    const cscd::Setup setup{mesh_, shape_.positions, nullptr, *find_elementary_test("filtered_exact")};
+    const StrategyInput setup{mesh_, shape_.positions, nullptr, *find_elementary_test("filtered_exact")};
     ContactSet out;
     compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup)->detect({motion}, out);
     return out;

@@ -154,7 +154,7 @@ void Obstacles::leave_out(const Exclusions& exclusions) {
 
 void Obstacles::make_detectors() {
   const auto detector = [&](bool first) {
-    const Setup setup{together_, start_, nullptr, elementary_, 1, first, exclusions_};
+    const StrategyInput setup{together_, start_, nullptr, elementary_, 1, first, exclusions_};
     return compose(std::make_unique<ObstaclePairs::View>(*pairs_, own_vertices_), setup,
                    {.relative_boxes = true});
   };

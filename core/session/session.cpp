@@ -20,7 +20,7 @@ std::optional<double> StepAnswer::time() const {
   return first == found.contacts.end() ? std::nullopt : std::optional(first->time);
 }
 
-Session::Session(const std::string& name, const Setup& setup, const Strategy& strategy,
+Session::Session(const std::string& name, const StrategyInput& setup, const Strategy& strategy,
                  const Strategy& fallback, std::span<const Vec3> rest, const SessionOptions& options)
     : setup_(setup),
       fallback_strategy_(fallback),
@@ -50,7 +50,7 @@ void Session::find_rest_crossings(const std::string& name, std::span<const Vec3>
 
 Session::PreparedStrategy Session::make(const Strategy& strategy) const {
   // With pairs left out, the earliest contact may be one of theirs, and then later contacts are asked for.
-  Setup setup = setup_;
+  StrategyInput setup = setup_;
   setup.first_only = first_only();
   Prepared prepared = strategy.make(setup);
   return {&strategy, std::move(prepared.detector), prepared.preparation.threads,

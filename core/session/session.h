@@ -60,15 +60,16 @@ class Session {
   // `rest`, [vertices], is the pose whose crossings are left out. Throws InputError, with `name` before the
   // text, where the set-up lacks what the strategy needs and where too many triangles cross at rest. The
   // strategies, and what `setup` refers to, must outlive the session.
-  Session(const std::string& name, const Setup& setup, const Strategy& strategy, const Strategy& fallback,
-          std::span<const Vec3> rest, const SessionOptions& options);
+  Session(const std::string& name, const StrategyInput& setup, const Strategy& strategy,
+          const Strategy& fallback, std::span<const Vec3> rest, const SessionOptions& options);
 
   // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
   // holds the skeleton at both ends; null for a mesh without a rig. The answer is written into `out`, whose
   // memory is used again.
   void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
 
-  // Returns what preparing the strategy has found out (Setup::preparation); empty where it saves nothing.
+  // Returns what preparing the strategy has found out (StrategyInput::preparation); empty where it saves
+  // nothing.
   std::vector<std::byte> saved_preparation() const { return main_.detector->saved_preparation(); }
   // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
   double preparation_ms() const { return preparation_ms_ + rest_ms_; }
@@ -111,7 +112,7 @@ class Session {
   void say_start(StepAnswer& out) const;
   void leave_out(StepAnswer& out) const;
 
-  Setup setup_;
+  StrategyInput setup_;
   const Strategy& fallback_strategy_;
   SessionOptions options_;
   PreparedStrategy main_;

@@ -17,7 +17,7 @@
 namespace cscd {
 namespace {
 
-Prepared make_plain(const Setup& setup) {
+Prepared make_plain(const StrategyInput& setup) {
   return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
 }
 const Strategy kPlain{.name = "plain",
@@ -35,7 +35,9 @@ class SessionTest : public testing::Test {
     for (std::size_t v = out.size() / 2; v < out.size(); ++v) out[v] += Vec3(x, 0.1, 0.2);
     return out;
   }
-  cscd::Setup setup() const { return {mesh_, reference_, nullptr, *find_elementary_test("filtered_exact")}; }
+  StrategyInput setup() const {
+    return {mesh_, reference_, nullptr, *find_elementary_test("filtered_exact")};
+  }
   Session session(const Strategy& strategy, const SessionOptions& options = {}) const {
     return {"test", setup(), strategy, kDrvbcFastComplete, reference_, options};
   }

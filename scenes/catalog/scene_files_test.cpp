@@ -169,7 +169,7 @@ TEST_P(SceneFiles, TouchesItselfNowhereUnlessItResponds) {
   const Clip clip = frames();
   const TriangleMesh mesh = this->mesh(clip);
   const std::vector<Vec3> reference(clip.frame(0).positions.begin(), clip.frame(0).positions.end());
-  const cscd::Setup setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
+  const StrategyInput setup{mesh, reference, nullptr, *find_elementary_test("filtered_exact")};
   const std::unique_ptr<Detector> detector =
       compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});
   ContactSet found;
@@ -187,8 +187,8 @@ TEST_P(SceneFiles, MeetsItselfInATenthOfItsIntervalsWhereItResponds) {
   const Scene scene = load_scene(GetParam().name);
   const Shape shape = make_shape(scene.shape, scene.shape_parameters);
   const bool boned = !shape.rig.parent.empty() && mesh.closed_and_oriented();
-  const cscd::Setup setup{mesh, shape.positions, boned ? &shape.rig : nullptr,
-                          *find_elementary_test("exact")};
+  const StrategyInput setup{mesh, shape.positions, boned ? &shape.rig : nullptr,
+                            *find_elementary_test("exact")};
   const std::unique_ptr<Detector> detector =
       boned ? make_drvbc(setup).detector
             : compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});

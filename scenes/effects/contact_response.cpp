@@ -71,7 +71,7 @@ class ContactResponse final : public Effect {
   std::string where_;
   double pull_;
   TriangleMesh mesh_;
-  Setup setup_;
+  StrategyInput setup_;
   EmbeddingTest embedding_;
   ContactStep step_;
   std::vector<Vec3> surface_, target_, predicted_, end_;
@@ -126,23 +126,24 @@ std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, cons
 }
 
 EffectRow contact_response_row() {
-  return {
-      "contact_response",
-      "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
-      "short, "
-      "pushes apart",
-      Pace::frame,
-      kRows,
-      [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-        // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
-        // follows.
-        return make_contact_response(parameters, shape, [](const Setup& setup) -> std::unique_ptr<Detector> {
-          if (!setup.rig || !setup.mesh.closed_and_oriented())
-            return compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.relative_boxes = true});
-          return make_drvbc(setup, {.division = radial::Division::none}).detector;
-        });
-      },
-      true};
+  return {"contact_response",
+          "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
+          "short, "
+          "pushes apart",
+          Pace::frame,
+          kRows,
+          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
+            // A scene's frames must not change with the reading of the paper that the strategy `drvbc`
+            // follows.
+            return make_contact_response(
+                parameters, shape, [](const StrategyInput& setup) -> std::unique_ptr<Detector> {
+                  if (!setup.rig || !setup.mesh.closed_and_oriented())
+                    return compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup,
+                                   {.relative_boxes = true});
+                  return make_drvbc(setup, {.division = radial::Division::none}).detector;
+                });
+          },
+          true};
 }
 
 }  // namespace cscd::scenes

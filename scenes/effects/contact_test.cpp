@@ -165,7 +165,7 @@ class Ring : public testing::Test {
   Shape shape;
 };
 
-std::unique_ptr<Detector> own(const Setup& setup) {
+std::unique_ptr<Detector> own(const StrategyInput& setup) {
   return make_drvbc(setup).detector;
 }
 
@@ -195,7 +195,7 @@ TEST_F(Ring, EveryStartIsEmbeddedAndPredictionsCollide) {
 TEST_F(Ring, ADetectorThatMissesContactsLeadsToAStartThatIsRefused) {
   for (const int every : {1, 4}) {
     const Outcome outcome =
-        run([&](const cscd::Setup& setup) { return std::make_unique<Forgetful>(own(setup), every); });
+        run([&](const StrategyInput& setup) { return std::make_unique<Forgetful>(own(setup), every); });
     EXPECT_EQ(outcome.refusal.find("scene ring, effect contact_response: frame "), 0u) << outcome.refusal;
     EXPECT_NE(outcome.refusal.find("no embedded start"), std::string::npos) << outcome.refusal;
     EXPECT_LT(outcome.frames, 40u);

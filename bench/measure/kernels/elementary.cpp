@@ -78,7 +78,7 @@ Queries of_scene(const std::string& scene, Source source) {
   Queries result;
   kept = &result;
   Input input = open_input(scene);
-  const Setup setup = input.setup(kKeep);
+  const StrategyInput setup = input.setup(kKeep);
   const Strategy& strategy = source == Source::query ? default_strategy(input) : complete_reference();
   const Prepared prepared = strategy.make(setup);
   PlainCuller<Kdop16> culler(setup);

@@ -25,7 +25,7 @@ std::uint64_t seeds() {
 
 struct Step : test::RandomStep {
   using RandomStep::RandomStep;
-  Setup setup(const ElementaryTest& test = exact(), const Exclusions* exclusions = nullptr) const {
+  StrategyInput setup(const ElementaryTest& test = exact(), const Exclusions* exclusions = nullptr) const {
     return {.mesh = mesh, .reference = start, .rig = nullptr, .elementary = test, .exclusions = exclusions};
   }
   ContactSet ask(const Prepared& prepared, Report* report = nullptr) const {
@@ -79,7 +79,7 @@ TEST(AllContacts, OfAnExcludedFirstContactAreKept) {
         if (const VertexId other{static_cast<std::int32_t>(v)}; other != u) pairs.emplace_back(u, other);
     Exclusions exclusions;
     exclusions.exclude(step.mesh, pairs);
-    const cscd::Setup setup = step.setup(exact(), &exclusions);
+    const StrategyInput setup = step.setup(exact(), &exclusions);
     const ContactSet expected = step.ask(make_brute(setup));
     EXPECT_EQ(digest(step.ask(make_drvbc_fast(setup, kAll))), digest(expected)) << "seed " << seed;
     left += !expected.contacts.empty();
@@ -116,7 +116,7 @@ TEST(AllContacts, AreLookedForWhereTheTestIsUndecided) {
 TEST(AllContacts, AreNotLookedForByWhoWantsTheFirst) {
   std::size_t touching = 0, spared = 0;
   for_each_embedded(60, [&](const Step& step, std::uint64_t seed) {
-    cscd::Setup setup = step.setup();
+    StrategyInput setup = step.setup();
     Report all, first;
     ContactSet found = step.ask(make_drvbc_fast(setup, kAll), &all);
     setup.first_only = true;

@@ -18,9 +18,9 @@ void add(const Preparation& sample, PreparationRecord& record) {
 
 }  // namespace
 
-Setup measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
-                     bool first_only, Pipeline pipeline) {
-  Setup setup =
+StrategyInput measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                             bool first_only, Pipeline pipeline) {
+  StrategyInput setup =
       setup_for(strategy, input.setup(elementary, first_only, pipeline), input.clip->interval_count());
   if (input.ignored) setup.exclusions = &input.ignored->triangles;
   return setup;

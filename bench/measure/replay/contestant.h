@@ -23,8 +23,8 @@ struct Contestant {
 
 // The set-up of a detector that leaves out what the input says is ignored, with the clip's bones if the
 // strategy gets them.
-Setup measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
-                     bool first_only = false, Pipeline pipeline = Pipeline::today);
+StrategyInput measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                             bool first_only = false, Pipeline pipeline = Pipeline::today);
 
 // Throws InputError when the input lacks what a strategy needs. The input must outlive the detectors.
 std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,

@@ -24,7 +24,7 @@ class Hoarder final : public Detector {
   std::vector<char> held_;
 };
 
-Prepared make_hoarder(const Setup&) {
+Prepared make_hoarder(const StrategyInput&) {
   {
     // Volatile, or a compiler may see that nobody reads it and leave it out.
     constexpr std::size_t size = 128 << 20, page = 4096;

@@ -41,7 +41,7 @@ Found hold_to_promises(const Shape& shape, const std::vector<Vec3>& end, const V
   const Motion motion(shape.positions, end);
   const bool embedded = EmbeddingTest(mesh, shape.positions).embedded(shape.positions);
   ContactSet truth;
-  const Setup judged{mesh, shape.positions, &rig, exact}, asked{mesh, shape.positions, &rig, ours},
+  const StrategyInput judged{mesh, shape.positions, &rig, exact}, asked{mesh, shape.positions, &rig, ours},
       boneless{mesh, shape.positions, nullptr, ours};
   all_pairs().make(judged).detector->detect({motion, &bones}, truth);
   truth.sort();

@@ -16,7 +16,7 @@ using rules::Case;
 // Asks with a test that is always right and filters first. Surfaces of this size have too many feature pairs
 // for the plain one.
 ContactSet answer_of(const Strategy& strategy, const Case& given) {
-  const Setup setup{given.mesh, given.start, &given.rig, elementary_test_named("filtered_exact")};
+  const StrategyInput setup{given.mesh, given.start, &given.rig, elementary_test_named("filtered_exact")};
   return given.ask(*strategy.make(setup).detector);
 }
 

@@ -29,7 +29,7 @@ Input random_input(std::uint64_t seed) {
 // The row's detector, but for the last contact's time, which is one unit in the last place too late.
 class LateDetector : public Detector {
  public:
-  explicit LateDetector(const Setup& setup) : inner_(test::make_plain<Flaw::none>(setup).detector) {}
+  explicit LateDetector(const StrategyInput& setup) : inner_(test::make_plain<Flaw::none>(setup).detector) {}
   Report detect(const Step& step, ContactSet& out) override {
     const Report report = inner_->detect(step, out);
     out.sort();
@@ -40,11 +40,11 @@ class LateDetector : public Detector {
  private:
   std::unique_ptr<Detector> inner_;
 };
-Prepared make_late(const Setup& setup) {
+Prepared make_late(const StrategyInput& setup) {
   return {std::make_unique<LateDetector>(setup), {}};
 }
 
-Record record_of(std::uint64_t seed, Prepared (*make)(const Setup&), bool is_verified) {
+Record record_of(std::uint64_t seed, Prepared (*make)(const StrategyInput&), bool is_verified) {
   Input input = random_input(seed);
   const ElementaryTest& exact = elementary_test_named("exact");
   const Strategy strategy{"row", "for tests", Guarantee::complete, {}, make};
@@ -66,7 +66,7 @@ Record record_of(std::uint64_t seed, Prepared (*make)(const Setup&), bool is_ver
 }
 
 // How often the flaw changed an answer in `seeds` random intervals; each of these has to be found.
-int plants_found(Prepared (*flawed)(const Setup&), std::uint64_t seeds) {
+int plants_found(Prepared (*flawed)(const StrategyInput&), std::uint64_t seeds) {
   int changed = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed)
     for (const bool is_verified : {true, false}) {

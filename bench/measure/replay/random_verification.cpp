@@ -55,7 +55,7 @@ struct Subject {
         mesh(random.clip.header().triangles, random.clip.header().vertex_count, "random interval"),
         rig(scenes::rig_of(random.clip)) {}
 
-  Setup setup(const ElementaryTest& test, bool first_only = false) const {
+  StrategyInput setup(const ElementaryTest& test, bool first_only = false) const {
     return {mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test, 1, first_only};
   }
   struct Result {

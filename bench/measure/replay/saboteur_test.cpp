@@ -13,10 +13,10 @@ namespace {
 
 using test::Flaw;
 
-Strategy plain(const char* name, Prepared (*make)(const Setup&)) {
+Strategy plain(const char* name, Prepared (*make)(const StrategyInput&)) {
   return {name, "for tests", Guarantee::complete, {}, make};
 }
-Strategy first_contact(const char* name, Prepared (*make)(const Setup&)) {
+Strategy first_contact(const char* name, Prepared (*make)(const StrategyInput&)) {
   return {name, "for tests", Guarantee::first_contact, {.bones = true, .closed_mesh = true}, make};
 }
 
@@ -60,7 +60,7 @@ TEST(Saboteurs, ACullerThatLosesOneTrianglePairIn10000IsCaught) {
     for (std::size_t i = 0; i < bounds.size(); ++i)
       for (std::size_t j = i + 1; j < bounds.size(); ++j) expected += overlap(bounds[i], bounds[j]);
 
-    const cscd::Setup setup{mesh, motion.start(), nullptr, elementary_test_named("newton")};
+    const StrategyInput setup{mesh, motion.start(), nullptr, elementary_test_named("newton")};
     ContactSet found[3];
     base += complete_reference().make(setup).detector->detect({motion}, found[0]).cull.pctp;
     sound += test::make_plain<Flaw::none>(setup).detector->detect({motion}, found[1]).cull.pctp;
@@ -85,8 +85,8 @@ TEST(Saboteurs, NormalConesWithoutTheContourTestLoseAnOpenSpiral) {
     std::vector<Vec3> end = shape.positions;
     for (std::size_t i = 0; i < end.size(); ++i) end[i].z() *= -0.1 - 0.01 * static_cast<double>(i % 5);
     const TriangleMesh mesh = shape.mesh();
-    const cscd::Setup setup{mesh, shape.positions, nullptr, elementary_test_named("exact")};
-    const auto contacts = [&](Prepared (*make)(const cscd::Setup&)) {
+    const StrategyInput setup{mesh, shape.positions, nullptr, elementary_test_named("exact")};
+    const auto contacts = [&](Prepared (*make)(const StrategyInput&)) {
       ContactSet found;
       make(setup).detector->detect({Motion(shape.positions, end)}, found);
       found.sort();

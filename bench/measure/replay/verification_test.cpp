@@ -45,10 +45,10 @@ Input colliding_input() {
 }
 
 // Runs the reference and then spoils what it found.
-using Spoil = void (*)(const Setup& setup, int call, Report& report, ContactSet& found);
+using Spoil = void (*)(const StrategyInput& setup, int call, Report& report, ContactSet& found);
 class Saboteur : public Detector {
  public:
-  Saboteur(const Setup& setup, Spoil spoil)
+  Saboteur(const StrategyInput& setup, Spoil spoil)
       : setup_(setup), honest_(complete_reference().make(setup).detector), spoil_(spoil) {}
   Report detect(const Step& step, ContactSet& out) override {
     Report report = honest_->detect(step, out);
@@ -58,34 +58,34 @@ class Saboteur : public Detector {
   }
 
  private:
-  Setup setup_;
+  StrategyInput setup_;
   std::unique_ptr<Detector> honest_;
   Spoil spoil_;
   int call_ = 0;
 };
 
 template <Spoil spoil>
-Prepared sabotage(const Setup& setup) {
+Prepared sabotage(const StrategyInput& setup) {
   return {std::make_unique<Saboteur>(setup, spoil), {}};
 }
 
-void lose_first(const Setup&, int, Report&, ContactSet& found) {
+void lose_first(const StrategyInput&, int, Report&, ContactSet& found) {
   const double first = found.contacts.front().time;
   std::erase_if(found.contacts, [&](const Contact& contact) { return contact.time == first; });
 }
-void lose_last(const Setup&, int, Report&, ContactSet& found) {
+void lose_last(const StrategyInput&, int, Report&, ContactSet& found) {
   found.contacts.pop_back();
 }
-void invent(const Setup&, int, Report&, ContactSet& found) {
+void invent(const StrategyInput&, int, Report&, ContactSet& found) {
   found.contacts.push_back({FeaturePair::of(VertexId{0}, TriangleId{0}), Verdict::contact, 0});
 }
-void cull_more_when_timed(const Setup& setup, int, Report& report, ContactSet&) {
+void cull_more_when_timed(const StrategyInput& setup, int, Report& report, ContactSet&) {
   report.cull.pctp -= setup.elementary.name != exact().name;
 }
-void forget_once(const Setup& setup, int call, Report&, ContactSet& found) {
+void forget_once(const StrategyInput& setup, int call, Report&, ContactSet& found) {
   if (setup.elementary.name != exact().name && call == 3) found.contacts.pop_back();
 }
-void count_otherwise_once(const Setup& setup, int call, Report& report, ContactSet&) {
+void count_otherwise_once(const StrategyInput& setup, int call, Report& report, ContactSet&) {
   *report.cull.bvot += setup.elementary.name != exact().name && call == 3;
 }
 
@@ -113,14 +113,14 @@ Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
   return outcome;
 }
 
-std::vector<std::string> failures(Prepared (*make)(const Setup&), Guarantee guarantee) {
+std::vector<std::string> failures(Prepared (*make)(const StrategyInput&), Guarantee guarantee) {
   const Outcome outcome = judge({"saboteur", "test", guarantee, {}, make});
   EXPECT_TRUE(outcome.verified.strategies[0].failures.empty());
   EXPECT_EQ(outcome.verified.ok(), outcome.verified.strategies[1].failures.empty());
   return outcome.verified.strategies[1].failures;
 }
 
-void lose_first_and_invent(const Setup& setup, int call, Report& report, ContactSet& found) {
+void lose_first_and_invent(const StrategyInput& setup, int call, Report& report, ContactSet& found) {
   lose_first(setup, call, report, found);
   invent(setup, call, report, found);
 }

@@ -27,7 +27,7 @@ bool gets_bones(const Strategy& strategy, std::size_t intervals) {
   return strategy.needs.bones || intervals >= kIntervalsThatRepayBones;
 }
 
-Setup setup_for(const Strategy& strategy, Setup setup, std::size_t intervals) {
+StrategyInput setup_for(const Strategy& strategy, StrategyInput setup, std::size_t intervals) {
   if (!gets_bones(strategy, intervals)) setup.rig = nullptr;
   return setup;
 }

@@ -16,6 +16,6 @@ std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh&
 // many intervals. Whether it is a query or a measurement makes no difference.
 bool gets_bones(const Strategy& strategy, std::size_t intervals);
 // Returns the set-up of a clip as the strategy gets it: without the rig if the strategy does not get bones.
-Setup setup_for(const Strategy& strategy, Setup setup, std::size_t intervals);
+StrategyInput setup_for(const Strategy& strategy, StrategyInput setup, std::size_t intervals);
 
 }  // namespace cscd::bench

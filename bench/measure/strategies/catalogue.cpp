@@ -96,7 +96,7 @@ constexpr std::array kStrategies = {
         .source = "radial view based culling (Wong et al. 2013)",
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
-        .make = [](const Setup& setup) { return make_rvbc(setup); },
+        .make = [](const StrategyInput& setup) { return make_rvbc(setup); },
         .published = true,
     },
     Strategy{
@@ -104,7 +104,7 @@ constexpr std::array kStrategies = {
         .source = "dynamic radial view based culling (Wong et al. 2014)",
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
-        .make = [](const Setup& setup) { return make_drvbc(setup); },
+        .make = [](const StrategyInput& setup) { return make_drvbc(setup); },
         .published = true,
     },
     kDrvbcFast,
@@ -115,7 +115,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::all_from_embedded,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup,
                                      {.name = "drvbc_fast_all", .complete = true, .starts_embedded = true});
             },
@@ -140,7 +140,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
             },
         .group = kAblation,
@@ -152,7 +152,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
             },
         .group = kAblation,
@@ -164,7 +164,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
             },
         .group = kAblation,
@@ -176,7 +176,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
             },
         .group = kAblation,
@@ -187,7 +187,10 @@ constexpr std::array kStrategies = {
         .source = "drvbc without mega clusters",
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
-        .make = [](const Setup& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); },
+        .make =
+            [](const StrategyInput& setup) {
+              return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"});
+            },
         .group = kAblation,
         .published = true,
     },
@@ -197,7 +200,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
             },
         .group = kAblation,
@@ -209,7 +212,9 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) { return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false}); },
+            [](const StrategyInput& setup) {
+              return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false});
+            },
         .group = kAblation,
         .published = true,
     },
@@ -219,7 +224,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
             },
         .group = kAblation,
@@ -231,7 +236,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
             },
         .group = kAblation,
@@ -243,7 +248,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
             },
         .group = kAblation,
@@ -255,7 +260,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
             },
         .group = kAblation,
@@ -267,7 +272,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
             },
         .group = kAblation,
@@ -279,7 +284,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_whole_steps", .long_descent = DrvbcFastOptions::kNever});
             },
@@ -292,7 +297,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers", .follows = false});
             },
         .group = kAblation,
@@ -303,7 +308,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::complete,
         .needs = kAnySurface,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_fixed_covers_complete", .follows = false, .complete = true});
             },
@@ -317,7 +322,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               radial::require_radial_setup(setup, "drvbc_fast_bones");
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
@@ -331,7 +336,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::first_contact,
         .needs = kClosedMesh,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_no_bones", .clusters = DrvbcFastOptions::Clusters::of_surface});
             },
@@ -344,7 +349,7 @@ constexpr std::array kStrategies = {
         .guarantee = Guarantee::heuristic,
         .needs = kBones,
         .make =
-            [](const Setup& setup) {
+            [](const StrategyInput& setup) {
               return make_drvbc(
                   setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
             },

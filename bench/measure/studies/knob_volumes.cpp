@@ -71,7 +71,7 @@ struct Dop {
 template <class Scalar, std::size_t K>
 class DopCuller : public Culler {
  public:
-  explicit DopCuller(const Setup& setup)
+  explicit DopCuller(const StrategyInput& setup)
       : mesh_(setup.mesh),
         tree_(build_tree(mesh_, setup.reference)),
         vertex_(mesh_.vertex_count()),
@@ -138,7 +138,7 @@ class DopCuller : public Culler {
 };
 
 template <class Scalar, std::size_t K>
-Prepared make(const Setup& setup) {
+Prepared make(const StrategyInput& setup) {
   return {compose(std::make_unique<DopCuller<Scalar, K>>(setup), setup), {}};
 }
 

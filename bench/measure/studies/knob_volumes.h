@@ -12,7 +12,7 @@ namespace cscd::bench {
 // other and not with the vectorised volumes of the strategies.
 struct VolumeRow {
   std::string_view name;
-  Prepared (*make)(const Setup& setup);
+  Prepared (*make)(const StrategyInput& setup);
 };
 std::span<const VolumeRow> volume_rows();
 

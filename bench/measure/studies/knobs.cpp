@@ -22,14 +22,14 @@ using nlohmann::ordered_json;
 
 struct Setting {
   std::string knob, value;
-  std::function<Prepared(const Setup&)> make;
+  std::function<Prepared(const StrategyInput&)> make;
   const ElementaryTest* elementary = nullptr;  // instead of the study's
 };
 
 Setting varied(const char* knob, const std::string& value, const std::function<void(DrvbcOptions&)>& change) {
   DrvbcOptions options;
   change(options);
-  return {knob, value, [options](const Setup& setup) { return make_drvbc(setup, options); }};
+  return {knob, value, [options](const StrategyInput& setup) { return make_drvbc(setup, options); }};
 }
 
 std::string text(double value) {

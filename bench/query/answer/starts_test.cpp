@@ -21,7 +21,7 @@ enum class Reports { nothing, nothing_from_a_start_that_crosses, one_contact };
 template <Reports kReports>
 class Silent : public Detector {
  public:
-  explicit Silent(const Setup& setup)
+  explicit Silent(const StrategyInput& setup)
       : detector_(complete_reference().make(setup).detector), start_test_(setup.mesh, setup.reference) {}
 
   Report detect(const Step& step, ContactSet& out) override {
@@ -40,7 +40,7 @@ class Silent : public Detector {
 };
 
 template <Reports kReports>
-Prepared make_silent(const Setup& setup) {
+Prepared make_silent(const StrategyInput& setup) {
   return {std::make_unique<Silent<kReports>>(setup), {}};
 }
 
@@ -122,7 +122,7 @@ TEST(KnownStarts, NeedAnswersWithoutAnythingUndecided) {
 // Counts how often it is told that a start is embedded, and whether that is true.
 class Trusting : public Silent<Reports::nothing_from_a_start_that_crosses> {
  public:
-  explicit Trusting(const Setup& setup) : Silent(setup), start_test_(setup.mesh, setup.reference) {}
+  explicit Trusting(const StrategyInput& setup) : Silent(setup), start_test_(setup.mesh, setup.reference) {}
   Report detect(const Step& step, ContactSet& out) override {
     told += step.starts_embedded;
     EXPECT_TRUE(!step.starts_embedded || start_test_.embedded(step.motion.start()));
@@ -133,7 +133,7 @@ class Trusting : public Silent<Reports::nothing_from_a_start_that_crosses> {
  private:
   EmbeddingTest start_test_;
 };
-Prepared make_trusting(const cscd::Setup& setup) {
+Prepared make_trusting(const StrategyInput& setup) {
   return {std::make_unique<Trusting>(setup), {}};
 }
 
@@ -167,7 +167,7 @@ TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
 // Counts how often it is asked to see a start.
 class Looking : public Detector {
  public:
-  explicit Looking(const Setup& setup) : detector_(complete_reference().make(setup).detector) {}
+  explicit Looking(const StrategyInput& setup) : detector_(complete_reference().make(setup).detector) {}
   Report detect(const Step& step, ContactSet& out) override {
     asked += step.crossings != nullptr;
     return detector_->detect(step, out);
@@ -177,7 +177,7 @@ class Looking : public Detector {
  private:
   std::unique_ptr<Detector> detector_;
 };
-Prepared make_looking(const cscd::Setup& setup) {
+Prepared make_looking(const StrategyInput& setup) {
   return {std::make_unique<Looking>(setup), {}};
 }
 

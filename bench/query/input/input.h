@@ -41,8 +41,8 @@ struct Input {
     return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
   }
 
-  Setup setup(const ElementaryTest& elementary, bool first_only = false,
-              Pipeline pipeline = Pipeline::today) const {
+  StrategyInput setup(const ElementaryTest& elementary, bool first_only = false,
+                      Pipeline pipeline = Pipeline::today) const {
     return {mesh,       reference, rig && use_bones ? &*rig : nullptr,
             elementary, threads,   first_only,
             nullptr,    pipeline,  preparation};

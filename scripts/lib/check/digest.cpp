@@ -52,7 +52,7 @@ void detect(const std::string& name, const std::vector<Query>& queries) {
       triangles.push_back({corner(a), corner(b), corner(c)});
   }
   const TriangleMesh mesh(triangles, start.size());
-  const Setup setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
+  const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
   PairOptions options;
   options.relative_boxes = true;
   const auto detector = compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, std::move(options));
