@@ -7,8 +7,8 @@
 namespace cscd {
 
 // The stages of one interval (refit to start) and of the preparation before the first interval
-// (distance_and_heat, decomposition); see Table 3 and Table 1 of the paper.
-enum class Stage { refit, rv_update, traversal, elementary, start, distance_and_heat, decomposition, count_ };
+// (distance_and_heat, decomposition); see Table 3 and Table 1 of the paper, which calls `classify` rv update.
+enum class Stage { refit, classify, traversal, elementary, start, distance_and_heat, decomposition, count_ };
 
 // Measures the time spent in each stage. At any moment the clock charges at most one stage.
 class StageClock {

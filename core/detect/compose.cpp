@@ -267,7 +267,7 @@ class ComposedDetector : public Detector {
 
     clock_.enter(Stage::refit);
     culler_->refit(step.motion);
-    clock_.enter(Stage::rv_update);
+    clock_.enter(Stage::classify);
     const bool classified = culler_->classify(known);
     clock_.enter(Stage::traversal);
     Report report;
@@ -283,7 +283,7 @@ class ComposedDetector : public Detector {
     report.cull.pctp = tester_.count();
     report.pairs = tester_.counts();
     report.ms.refit = clock_.milliseconds(Stage::refit);
-    if (classified) report.ms.rv_update = clock_.milliseconds(Stage::rv_update);
+    if (classified) report.ms.classify = clock_.milliseconds(Stage::classify);
     report.ms.traversal = clock_.milliseconds(Stage::traversal);
     report.ms.elementary = clock_.milliseconds(Stage::elementary);
     report.start_ms = clock_.milliseconds(Stage::start);

@@ -298,7 +298,7 @@ TEST(Compose, StagesThatDoNotExistAreAbsent) {
                 StrategyInput{mesh, x, nullptr, kRecorder});
     ContactSet out;
     const Report report = detector->detect({Motion(x, x)}, out);
-    EXPECT_EQ(report.ms.rv_update.has_value(), classifies);
+    EXPECT_EQ(report.ms.classify.has_value(), classifies);
     EXPECT_FALSE(report.cull.radial.has_value());
     EXPECT_GT(report.ms.elementary, 0);
     EXPECT_EQ(detector->radial_view().cluster, std::vector<std::int32_t>{7});

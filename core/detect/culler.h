@@ -62,7 +62,7 @@ class Culler {
 
   // Computes the bounds of this interval. Stage `refit`.
   virtual void refit(const Motion& motion) = 0;
-  // Computes orientation classes and clusters. Stage `rv_update`; returns false where the strategy has no
+  // Computes orientation classes and clusters. Stage `classify`; returns false where the strategy has no
   // such stage. Where the step starts embedded, cull() may look for the first contact alone, and cull_rest()
   // then passes on the others.
   virtual bool classify(const Step& /*step*/) { return false; }

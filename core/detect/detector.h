@@ -15,10 +15,10 @@ namespace cscd {
 // absent; it is not counted as zero.
 struct StageTimes {
   double refit = 0;
-  std::optional<double> rv_update;
+  std::optional<double> classify;  // records call it rv_update, as the paper does
   double traversal = 0;
   double elementary = 0;
-  double total() const { return refit + rv_update.value_or(0) + traversal + elementary; }
+  double total() const { return refit + classify.value_or(0) + traversal + elementary; }
 };
 
 struct Report {
