@@ -42,7 +42,7 @@ class NormalCones {
  public:
   // In the pipeline `published`, normals are made by scalar code, one triangle at a time. They have the same
   // bits. The mesh must outlive the cones.
-  NormalCones(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline = Pipeline::today);
+  NormalCones(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline = Pipeline::vectorised);
 
   // Computes the cones for one interval. Linear in the number of triangles; allocates nothing. `tree` must
   // be the tree of the constructor.

@@ -49,7 +49,7 @@ Pipeline held_against(const ordered_json& claim, std::span<const Record> records
   if (claim.contains("scenes"))
     for (const std::string scene : claim["scenes"])
       if (record_of(records, scene, Pipeline::published) != nullptr) return Pipeline::published;
-  return Pipeline::today;
+  return Pipeline::vectorised;
 }
 
 Measured no_record_in(Pipeline pipeline) {
@@ -103,7 +103,7 @@ void add_stages(const ordered_json& rows, const std::vector<std::string>& strate
                          {},
                          {},
                          paper_figure(row, strategy, published, scene)};
-      for (const Pipeline pipeline : {Pipeline::published, Pipeline::today})
+      for (const Pipeline pipeline : {Pipeline::published, Pipeline::vectorised})
         if (const Record* record = record_of(records, scene, pipeline))
           (pipeline == Pipeline::published ? figure.published : figure.today) = measure(row, *record);
       const auto has = [](const std::optional<Measured>& m) { return m && m->value; };
@@ -124,7 +124,7 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
   }
   result.expectation = text_of(claim.at("expect"));
   for (const std::string scene : claim.at("scenes")) {
-    const Record* const today = record_of(records, scene, Pipeline::today);
+    const Record* const today = record_of(records, scene, Pipeline::vectorised);
     if (today == nullptr && record_of(records, scene, Pipeline::published) == nullptr) continue;
     std::vector<std::string> compared;  // on this scene, in vain
     for (const ordered_json& definition : claim["measure"]) {
@@ -133,7 +133,8 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
       evidence.title = definition.at("title");
       evidence.measured = measured_in(definition, records, scene, result.held_against);
       evidence.holds = evidence.measured.value && within(*evidence.measured.value, claim["expect"]);
-      if (result.held_against != Pipeline::today && today != nullptr && !definition.contains("over_pipeline"))
+      if (result.held_against != Pipeline::vectorised && today != nullptr &&
+          !definition.contains("over_pipeline"))
         evidence.today = measure(definition, *today);
       if (evidence.holds || !evidence.measured.value || !is_about_times(definition)) continue;
       for (const char* key : {"strategy", "over"}) {
@@ -188,7 +189,7 @@ void add_rows(const std::string& title, std::span<const Evidence> evidence, cons
       beside(1, title + ", today");
   for (const Evidence* e : of_title) {
     held.push_back(figure(*e));
-    beside.push_back(text_of(e->today.value_or(no_record_in(Pipeline::today))));
+    beside.push_back(text_of(e->today.value_or(no_record_in(Pipeline::vectorised))));
   }
   rows.push_back(std::move(held));
   if (two) rows.push_back(std::move(beside));
@@ -273,7 +274,8 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       "A claim is *reproduced* when every measured figure lies where it says, *partly* when some do. Figures "
       "in bold\n"
       "do not. " +
-      (std::ranges::all_of(claims, [](const ClaimResult& c) { return c.held_against == Pipeline::today; })
+      (std::ranges::all_of(claims,
+                           [](const ClaimResult& c) { return c.held_against == Pipeline::vectorised; })
            ? std::string("The records are of the pipeline `today`: this project's code around every method.")
            : std::string("Claims are held against the pipeline `published`, the paper's code around every "
                          "method; `today` is\nthis project's, and stands beside it where it differs.")) +

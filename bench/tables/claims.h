@@ -36,7 +36,7 @@ struct StageFigure {
 struct ClaimResult {
   std::string id, quote, where, expectation;
   ClaimVerdict verdict = ClaimVerdict::not_measured;
-  Pipeline held_against = Pipeline::today;
+  Pipeline held_against = Pipeline::vectorised;
   std::vector<Evidence> evidence;
   std::vector<StageFigure> stages;   // of the scenes on which the claim is missed, by scene, then by title
   std::string not_measured_because;  // empty for a claim that is measured

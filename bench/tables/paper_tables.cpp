@@ -127,10 +127,10 @@ std::string_view pipeline_text(const Column& column) {
 
 std::vector<Pipeline> pipelines_of(std::span<const Record> records) {
   std::vector<Pipeline> pipelines;
-  for (const Pipeline pipeline : {Pipeline::published, Pipeline::today})
+  for (const Pipeline pipeline : {Pipeline::published, Pipeline::vectorised})
     if (std::ranges::any_of(records, [&](const Record& r) { return r.pipeline == pipeline; }))
       pipelines.push_back(pipeline);
-  if (pipelines.empty()) pipelines.push_back(Pipeline::today);
+  if (pipelines.empty()) pipelines.push_back(Pipeline::vectorised);
   return pipelines;
 }
 

@@ -25,7 +25,7 @@ struct Column {
   // The pipeline in which the figures were measured. None if records of both pipelines have the same figures,
   // as for counters, and for preparation, which is the same code in both and is shown as the first of them
   // has it.
-  std::optional<Pipeline> pipeline = Pipeline::today;
+  std::optional<Pipeline> pipeline = Pipeline::vectorised;
 };
 // "today", "published", or "both".
 std::string_view pipeline_text(const Column& column);

@@ -146,11 +146,11 @@ TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
   const std::vector<Cell>& cells = table.rows.at(0).cells;
   EXPECT_EQ(table.columns[0].pipeline, Pipeline::published);
   EXPECT_EQ(cells[0].measured.value, 4);
-  EXPECT_EQ(table.columns[1].pipeline, Pipeline::today);
+  EXPECT_EQ(table.columns[1].pipeline, Pipeline::vectorised);
   EXPECT_EQ(cells[1].measured.value, 1);
   EXPECT_EQ(table.columns[2].pipeline, std::nullopt);
   EXPECT_EQ(cells[2].measured.value, 200);
-  EXPECT_EQ(table.columns[3].pipeline, Pipeline::today);
+  EXPECT_EQ(table.columns[3].pipeline, Pipeline::vectorised);
 
   records.push_back(sample_record());
   records.back().scene.name = "hand";

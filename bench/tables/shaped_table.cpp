@@ -76,7 +76,7 @@ ShapedTable shaped(const PaperTable& table, std::span<const Record> records, boo
     for (const ordered_json& column : group.at("columns"))
       out.columns.push_back({column.at("head"), column.at("unit")});
   }
-  for (const Pipeline pipeline : {Pipeline::published, Pipeline::today})
+  for (const Pipeline pipeline : {Pipeline::published, Pipeline::vectorised})
     for (const Row& row : table.rows) {
       const bool has_published = find_record(records, row.scene, Pipeline::published) != nullptr;
       if (has_published != (pipeline == Pipeline::published)) continue;
@@ -87,7 +87,7 @@ ShapedTable shaped(const PaperTable& table, std::span<const Record> records, boo
           for (const std::string key : column.at("keys"))
             figures.push_back(figure_of(find_cell(table, row, key, pipeline), column.at("keys").size() > 1));
         }
-      add_lines(row.scene, cells, intervals, pipeline == Pipeline::today, out);
+      add_lines(row.scene, cells, intervals, pipeline == Pipeline::vectorised, out);
     }
   return out;
 }
@@ -147,7 +147,7 @@ ShapedTable times_of_strategies(std::span<const Record> records, bool intervals)
   std::vector<const Record*> shown;
   std::vector<std::string> strategies;
   for (const Record& record : records) {
-    if (record.pipeline != Pipeline::today) continue;
+    if (record.pipeline != Pipeline::vectorised) continue;
     shown.push_back(&record);
     table.groups.push_back({"", 1});
     table.columns.push_back(column_of(record.scene.name));

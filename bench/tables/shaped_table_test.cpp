@@ -50,7 +50,7 @@ TEST(ShapedTables, HaveThePapersRowsColumnsAndOrder) {
 // Mutation: `today` wins where there are records of both pipelines.
 TEST(ShapedTables, ShowThePapersCodeWhereItWasMeasuredAndOthersBelow) {
   std::vector<Record> records = wide_records({"rope"});
-  records.push_back(wide_record("rope_contact", Pipeline::today));
+  records.push_back(wide_record("rope_contact", Pipeline::vectorised));
   const ShapedTable times = shaped_of(records)[2];
   ASSERT_EQ(times.lines.size(), 3u);
   EXPECT_FALSE(times.lines[0].of_today);
@@ -103,7 +103,7 @@ TEST(ShapedTables, MarkTimesOfStrategiesThatLostContacts) {
 }
 
 TEST(ShapedTables, MarkTimesWhereAPromiseDoesNotHold) {
-  Record record = wide_record("rope", Pipeline::today);
+  Record record = wide_record("rope", Pipeline::vectorised);
   record.verification.strategies = {{"base", "complete", 0, 0, 0, {}},
                                     {"drvbc", "first_contact", 0, 0, 0, {}}};
   EXPECT_FALSE(is_marked(record, "drvbc"));
@@ -129,7 +129,7 @@ TEST(TablesText, FitATerminalOfAHundredColumns) {
 TEST(TablesText, FoldTablesThatAreTooWide) {
   std::vector<Record> records;
   for (int i = 0; i < 12; ++i)
-    records.push_back(wide_record("a_scene_with_a_long_name_" + std::to_string(i), Pipeline::today));
+    records.push_back(wide_record("a_scene_with_a_long_name_" + std::to_string(i), Pipeline::vectorised));
   const std::string text = text_of(records);
   EXPECT_LE(longest_line(text), 100u) << text;
   std::size_t rows = 0;

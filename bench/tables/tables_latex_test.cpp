@@ -49,7 +49,7 @@ TEST(LatexTables, CompileAndFitArticles) {
     GTEST_SKIP() << "no LaTeX here; install texlive-latex-recommended";
   const Scratch scratch;
   std::vector<Record> records = wide_records({"rope", "hand", "octopus", "man", "box", "urchin"});
-  records.push_back(wide_record("octopus_contact", Pipeline::today));
+  records.push_back(wide_record("octopus_contact", Pipeline::vectorised));
   for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
   for (const char* columns : {"onecolumn", "twocolumn"}) {
     std::ofstream article(scratch.path / "article.tex");

@@ -224,7 +224,7 @@ std::string fast_text(std::span<const Record> records, const std::string& fast) 
   std::vector<double> medians, over_best, over_paper;
   bool marked = false;
   for (const Record& record : records) {
-    if (record.pipeline != Pipeline::today) continue;
+    if (record.pipeline != Pipeline::vectorised) continue;
     const Measured median = median_query(fast, record);
     if (!median.value) continue;
     medians.push_back(*median.value);
@@ -302,7 +302,7 @@ std::string tables_text(std::span<const ShapedTable> tables, std::span<const Cla
   std::vector<ShapedTable> shown(tables.begin(), tables.end());
   if (std::ranges::none_of(tables, is_published)) {
     std::vector<Record> today(records.begin(), records.end());
-    std::erase_if(today, [](const Record& record) { return record.pipeline != Pipeline::today; });
+    std::erase_if(today, [](const Record& record) { return record.pipeline != Pipeline::vectorised; });
     if (!today.empty()) shown.push_back(times_of_strategies(today));
   }
   std::string out;

@@ -17,7 +17,7 @@ inline Record wide_record(const std::string& scene, Pipeline pipeline) {
   record.pipeline = pipeline;
   record.timed_intervals = {0};
   record.counted_intervals = {0};
-  double ms = pipeline == Pipeline::today ? 0.1234 : 1.2345;
+  double ms = pipeline == Pipeline::vectorised ? 0.1234 : 1.2345;
   for (const char* name : {"base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast",
                            "drvbc_fast_complete", "drvbc_fast_swept_bounds"}) {
     StrategyRecord row;
@@ -40,7 +40,7 @@ inline Record wide_record(const std::string& scene, Pipeline pipeline) {
 inline std::vector<Record> wide_records(const std::vector<std::string>& scenes) {
   std::vector<Record> records;
   for (const std::string& scene : scenes)
-    for (const Pipeline pipeline : {Pipeline::today, Pipeline::published})
+    for (const Pipeline pipeline : {Pipeline::vectorised, Pipeline::published})
       records.push_back(wide_record(scene, pipeline));
   return records;
 }

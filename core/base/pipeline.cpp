@@ -7,7 +7,7 @@
 namespace cscd {
 
 Pipeline pipeline_named(std::string_view name) {
-  for (const Pipeline pipeline : {Pipeline::today, Pipeline::published})
+  for (const Pipeline pipeline : {Pipeline::vectorised, Pipeline::published})
     if (to_string(pipeline) == name) return pipeline;
   throw InputError("pipeline '" + std::string(name) + "' is not known; choose one of today, published");
 }

@@ -16,7 +16,8 @@ class PlainCuller : public Culler {
   explicit PlainCuller(const StrategyInput& setup)
       : PlainCuller(setup.mesh, setup.reference, setup.pipeline) {}
   // `mesh` must outlive the culler. `reference`, [vertices], shapes the tree.
-  PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference, Pipeline pipeline = Pipeline::today)
+  PlainCuller(const TriangleMesh& mesh, std::span<const Vec3> reference,
+              Pipeline pipeline = Pipeline::vectorised)
       : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_, pipeline) {}
 
   void refit(const Motion& motion) override { bounds_.refit(motion); }

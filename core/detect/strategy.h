@@ -55,7 +55,7 @@ struct StrategyInput {
   // strategy that brings its own elementary test throws InputError.
   const Exclusions* exclusions = nullptr;
   // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.
-  Pipeline pipeline = Pipeline::today;
+  Pipeline pipeline = Pipeline::vectorised;
   // What a detector of the same strategy and surface has said by Detector::saved_preparation(); empty to
   // prepare from nothing. The surface may have changed in places since, and only those are then prepared
   // anew. The strategy throws InputError if it is damaged, or if less than half of the triangles were there.

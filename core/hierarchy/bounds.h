@@ -18,7 +18,7 @@ class SweptVolumes {
  public:
   // In the pipeline `published`, bounds are made by scalar code, one vertex and one node at a time. They are
   // the same, except that a zero may have the other sign, which no comparison sees.
-  SweptVolumes(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline = Pipeline::today);
+  SweptVolumes(const TriangleMesh& mesh, const Tree& tree, Pipeline pipeline = Pipeline::vectorised);
 
   // Computes the bounds of all vertices' paths, then of the nodes from the leaves upwards. O(vertices +
   // triangles); allocates nothing. With a margin, every path is as thick as a ball of that radius; the margin

@@ -31,7 +31,7 @@ class ClusterHierarchy {
  public:
   // `reference`, [vertices], is the pose in which the trees are built. The mesh must outlive the hierarchy.
   ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec3> reference, const AtomicClusters& clusters,
-                   Pipeline pipeline = Pipeline::today);
+                   Pipeline pipeline = Pipeline::vectorised);
 
   // Makes the bounds of one interval.
   void refit(const Motion& motion) { bounds_.refit(motion); }

@@ -56,7 +56,7 @@ class OrientationTable {
   // the other by the scalar twin. The classes are the same. The mesh must outlive the table.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
                    SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain,
-                   Pipeline pipeline = Pipeline::today);
+                   Pipeline pipeline = Pipeline::vectorised);
 
   // Begins an interval. The positions of `motion` must stay in place until the last classification of the
   // interval.

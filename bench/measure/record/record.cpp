@@ -237,7 +237,7 @@ Record parse_record(const std::string& text, const std::string& where) {
       out.scene.path = out.scene.name;
       out.scene.name = scenes::plain_name(out.scene.path);
     }
-    out.pipeline = pipeline_named(document.value("pipeline", to_string(Pipeline::today)));
+    out.pipeline = pipeline_named(document.value("pipeline", to_string(Pipeline::vectorised)));
     out.elementary = document.at("elementary");
     out.intervals = document.at("intervals");
     out.counted_intervals = document.at("counted_intervals").get<std::vector<std::size_t>>();

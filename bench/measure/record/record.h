@@ -50,8 +50,8 @@ struct Footprint {
 struct StrategyRecord {
   std::string name, source, guarantee;
   int threads = 1;
-  // So many intervals are played to the strategy before each measured one (bench/measure/replay/lead.h); 0 for a
-  // strategy whose counters do not depend on what it was asked before.
+  // So many intervals are played to the strategy before each measured one (bench/measure/replay/lead.h); 0
+  // for a strategy whose counters do not depend on what it was asked before.
   std::size_t lead = 0;
   PreparationRecord preparation;
   Footprint footprint;
@@ -106,7 +106,7 @@ struct Record {
   std::vector<std::string> command;
   std::uint64_t seed = 0;
   SceneRecord scene;
-  Pipeline pipeline = Pipeline::today;         // older records do not say
+  Pipeline pipeline = Pipeline::vectorised;    // older records do not say
   std::string elementary;                      // the timed one
   std::size_t intervals = 0;                   // that the command spans
   std::vector<std::size_t> counted_intervals;  // those of them that have counters and digests, ascending

@@ -15,7 +15,7 @@ namespace cscd::bench {
 // A strategy made twice for one input: to be judged, with the exact elementary test, and to be timed.
 struct Contestant {
   const Strategy* strategy;
-  Pipeline pipeline = Pipeline::today;
+  Pipeline pipeline = Pipeline::vectorised;
   std::unique_ptr<Detector> judged, timed;
   PreparationRecord preparation;
   int threads = 1;  // on which it answers
@@ -24,12 +24,12 @@ struct Contestant {
 // The set-up of a detector that leaves out what the input says is ignored, with the clip's bones if the
 // strategy gets them.
 StrategyInput measured_setup(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
-                             bool first_only = false, Pipeline pipeline = Pipeline::today);
+                             bool first_only = false, Pipeline pipeline = Pipeline::vectorised);
 
 // Throws InputError when the input lacks what a strategy needs. The input must outlive the detectors.
 std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
                                          const ElementaryTest& exact, const ElementaryTest& timed,
-                                         Pipeline pipeline = Pipeline::today);
+                                         Pipeline pipeline = Pipeline::vectorised);
 
 // Says why a strategy cannot leave out what an input ignores; nothing where it can, or where nothing is
 // ignored.
@@ -40,6 +40,6 @@ std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& 
 // of groups. Throws InputError for a name that is not known, and for a row that is named and would be left
 // out of a group.
 std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names,
-                                               Pipeline pipeline = Pipeline::today);
+                                               Pipeline pipeline = Pipeline::vectorised);
 
 }  // namespace cscd::bench

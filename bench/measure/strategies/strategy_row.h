@@ -17,7 +17,7 @@ struct StrategyRow {
 
   const Strategy* strategy;
   bool first = false;
-  Pipeline pipeline = Pipeline::today;
+  Pipeline pipeline = Pipeline::vectorised;
 
   std::string name() const { return std::string(strategy->name) + std::string(first ? kFirst : ""); }
   bool operator==(const StrategyRow&) const = default;

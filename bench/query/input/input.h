@@ -42,7 +42,7 @@ struct Input {
   }
 
   StrategyInput setup(const ElementaryTest& elementary, bool first_only = false,
-                      Pipeline pipeline = Pipeline::today) const {
+                      Pipeline pipeline = Pipeline::vectorised) const {
     return {mesh,       reference, rig && use_bones ? &*rig : nullptr,
             elementary, threads,   first_only,
             nullptr,    pipeline,  preparation};
