@@ -61,12 +61,14 @@ def scenes_of(commit):
 
 
 def strategies_of(commit):
-    """The names and groups in a commit's catalogue of strategies."""
-    catalogue = [path for path in git("ls-tree", "-r", "--name-only", commit, "bench/").splitlines() if path.endswith("/catalogue.cpp")]
+    """The names and groups in a commit's catalogue of strategies, and the rows that the engine itself defines."""
+    paths = git("ls-tree", "-r", "--name-only", commit, "bench/", "core/fast/").splitlines()
+    catalogue = [path for path in paths if path.startswith("bench/") and path.endswith("/catalogue.cpp")]
     if not catalogue:
         refuse(f"commit {commit[:10]}: has no catalogue of strategies, so it cannot be measured")
     rows = git("show", f"{commit}:{catalogue[0]}").partition("playing(")[0]  # behind them are look-ups and their errors
-    return set(re.findall(r'"(\w+)"', rows))
+    engine = git("show", f"{commit}:core/fast/drvbc_fast.h") if "core/fast/drvbc_fast.h" in paths else ""
+    return {*re.findall(r'"(\w+)"', rows), *re.findall(r'\.name = "(\w+)"', engine)}
 
 
 class Build:

@@ -48,7 +48,7 @@ def main():
     if options.copies < 1:
         refuse(f"{options.copies} copies; give at least 1")
     install("build", "tests")
-    build(BUILD, "test", "bench_commands_test", "cscd")
+    build(BUILD, "test", "bench_query_test", "cscd")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = dict(zip(KINDS, pool.map(lambda kind: attack(kind, options.copies, pathlib.Path(folder)), KINDS)))
     met = {kind: figures for kind, (figures, _) in results.items() if figures}

@@ -23,7 +23,7 @@ from script import ROOT, SCENES, new_results, parser_of, refuse
 FIRST, ALL, KNOWN, EARLIEST = "drvbc_fast", "drvbc_fast_complete", "drvbc_fast_all", "drvbc_fast --first"
 LONG = 16  # frame steps
 SMALL, LARGE = 48000, 194000
-THREAD_SCENES = json.loads((ROOT / "bench" / "studies" / "scale_plan.json").read_text())["full"]["thread_scenes"]
+THREAD_SCENES = json.loads((ROOT / "bench" / "measure" / "studies" / "scale_plan.json").read_text())["full"]["thread_scenes"]
 
 
 def commands(scene, smoke, has_known):
