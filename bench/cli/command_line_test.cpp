@@ -199,8 +199,8 @@ TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
   const Ran second = run("cscd query " + file + " --json -");
   EXPECT_EQ(second.errors.find("note"), std::string::npos) << second.errors;
 
-  for (const std::string& command : {"export " + file + " out.h5", "inspect " + file,
-                                     "clusters " + file + " --json c.json"})
+  for (const std::string& command :
+       {"export " + file + " out.h5", "inspect " + file, "clusters " + file + " --json c.json"})
     EXPECT_EQ(run("cscd " + command).status, 0) << command;
   const Ran ran = run("cscd run --smoke --strategy base,drvbc_fast --scene " + file + " --json r.json");
   EXPECT_EQ(ran.status, 0) << ran.errors;

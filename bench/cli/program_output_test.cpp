@@ -23,8 +23,8 @@ class ProgramOutput : public Program {
 
 TEST_F(ProgramOutput, TakesStandardOutputForTheAnswerAlone) {
   for (const std::string name : {"-", "/dev/stdout"})
-    for (const std::string command : {"query small", "inspect small", "clusters small",
-                                      "run --smoke --strategy base --scene small"}) {
+    for (const std::string command :
+         {"query small", "inspect small", "clusters small", "run --smoke --strategy base --scene small"}) {
       const Ran ran = run("cscd " + command + " --json " + name + " | cat; exit ${PIPESTATUS[0]}");
       EXPECT_EQ(ran.status, 0) << ran.errors;
       EXPECT_TRUE(json::accept(ran.out)) << command << ": " << ran.out.substr(0, 200);
