@@ -6,17 +6,7 @@
 namespace cscd::bench {
 namespace {
 
-class CommandLine : public Program {
- protected:
-  // Returns what bash offers to complete the last of these words.
-  std::string completed(const std::string& words) const {
-    Ran ran = run("source <(cscd completion bash)\nCOMP_WORDS=(" + words +
-                  ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_cscd\necho \"${COMPREPLY[*]}\"");
-    EXPECT_EQ(ran.errors, "") << words;
-    if (!ran.out.empty()) ran.out.pop_back();
-    return ran.out;
-  }
-};
+class CommandLine : public Program {};
 
 TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
   const struct {
@@ -36,7 +26,6 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
       {"query small --json - --elementary newtom@1", "did you mean newton?"},
       {"run --json x.json --strategy basee", "did you mean base?"},
       {"help qurey", "unknown command qurey; did you mean query?"},
-      {"completion fish", "fish"},
       {"", "subcommand is required"},
       {"query small --json - --threads many", "--threads"},
       {"query small --json - --threads 0", "--threads"},
@@ -96,41 +85,12 @@ TEST_F(CommandLine, SaysWhatItWasBuiltOf) {
 
 TEST_F(CommandLine, HelpsAsEachCommandDoes) {
   EXPECT_EQ(run("cscd help").out, run("cscd --help").out);
-  for (const std::string command : {"query", "run", "scene accept", "completion"}) {
+  for (const std::string command : {"query", "run", "scene accept"}) {
     const Ran ran = run("cscd help " + command);
     EXPECT_EQ(ran.status, 0);
     EXPECT_EQ(ran.out, run("cscd " + command + " --help").out);
     EXPECT_GT(ran.out.size(), 50u);
   }
-}
-
-TEST_F(CommandLine, IsCompletedByBash) {
-  EXPECT_EQ(run("cscd completion bash >script && bash -n script && echo good").out, "good\n");
-  EXPECT_EQ(completed("cscd que"), "query");
-  EXPECT_EQ(completed("cscd query --js"), "--json");
-  EXPECT_EQ(completed("cscd query sm"), "small");
-  EXPECT_EQ(completed("cscd query small --strategy drvbc_fast_c"), "drvbc_fast_complete");
-  EXPECT_EQ(completed("cscd run --strategy base,mc"), "base,mcd");
-  EXPECT_EQ(completed("cscd run --scene = sm"), "small") << "--scene=sm";
-  EXPECT_EQ(completed("cscd list st"), "strategies");
-  EXPECT_EQ(completed("cscd scene ac"), "accept");
-  EXPECT_EQ(completed("cscd elementary --kind v"), "vf");
-  EXPECT_EQ(completed("cscd query small --json ou"), "") << "left to bash, which knows files";
-  EXPECT_NE(completed("cscd ''").find("export"), std::string::npos);
-}
-
-TEST_F(CommandLine, HasAManualPage) {
-  const Ran page = run("cscd man >cscd.1");
-  ASSERT_EQ(page.status, 0) << page.errors;
-  for (const char* part :
-       {".TH CSCD 1", ".SH NAME", ".SH \"query\"", ".SH \"scene accept\"", "\\-\\-strategy", "\\-\\-version"})
-    EXPECT_NE(text("cscd.1").find(part), std::string::npos) << part;
-  if (run("command -v groff").status != 0) GTEST_SKIP() << "no groff";
-  const Ran shown = run("groff -man -Tutf8 -ww -rHY=0 cscd.1 >shown");
-  EXPECT_EQ(shown.status, 0);
-  EXPECT_EQ(shown.errors, "");
-  EXPECT_NE(text("shown").find("cscd run --scene rope --json"), std::string::npos)
-      << "examples stand as they are";
 }
 
 TEST_F(CommandLine, ListsNamesAndFaults) {

@@ -33,6 +33,6 @@ void add_benchmark(CLI::App& app);
 void add_accuracy(CLI::App& app);
 void add_scale(CLI::App& app);
 void add_scene(CLI::App& app);
-void add_help(CLI::App& app);  // and completion, man
+void add_help(CLI::App& app);
 
 }  // namespace cscd::bench
