@@ -12,7 +12,6 @@
 #include "bench/compare/statistics/statistics.h"
 #include "bench/measure/record/environment.h"
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/studies/knobs.h"
 #include "bench/measure/studies/tally.h"
 #include "bench/measure/studies/workload.h"
 #include "core/base/error.h"
@@ -25,12 +24,10 @@ using nlohmann::ordered_json;
 
 struct AccuracyOptions {
   std::vector<std::string> scenes;
-  std::vector<std::string> knob_scenes;
   std::string set, elementary = "all", sweep, output;
   std::vector<double> hardnesses;
   std::size_t every = 1, scene_queries = 0, open_queries = 0, hard_queries = 0, random_queries = 0,
               sweep_queries = 0;
-  KnobStudy knobs;
   int passes = 3;
   std::uint64_t seed = 1;
   bool smoke = false, force = false;
@@ -77,12 +74,6 @@ std::vector<std::string> command_line(const AccuracyOptions& o) {
   add("--hard-queries", std::to_string(o.hard_queries));
   add("--random-queries", std::to_string(o.random_queries));
   add("--hardness", joined(o.hardnesses));
-  add("--knobs", joined(o.knob_scenes));
-  if (!o.knob_scenes.empty()) {
-    add("--knob-every", std::to_string(o.knobs.every));
-    add("--knob-repetitions", std::to_string(o.knobs.repetitions));
-    add("--knob-colliding", std::to_string(o.knobs.colliding));
-  }
   add("--passes", std::to_string(o.passes));
   add("--seed", std::to_string(o.seed));
   return words;
@@ -277,9 +268,7 @@ void run_accuracy(AccuracyOptions options) {
     workload.next = nullptr;  // what it held
     progress.advance();
   }
-  ordered_json record = study.json();
-  for (const std::string& scene : options.knob_scenes)
-    record["knobs"].push_back(study_knobs(scene, options.knobs));
+  const ordered_json record = study.json();
   if (const std::string violation = schema_violation(record, "accuracy.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
   if (output) output->commit(json_text(record));
@@ -325,18 +314,6 @@ void add_accuracy(CLI::App& app) {
                    "shares of a query's size by which it is off its lattice")
       ->delimiter(',')
       ->check(CLI::Range(1e-18, 1.0));
-  command
-      ->add_option("--knobs", options->knob_scenes,
-                   "scenes on which the choices beyond the elementary test are varied")
-      ->delimiter(',');
-  command->add_option("--knob-every", options->knobs.every, "of their intervals, each K-th")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--knob-repetitions", options->knobs.repetitions, "of each interval's timing")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--knob-colliding", options->knobs.colliding, "and so many of those with contacts")
-      ->capture_default_str();
   command->add_option("--passes", options->passes, "how often every test is asked the same block")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));

@@ -17,10 +17,8 @@ SWEEP = [*(f"cubic@{tolerance}" for tolerance in ("0", "1e-12", "1e-10", "1e-8",
          *(f"inclusion@{tolerance}" for tolerance in ("1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-6:200000")),
          *(f"additive@{gap}" for gap in ("0.5", "0.2", "0.1", "0.05", "0.01", "0.001"))]
 FULL = ["--scene", ",".join([*SCENES, *CONTACTS]), "--every", "16", "--scene-queries", "2000000", "--hard-queries", "2000",
-        "--random-queries", "100", "--sweep-queries", "200", "--passes", "1", "--sweep", ",".join(SWEEP), "--knobs", ",".join(CONTACTS),
-        "--knob-every", "150", "--knob-colliding", "4", "--knob-repetitions", "2"]
-SMOKE = ["--smoke", "--scene", "hand_contact", "--every", "60", "--sweep", "cubic@1e-9,cubic@1e-3,inclusion@1e-3,inclusion@1e-5",
-         "--knobs", "hand_contact", "--knob-every", "80", "--knob-repetitions", "1"]
+        "--random-queries", "100", "--sweep-queries", "200", "--passes", "1", "--sweep", ",".join(SWEEP)]
+SMOKE = ["--smoke", "--scene", "hand_contact", "--every", "60", "--sweep", "cubic@1e-9,cubic@1e-3,inclusion@1e-3,inclusion@1e-5"]
 
 
 def query_set(named):
