@@ -13,7 +13,7 @@
 namespace cscd::bench {
 namespace {
 
-constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 // A mesh of the benchmark, and the strategy made for it.
 class Asked {
@@ -64,10 +64,10 @@ class Asked {
     Crossings start;
     if (row_.strategy->sees_start) {
       ContactSet ignored;
-      detector_->detect({.motion = motion, .bones = bones, .crossings = &start, .most_crossings = kAll},
+      detector_->detect({.motion = motion, .bones = bones, .crossings = &start, .most_crossings = kNoLimit},
                         ignored);
     } else if (embedding_) {
-      start = embedding_->find_all(motion.start(), kAll);
+      start = embedding_->find_all(motion.start(), kNoLimit);
     } else {
       return;
     }

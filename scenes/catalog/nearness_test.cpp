@@ -11,20 +11,18 @@
 namespace cscd::scenes {
 namespace {
 
-using test::Shape;
-
-TriangleCorners corners_of(const Shape& shape, std::size_t triangle, const std::vector<Vec3>& x) {
+TriangleCorners corners_of(const test::Shape& shape, std::size_t triangle, const std::vector<Vec3>& x) {
   const Triangle& c = shape.triangles[triangle];
   return {x[+c[0]], x[+c[1]], x[+c[2]]};
 }
 
 // The definition of nearness, computed directly.
 struct ByDefinition {
-  const Shape& shape;
+  const test::Shape& shape;
   double mean_edge = 0;
   std::vector<std::vector<double>> path;
 
-  explicit ByDefinition(const Shape& of) : shape(of) {
+  explicit ByDefinition(const test::Shape& of) : shape(of) {
     const std::size_t count = shape.positions.size();
     const TriangleMesh mesh = shape.mesh();
     path.assign(count, std::vector<double>(count, 1e300));
@@ -56,7 +54,7 @@ struct ByDefinition {
 
 // Returns the positions of a tube whose axis is wound round a circle: `turns` turns from end to end,
 // while the tube rises by `rise`.
-std::vector<Vec3> wound(const Shape& tube, double length, double turns, double rise) {
+std::vector<Vec3> wound(const test::Shape& tube, double length, double turns, double rise) {
   std::vector<Vec3> x;
   const double radius = length / (2 * std::numbers::pi * turns);
   for (const Vec3& p : tube.positions) {
@@ -68,7 +66,7 @@ std::vector<Vec3> wound(const Shape& tube, double length, double turns, double r
 }
 
 TEST(Nearness, IsTheDefinition) {
-  const Shape tube = test::capped_tube(6, 40, 0.3, 10);
+  const test::Shape tube = test::capped_tube(6, 40, 0.3, 10);
   const ByDefinition definition(tube);
   const TriangleMesh mesh = tube.mesh();
   Nearness nearness(mesh, tube.positions);
@@ -94,7 +92,7 @@ TEST(Nearness, IsTheDefinition) {
 }
 
 TEST(Nearness, DependsOnTheFrameAloneNotOnTheFramesBefore) {
-  const Shape tube = test::capped_tube(6, 40, 0.3, 10);
+  const test::Shape tube = test::capped_tube(6, 40, 0.3, 10);
   const TriangleMesh mesh = tube.mesh();
   Nearness used(mesh, tube.positions);
   for (const double turns : {1.3, 1.0, 0.5, 1.0, 1.7, 1.3}) {
@@ -115,7 +113,7 @@ TEST(Nearness, FindsThePairOfTheFrameBeforeAgain) {
   std::uniform_real_distribution<double> near_middle(-1, 1);
   int found = 0;
   for (int i = 0; i < 500; ++i) {
-    Shape two{{}, {test::corners(0, 1, 2), test::corners(3, 4, 5)}};
+    test::Shape two{{}, {test::corners(0, 1, 2), test::corners(3, 4, 5)}};
     for (int v = 0; v < 6; ++v)
       two.positions.emplace_back(near_middle(random) + (v < 3 ? 2 : 0), near_middle(random),
                                  near_middle(random));
@@ -132,9 +130,9 @@ TEST(Nearness, FindsThePairOfTheFrameBeforeAgain) {
 
 // Spikes of four sides and seven rings on a plate, like those of the urchin.
 TEST(Nearness, NeighbouringSpikesCountASpikesOwnSidesDoNot) {
-  Shape both;
+  test::Shape both;
   for (const double x : {0.0, 0.5}) {
-    Shape spike = test::uneven_tube(4, 7, 0.9, [](double h) { return 0.18 * (1 - h / 0.9) + 0.005; });
+    test::Shape spike = test::uneven_tube(4, 7, 0.9, [](double h) { return 0.18 * (1 - h / 0.9) + 0.005; });
     for (Vec3& p : spike.positions) p = {p.y() + x, p.z(), p.x()};
     const TriangleMesh alone = spike.mesh();
     EXPECT_FALSE(Nearness(alone, spike.positions).closest(spike.positions));
@@ -161,7 +159,7 @@ TEST(Nearness, NeighbouringSpikesCountASpikesOwnSidesDoNot) {
 }
 
 TEST(Nearness, DifferentComponentsAreApart) {
-  const Shape two = test::together(test::box(), test::box({1.5, 0, 0}, {2.5, 1, 1}));
+  const test::Shape two = test::together(test::box(), test::box({1.5, 0, 0}, {2.5, 1, 1}));
   const TriangleMesh mesh = two.mesh();
   Nearness nearness(mesh, two.positions);
   const auto found = nearness.closest(two.positions);
@@ -170,7 +168,7 @@ TEST(Nearness, DifferentComponentsAreApart) {
 }
 
 TEST(Nearness, HasNoMeasureOnAPoint) {
-  const Shape point{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {test::corners(0, 1, 2)}};
+  const test::Shape point{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {test::corners(0, 1, 2)}};
   const TriangleMesh mesh = point.mesh();
   EXPECT_THROW(Nearness(mesh, point.positions), InputError);
 }

@@ -12,9 +12,9 @@
 namespace cscd::bench {
 namespace {
 
-constexpr int kResamples = 1000, kNoiseResamples = 300;
+constexpr int kRatioResamples = 1000, kNoiseResamples = 300;
 constexpr std::size_t kDrawsOfAProcess = 16;
-constexpr std::uint64_t kSeed = 2013;
+constexpr std::uint64_t kRatioSeed = 2013;
 constexpr double kDecile = 0.1;
 
 // The mean of the middle half. It ignores the quarter of the pairs that a disturbance slowed most, as the
@@ -87,7 +87,7 @@ double interval_half_width(double miss, std::size_t samples) {
 }
 
 ProcessRatio bootstrap_process_ratio(std::span<const ProcessPair> pairs) {
-  std::mt19937_64 random(kSeed);
+  std::mt19937_64 random(kRatioSeed);
   std::vector<Draws> before, after;
   for (const ProcessPair& pair : pairs) {
     before.emplace_back(pair.before, random);
@@ -96,7 +96,7 @@ ProcessRatio bootstrap_process_ratio(std::span<const ProcessPair> pairs) {
   ProcessRatio out;
   out.log_ratio = log_process_ratio(pairs);
   std::vector<double> logs(pairs.size()), noise;
-  for (int i = 0; i < kResamples; ++i) {
+  for (int i = 0; i < kRatioResamples; ++i) {
     for (double& log : logs) {
       const std::size_t pair = any_place(pairs.size(), random);
       log = after[pair].any(random) - before[pair].any(random);

@@ -12,7 +12,7 @@
 #include "bench/cli/output/json_text.h"
 #include "bench/measure/record/environment.h"
 #include "core/base/error.h"
-#include "core/base/output_target.h"
+#include "scenes/base/output_target.h"
 #include "scenes/clip/digest.h"
 
 namespace cscd::bench {

@@ -19,11 +19,11 @@ const ElementaryTest& exact() {
 }
 
 // CSCD_ALL_CONTACTS tries another number of intervals.
-std::uint64_t seeds() {
+std::uint64_t contact_seeds() {
   return test::steps_asked("CSCD_ALL_CONTACTS", 100);
 }
 
-struct Step : test::RandomStep {
+struct EmbeddedStep : test::RandomStep {
   using RandomStep::RandomStep;
   StrategyInput setup(const ElementaryTest& test = exact(), const Exclusions* exclusions = nullptr) const {
     return {.mesh = mesh, .reference = start, .rig = nullptr, .elementary = test, .exclusions = exclusions};
@@ -41,7 +41,7 @@ struct Step : test::RandomStep {
 template <class Visit>
 void for_each_embedded(std::uint64_t count, const Visit& visit) {
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
-    const Step step(seed);
+    const EmbeddedStep step(seed);
     if (step.starts_embedded()) visit(step, seed);
   }
 }
@@ -49,7 +49,7 @@ void for_each_embedded(std::uint64_t count, const Visit& visit) {
 // Mutations: the rest is never asked for; it is asked for by signs again.
 TEST(AllContacts, AreFoundBySignsAndCaps) {
   std::size_t touching = 0, later = 0, spared = 0;
-  for_each_embedded(seeds(), [&](const Step& step, std::uint64_t seed) {
+  for_each_embedded(contact_seeds(), [&](const EmbeddedStep& step, std::uint64_t seed) {
     const ContactSet truth = step.ask(make_brute(step.setup()));
     Report by_signs, by_caps;
     const Prepared all = make_drvbc_fast(step.setup(), kAll);
@@ -60,7 +60,7 @@ TEST(AllContacts, AreFoundBySignsAndCaps) {
     later += step.ask(make_drvbc_fast(step.setup())).contacts.size() < truth.contacts.size();
     spared += by_signs.cull.bvot != by_caps.cull.bvot;
   });
-  EXPECT_GT(touching, seeds() / 4);
+  EXPECT_GT(touching, contact_seeds() / 4);
   EXPECT_GT(later, 10u) << "signs alone lose nothing here";
   EXPECT_GT(spared, 10u) << "signs are not asked first";
 }
@@ -69,7 +69,7 @@ TEST(AllContacts, AreFoundBySignsAndCaps) {
 // with exclusions too.
 TEST(AllContacts, OfAnExcludedFirstContactAreKept) {
   std::size_t left = 0;
-  for_each_embedded(seeds(), [&](const Step& step, std::uint64_t seed) {
+  for_each_embedded(contact_seeds(), [&](const EmbeddedStep& step, std::uint64_t seed) {
     const ContactSet truth = step.ask(make_brute(step.setup()));
     if (truth.contacts.empty()) return;
     const auto [a, b, c, d] = vertices_of(step.mesh, truth.contacts.front().pair);
@@ -103,7 +103,7 @@ constexpr ElementaryTest kHesitant{"hesitant",
 // Mutation: the rest is asked for only after a decided contact.
 TEST(AllContacts, AreLookedForWhereTheTestIsUndecided) {
   std::size_t touching = 0;
-  for_each_embedded(60, [&](const Step& step, std::uint64_t seed) {
+  for_each_embedded(60, [&](const EmbeddedStep& step, std::uint64_t seed) {
     const ContactSet truth = step.ask(make_brute(step.setup(kHesitant)));
     EXPECT_EQ(digest(step.ask(make_drvbc_fast(step.setup(kHesitant), kAll))), digest(truth))
         << "seed " << seed;
@@ -115,7 +115,7 @@ TEST(AllContacts, AreLookedForWhereTheTestIsUndecided) {
 // Signs pass on the first contact, so whoever asks for no other is spared the second look.
 TEST(AllContacts, AreNotLookedForByWhoWantsTheFirst) {
   std::size_t touching = 0, spared = 0;
-  for_each_embedded(60, [&](const Step& step, std::uint64_t seed) {
+  for_each_embedded(60, [&](const EmbeddedStep& step, std::uint64_t seed) {
     StrategyInput setup = step.setup();
     Report all, first;
     ContactSet found = step.ask(make_drvbc_fast(setup, kAll), &all);

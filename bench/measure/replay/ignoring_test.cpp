@@ -12,7 +12,7 @@
 namespace cscd::bench {
 namespace {
 
-const ElementaryTest& exact() {
+const ElementaryTest& filtered_exact() {
   return elementary_test_named("filtered_exact");
 }
 
@@ -66,7 +66,7 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Subject subject(seed);
     const Strategy& oracle = strategy_named("brute");
-    ContactSet expected = subject.ask(oracle.make(subject.input.setup(exact())));
+    ContactSet expected = subject.ask(oracle.make(subject.input.setup(filtered_exact())));
     ignored += std::erase_if(expected.contacts, [&](const Contact& contact) {
       return std::ranges::all_of(carriers(subject.input.mesh, contact.pair), [&](const CrossingPair& pair) {
         return subject.ignores(pair.first, pair.second);
@@ -78,7 +78,7 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
     names.emplace_back("brute");
     for (const std::string& name : names) {
       const Strategy& strategy = strategy_named(name);
-      const Prepared prepared = strategy.make(measured_setup(subject.input, strategy, exact()));
+      const Prepared prepared = strategy.make(measured_setup(subject.input, strategy, filtered_exact()));
       EXPECT_EQ(digest(subject.ask(prepared)), digest(expected)) << name << ", seed " << seed;
     }
     rows = std::max(rows, names.size());

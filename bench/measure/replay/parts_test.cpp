@@ -15,11 +15,11 @@ namespace {
 constexpr std::uint32_t kAlways = 0, kNever = DrvbcFastOptions::kNever;
 
 // CSCD_PARTS tries another number of intervals.
-std::uint64_t seeds() {
+std::uint64_t part_seeds() {
   return test::steps_asked("CSCD_PARTS", 400);
 }
 
-struct Step : test::RandomStep {
+struct LongStep : test::RandomStep {
   using RandomStep::RandomStep;
   Prepared prepared(const DrvbcFastOptions& options, int threads = 1) const {
     return make_drvbc_fast({mesh, start, nullptr, elementary_test_named("exact"), threads}, options);
@@ -38,8 +38,8 @@ void expect_same(const ContactSet& a, const ContactSet& b, std::uint64_t seed) {
 // those of its halves; a pair that several parts find is passed on several times.
 TEST(Parts, KeepEveryContactOfLongSteps) {
   std::size_t in_parts = 0, contacts = 0, crossings = 0;
-  for (std::uint64_t seed = 1; seed <= seeds(); ++seed) {
-    Step step(seed);
+  for (std::uint64_t seed = 1; seed <= part_seeds(); ++seed) {
+    LongStep step(seed);
     if (seed % 2 == 0) std::swap(step.start, step.end);  // may cross itself at the start
     ContactSet found[2];
     Crossings crossing[2];
@@ -69,8 +69,8 @@ TEST(Parts, KeepEveryContactOfLongSteps) {
 // Mutation: a part is looked at from the observers of the part before it.
 TEST(Parts, KeepTheFirstContactOfLongSteps) {
   std::size_t in_parts = 0, touching = 0;
-  for (std::uint64_t seed = 1; seed <= seeds(); ++seed) {
-    const Step step(seed);
+  for (std::uint64_t seed = 1; seed <= part_seeds(); ++seed) {
+    const LongStep step(seed);
     if (!step.mesh.closed_and_oriented() || !step.starts_embedded()) continue;
     ContactSet whole, found;
     step.prepared({.long_descent = kNever, .complete = true}).detector->detect({step.motion()}, whole);
@@ -96,7 +96,7 @@ TEST(Parts, KeepTheFirstContactOfLongSteps) {
 TEST(Parts, AreTheSameOnAnyNumberOfThreads) {
   std::size_t in_parts = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const Step step(seed);
+    const LongStep step(seed);
     ContactSet alone, both, whole;
     const Report one = step.prepared({.long_descent = kAlways, .complete = true}, 1)
                            .detector->detect({step.motion()}, alone);
@@ -115,7 +115,7 @@ TEST(Parts, AreTheSameOnAnyNumberOfThreads) {
 // Mutation: how far the surface moves is not asked.
 TEST(Parts, AreMadeOfStepsThatMoveFar) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    Step step(seed);
+    LongStep step(seed);
     for (std::size_t v = 0; v < step.start.size(); ++v)
       step.end[v] = step.start[v] + 1e-3 * (step.end[v] - step.start[v]);
     ContactSet found;

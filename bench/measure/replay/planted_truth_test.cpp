@@ -17,7 +17,7 @@ namespace {
 
 using test::Flaw;
 
-Input random_input(std::uint64_t seed) {
+Input planted_input(std::uint64_t seed) {
   auto clip = std::make_unique<scenes::Clip>(scenes::make_random_interval(seed).clip);
   TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count, "random interval");
   const std::span<const Vec3> first = clip->frame(0).positions;
@@ -45,7 +45,7 @@ Prepared make_late(const StrategyInput& setup) {
 }
 
 Record record_of(std::uint64_t seed, Prepared (*make)(const StrategyInput&), bool is_verified) {
-  Input input = random_input(seed);
+  Input input = planted_input(seed);
   const ElementaryTest& exact = elementary_test_named("exact");
   const Strategy strategy{"row", "for tests", Guarantee::complete, {}, make};
   const std::array rows = {&strategy};

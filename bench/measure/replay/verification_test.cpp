@@ -14,7 +14,7 @@
 namespace cscd::bench {
 namespace {
 
-const ElementaryTest& exact() {
+const ElementaryTest& exact_test() {
   return elementary_test_named("exact");
 }
 const ElementaryTest& newton() {
@@ -37,7 +37,7 @@ Input colliding_input() {
     const scenes::ClipInterval interval = input.clip->load(0);
     if (!EmbeddingTest(input.mesh, input.reference).embedded(interval.motion.start())) continue;
     ContactSet found;
-    complete_reference().make(input.setup(exact())).detector->detect({interval.motion}, found);
+    complete_reference().make(input.setup(exact_test())).detector->detect({interval.motion}, found);
     found.sort();
     if (!found.contacts.empty() && found.contacts.front().time < found.contacts.back().time) return input;
   }
@@ -80,13 +80,13 @@ void invent(const StrategyInput&, int, Report&, ContactSet& found) {
   found.contacts.push_back({FeaturePair::of(VertexId{0}, TriangleId{0}), Verdict::contact, 0});
 }
 void cull_more_when_timed(const StrategyInput& setup, int, Report& report, ContactSet&) {
-  report.cull.pctp -= setup.elementary.name != exact().name;
+  report.cull.pctp -= setup.elementary.name != exact_test().name;
 }
 void forget_once(const StrategyInput& setup, int call, Report&, ContactSet& found) {
-  if (setup.elementary.name != exact().name && call == 3) found.contacts.pop_back();
+  if (setup.elementary.name != exact_test().name && call == 3) found.contacts.pop_back();
 }
 void count_otherwise_once(const StrategyInput& setup, int call, Report& report, ContactSet&) {
-  *report.cull.bvot += setup.elementary.name != exact().name && call == 3;
+  *report.cull.bvot += setup.elementary.name != exact_test().name && call == 3;
 }
 
 struct Outcome {
@@ -98,9 +98,9 @@ struct Outcome {
 Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
   Input input = colliding_input();
   const std::array rows = {&complete_reference(), &strategy};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
   Outcome outcome;
-  Verifier verifier(input, contestants, exact(), newton());
+  Verifier verifier(input, contestants, exact_test(), newton());
   const std::vector<std::size_t> all = {0};
   verifier.judge(all);
   outcome.verified = verifier.record();
@@ -207,8 +207,8 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
                             {},
                             loses_first ? sabotage<lose_first> : sabotage<lose_last>};
     const std::array rows = {&complete_reference(), &saboteur};
-    std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
-    Verifier verifier(input, contestants, exact(), exact());
+    std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
+    Verifier verifier(input, contestants, exact_test(), exact_test());
     std::vector<StrategyRecord> records(2);
     const std::vector<std::size_t> all = {0};
     const WarmUp counted = warm_up(input, contestants, all, verifier, records);
@@ -224,8 +224,8 @@ TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
   Input input = colliding_input();
   const Strategy saboteur{"saboteur", "test", Guarantee::first_contact, {}, sabotage<lose_last>};
   const std::array rows = {&complete_reference(), &saboteur};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), exact());
-  Verifier verifier(input, contestants, exact(), exact());
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
+  Verifier verifier(input, contestants, exact_test(), exact_test());
   std::vector<StrategyRecord> records(2);
   EXPECT_TRUE(
       warm_up(input, contestants, std::vector<std::size_t>{0}, verifier, records).disagreeing.empty());
@@ -234,8 +234,8 @@ TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
 TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
   Input input = colliding_input();
   const std::array rows = {&complete_reference()};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact(), newton());
-  const Verifier verifier(input, contestants, exact(), newton());
+  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
+  const Verifier verifier(input, contestants, exact_test(), newton());
   std::vector<StrategyRecord> records(1);
   const std::vector<std::size_t> all = {0};
   const WarmUp counted = warm_up(input, contestants, all, verifier, records);

@@ -18,9 +18,9 @@
 namespace cscd::bench {
 namespace {
 
-constexpr std::size_t kAll = 1'000'000;
+constexpr std::size_t kAllCrossings = 1'000'000;
 
-const ElementaryTest& exact() {
+const ElementaryTest& filtered() {
   return elementary_test_named("filtered_exact");
 }
 
@@ -96,16 +96,16 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
   ignore(input, request);
   const Oracle oracle(input, request);
   const SurfaceNames names(input);
-  Answerer answerer(input, strategy, exact(), options);
-  const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(exact())).detector;
+  Answerer answerer(input, strategy, filtered(), options);
+  const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(filtered())).detector;
   EmbeddingTest looked(input.mesh, input.reference);
   const RestCrossings rest = options.keep_rest_crossings
                                  ? RestCrossings()
-                                 : RestCrossings(input.mesh, looked.find_all(input.rest(), kAll));
+                                 : RestCrossings(input.mesh, looked.find_all(input.rest(), kAllCrossings));
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
     const IntervalAnswer answer = answerer.answer(i);
     const scenes::ClipInterval interval = input.clip->load(i);
-    Crossings start = looked.find_all(interval.motion.start(), kAll);
+    Crossings start = looked.find_all(interval.motion.start(), kAllCrossings);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
     const std::size_t ignored_pairs =
         std::erase_if(start.pairs, [&](const CrossingPair& pair) { return oracle.ignores(pair); });

@@ -13,7 +13,7 @@
 namespace cscd::bench {
 namespace {
 
-constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 enum class Reports { nothing, nothing_from_a_start_that_crosses, one_contact };
 
@@ -85,7 +85,7 @@ void expect_starts_right(const Strategy& strategy, const ElementaryTest& element
   Answerer answerer(input, strategy, elementary, {.unproven = unproven, .keep_rest_crossings = true});
   EmbeddingTest from_nothing(input.mesh, input.reference);
   for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 0, 3, 1, 6, 2, 5, 4, 0}) {
-    const Crossings expected = from_nothing.find_all(input.clip->load(i).motion.start(), kAll);
+    const Crossings expected = from_nothing.find_all(input.clip->load(i).motion.start(), kNoLimit);
     const IntervalAnswer answer = answerer.answer(i);
     ASSERT_EQ(answer.start.pairs, expected.pairs) << i;
     EXPECT_EQ(answer.starts_embedded, expected.total == 0) << i;
@@ -200,7 +200,7 @@ TEST(KnownStarts, AreFollowedToWhereSignsPay) {
     EmbeddingTest from_nothing(input.mesh, input.reference);
     for (const std::size_t i : {0, 2, 4, 1, 5, 3})
       EXPECT_EQ(answerer.answer(i).start.pairs,
-                from_nothing.find_all(input.clip->load(i).motion.start(), kAll).pairs)
+                from_nothing.find_all(input.clip->load(i).motion.start(), kNoLimit).pairs)
           << i;
     EXPECT_EQ(Looking::asked, by_signs ? 1 : 6);
   }
