@@ -63,7 +63,7 @@ TEST(SelfCollision, AnswersRightAfterAllocationsThatFailed) {
   std::size_t failed = 0;
   for (std::uint64_t seed = 1; seed <= test::intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const test::Step step(seed);
+    const test::SceneStep step(seed);
     std::mt19937_64 random(seed);
     SelfCollision body(step.faces, step.start);
     SelfCollision::Answer answer;

@@ -9,7 +9,6 @@ namespace cscd {
 namespace {
 
 using namespace test;
-using test::Step;  // not the step of a detector
 
 // What is left out, as the library is told and as the search of all pairs is told.
 struct Filter {
@@ -36,7 +35,7 @@ std::vector<std::pair<Id, Id>> draw_pairs(std::size_t count, std::mt19937& rando
 }
 
 // A filter of one kind. A wrong one tells the library something else in one place.
-Filter filter_of(std::uint64_t kind, const Step& step, bool wrong = false) {
+Filter filter_of(std::uint64_t kind, const SceneStep& step, bool wrong = false) {
   const std::size_t n = step.mesh.vertex_count(), m = step.mesh.triangle_count();
   std::mt19937 random(static_cast<unsigned>(17 * n + m));
   Filter out;
@@ -72,7 +71,7 @@ TEST(SelfCollision, LeavesOutWhatIsExcluded) {
   std::size_t left_out = 0, left = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step(seed);
+    const SceneStep step(seed);
     const Filter filter = filter_of(seed % kFilters, step);
     SelfCollision::Options options;
     options.exclude = filter.asked;
@@ -92,7 +91,7 @@ TEST(SelfCollision, SeesAWrongFilterOfEachKind) {
   for (std::uint64_t kind = 0; kind < kFilters; ++kind) {
     std::size_t seen = 0;
     for (std::uint64_t seed = 1; seed <= 24 && seen == 0; ++seed) {
-      const Step step(seed);
+      const SceneStep step(seed);
       const Filter filter = filter_of(kind, step, true);
       SelfCollision::Options options;
       options.exclude = filter.asked;
@@ -107,7 +106,7 @@ TEST(SelfCollision, SeesAWrongFilterOfEachKind) {
 TEST(SelfCollision, LeavesOutWhatIsExcludedOfObstacles) {
   for (std::uint64_t seed = 1; seed <= intervals() / 2; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step = beside(seed);
+    const SceneStep step = beside(seed);
     const Rows before = step.beside(step.all_start), after = step.beside(step.all_end);
     Filter filter = filter_of(1 + seed % (kFilters - 1), step);
     exclude_obstacle_against_obstacle(step, filter.expected);

@@ -8,7 +8,6 @@ namespace cscd {
 namespace {
 
 using namespace test;
-using test::Step;  // not the step of a detector
 
 // Mutations: obstacles are held against themselves; the bounds of an obstacle are those of the step before;
 // a step that starts elsewhere is taken to start free; triangles of obstacles are numbered from 0.
@@ -16,7 +15,7 @@ TEST(SelfCollision, HoldsTheMeshAgainstObstacles) {
   std::size_t touching = 0, crossing = 0, apart = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    Step step = beside(seed);
+    SceneStep step = beside(seed);
     const Rows before = step.beside(step.all_start), after = step.beside(step.all_end);
     SelfCollision::Options options;
     options.obstacles.push_back(obstacle_of(step, before));
@@ -51,7 +50,7 @@ TEST(SelfCollision, HoldsTheMeshAgainstObstacles) {
 TEST(SelfCollision, SeesAnObstacleThatIsMisplaced) {
   std::size_t seen = 0;
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
-    const Step step = beside(seed);
+    const SceneStep step = beside(seed);
     SelfCollision::Options options;
     options.obstacles.push_back(obstacle_of(step, step.beside(step.all_start)));
     SelfCollision body(step.faces, step.start, options);
@@ -66,7 +65,7 @@ TEST(SelfCollision, SeesAnObstacleThatIsMisplaced) {
 TEST(SelfCollision, RemembersNothingOfObstaclesThatChangesAnAnswer) {
   std::size_t crossing = 0;
   for (std::uint64_t seed = 1; seed <= intervals() / 4; ++seed) {
-    const Step step = beside(seed);
+    const SceneStep step = beside(seed);
     const Rows at[] = {step.beside(step.all_start), step.beside(step.all_end),
                        step.beside(step.all_end).array() + 20};
     const Rows poses[] = {step.start, 0.5 * (step.start + step.end), step.end};

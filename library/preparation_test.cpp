@@ -10,13 +10,12 @@ namespace cscd {
 namespace {
 
 using namespace test;
-using test::Step;  // not the step of a detector
 
 // Mutation: the observers of the second cover are those of the first.
 TEST(SelfCollision, AnswersTheSameFromASavedPreparation) {
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step(seed);
+    const SceneStep step(seed);
     SelfCollision first(step.faces, step.start);
     SelfCollision::Options options;
     options.preparation = first.preparation();
@@ -39,7 +38,7 @@ TEST(SelfCollision, AnswersRightFromThePreparationOfAMeshThatHasChangedSince) {
   std::size_t taken_over = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step(seed);
+    const SceneStep step(seed);
     std::mt19937_64 random(seed);
     FaceRows earlier(step.faces.rows() - step.faces.rows() / 10, 3);
     std::vector<Eigen::Index> order(static_cast<std::size_t>(step.faces.rows()));
@@ -66,7 +65,7 @@ TEST(SelfCollision, AnswersRightFromThePreparationOfAMeshThatHasChangedSince) {
 }
 
 TEST(SelfCollision, RefusesThePreparationOfAnotherMesh) {
-  const Step step(1), other(2);
+  const SceneStep step(1), other(2);
   SelfCollision::Options options;
   options.preparation = SelfCollision(step.faces, step.start).preparation();
   EXPECT_THROW(SelfCollision(other.faces, other.start, options), std::invalid_argument);
@@ -99,7 +98,7 @@ TEST(SelfCollision, CutsTheSurfaceAlongLabels) {
 TEST(SelfCollision, AnswersTheSameWithLabels) {
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step(seed);
+    const SceneStep step(seed);
     std::mt19937_64 random(seed);
     SelfCollision::Options labelled;
     for (Eigen::Index v = 0; v < step.start.rows(); ++v)

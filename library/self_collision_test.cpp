@@ -13,13 +13,12 @@ namespace cscd {
 namespace {
 
 using namespace test;
-using test::Step;  // not the step of a detector
 
 TEST(SelfCollision, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {
   std::size_t free = 0, crossing = 0;
   for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step(seed);
+    const SceneStep step(seed);
     SelfCollision body(step.faces, step.start);
     EXPECT_EQ(body.closed(), step.mesh.closed_and_oriented());
     expect_right(step, body, {});
@@ -39,7 +38,7 @@ TEST(SelfCollision, GivesAllCandidates) {
   std::size_t seen = 0, fewer = 0;
   for (std::uint64_t seed = 1; seed <= intervals() / 4; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Step step = seed % 2 == 0 ? Step(seed) : beside(seed);
+    const SceneStep step = seed % 2 == 0 ? SceneStep(seed) : beside(seed);
     const bool obstacle = step.own() < step.mesh.vertex_count();
     const Exclusions exclusions = obstacle ? obstacle_against_obstacle(step) : Exclusions();
     SelfCollision::Options options;
@@ -92,7 +91,7 @@ TEST(SelfCollision, GivesAllCandidates) {
 // One object that answers many steps, in any order, gives the answers of fresh objects.
 TEST(SelfCollision, RemembersNothingThatChangesAnAnswer) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const Step step(seed);
+    const SceneStep step(seed);
     SelfCollision body(step.faces, step.start);
     const Rows middle = 0.5 * (step.start + step.end);
     const Rows* way[] = {&step.start, &middle, &step.end, &step.start, &step.end, &middle, &step.start};
@@ -115,7 +114,7 @@ TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
   };
   const Strategy complete{"drvbc_fast_complete", "", Guarantee::complete, {}, make};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Step step(seed);
+    const SceneStep step(seed);
     const StrategyInput setup{step.mesh, step.all_start, nullptr, exact};
     const auto answers = [&] {
       Session session("mesh", setup, complete, complete, step.all_start, {.keep_rest_crossings = true});
@@ -138,7 +137,7 @@ TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
 
 // Triangles are added and removed by preparing the object anew.
 TEST(SelfCollision, IsPreparedAnewForOtherTriangles) {
-  const Step step(2);
+  const SceneStep step(2);
   SelfCollision body(step.faces, step.start);
   for (const Eigen::Index left : {step.faces.rows() - 1, step.faces.rows() / 2, step.faces.rows()}) {
     body = SelfCollision(step.faces.topRows(left), step.start);

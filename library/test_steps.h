@@ -50,16 +50,16 @@ inline FaceRows face_rows(std::span<const Triangle> triangles) {
 
 // A step of a whole scene: of a surface, and of a second one beside it if there is one. The object under test
 // takes the first surface as its mesh, and the second one as an obstacle.
-struct Step {
+struct SceneStep {
   TriangleMesh mesh;  // both surfaces
   FaceRows faces;     // of the first surface alone
   std::vector<Vec3> all_start, all_end;
   Rows start, end;  // of the first surface alone
 
-  explicit Step(std::uint64_t seed) : Step(scenes_of(seed), nullptr) {}
+  explicit SceneStep(std::uint64_t seed) : SceneStep(scenes_of(seed), nullptr) {}
   // A second surface stands beside the first.
-  Step(std::uint64_t seed, std::uint64_t beside, const Vec3& offset)
-      : Step(scenes_of(seed), std::make_unique<scenes::RandomInterval>(scenes_of(beside)), offset) {}
+  SceneStep(std::uint64_t seed, std::uint64_t beside, const Vec3& offset)
+      : SceneStep(scenes_of(seed), std::make_unique<scenes::RandomInterval>(scenes_of(beside)), offset) {}
   Motion motion() const { return {all_start, all_end}; }
   // The number of vertices of the first surface.
   std::size_t own() const { return static_cast<std::size_t>(start.rows()); }
@@ -83,8 +83,8 @@ struct Step {
     }
     return out;
   }
-  Step(const scenes::RandomInterval& own, std::unique_ptr<scenes::RandomInterval> beside,
-       const Vec3& offset = Vec3::Zero())
+  SceneStep(const scenes::RandomInterval& own, std::unique_ptr<scenes::RandomInterval> beside,
+            const Vec3& offset = Vec3::Zero())
       : mesh(together(own.clip, beside.get()),
              own.clip.header().vertex_count + (beside ? beside->clip.header().vertex_count : 0)),
         faces(face_rows(own.clip.header().triangles)),
@@ -151,7 +151,7 @@ using Key = std::tuple<bool, std::array<int, 4>, int>;
 using Truth = std::map<Key, double>;  // the time of each contact
 
 // Returns all contacts that are not excluded, found among all feature pairs with the exact test.
-inline Truth truth_of(const Step& step, const Exclusions& exclusions) {
+inline Truth truth_of(const SceneStep& step, const Exclusions& exclusions) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");
   Truth truth;
   for_each_feature_pair(step.mesh, step.motion(), [&](const FeaturePair& pair, const Box& a, const Box& b) {
@@ -176,7 +176,7 @@ inline Truth found(const SelfCollision::Answer& answer) {
 }
 
 // Holds every promise of the library about one step to the search of all feature pairs.
-inline void expect_right(const Step& step, SelfCollision& body, const Exclusions& exclusions) {
+inline void expect_right(const SceneStep& step, SelfCollision& body, const Exclusions& exclusions) {
   const Truth truth = truth_of(step, exclusions);
   Crossings crossings = EmbeddingTest(step.mesh, step.motion().start())
                             .find_all(step.motion().start(), step.mesh.triangle_count() * 100);
@@ -215,7 +215,7 @@ inline void expect_right(const Step& step, SelfCollision& body, const Exclusions
 }
 
 // Returns the second surface of the step as an obstacle that stands at `where`.
-inline SelfCollision::Obstacle obstacle_of(const Step& step, const Rows& where) {
+inline SelfCollision::Obstacle obstacle_of(const SceneStep& step, const Rows& where) {
   std::vector<Triangle> triangles;
   for (Triangle t : step.mesh.triangles().subspan(static_cast<std::size_t>(step.faces.rows()))) {
     for (VertexId& v : t) v = VertexId{static_cast<std::int32_t>(static_cast<std::size_t>(v) - step.own())};
@@ -224,20 +224,20 @@ inline SelfCollision::Obstacle obstacle_of(const Step& step, const Rows& where) 
   return {face_rows(triangles), where};
 }
 // The seed's surface, and beside it that of another seed, which is at rest every second time.
-inline Step beside(std::uint64_t seed) {
-  Step step(seed, 7 * seed + 2, Vec3(0.3 * static_cast<double>(seed % 7) - 1, 0.4, 0.2));
+inline SceneStep beside(std::uint64_t seed) {
+  SceneStep step(seed, 7 * seed + 2, Vec3(0.3 * static_cast<double>(seed % 7) - 1, 0.4, 0.2));
   if (seed % 2 == 0)
     std::copy(step.all_start.begin() + static_cast<std::ptrdiff_t>(step.own()), step.all_start.end(),
               step.all_end.begin() + static_cast<std::ptrdiff_t>(step.own()));
   return step;
 }
 // Excludes the pairs of two features of the second surface.
-inline void exclude_obstacle_against_obstacle(const Step& step, Exclusions& out) {
+inline void exclude_obstacle_against_obstacle(const SceneStep& step, Exclusions& out) {
   std::vector<bool> obstacle(step.mesh.vertex_count(), false);
   std::fill(obstacle.begin() + static_cast<std::ptrdiff_t>(step.own()), obstacle.end(), true);
   out.set_obstacles(step.mesh, obstacle);
 }
-inline Exclusions obstacle_against_obstacle(const Step& step) {
+inline Exclusions obstacle_against_obstacle(const SceneStep& step) {
   Exclusions out;
   exclude_obstacle_against_obstacle(step, out);
   return out;
