@@ -21,7 +21,7 @@ nlohmann::json counts_json(const Report& report) {
 nlohmann::json milliseconds_json(const StageTimes& ms) {
   nlohmann::json out = {
       {"refit", ms.refit}, {"traversal", ms.traversal}, {"elementary", ms.elementary}, {"total", ms.total()}};
-  if (ms.classify) out["rv_update"] = *ms.rv_update;
+  if (ms.classify) out["rv_update"] = *ms.classify;
   return out;
 }
 

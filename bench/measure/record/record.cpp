@@ -47,7 +47,7 @@ void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repeti
     append_time(stage, milliseconds, columns, repetition);
   };
   add("refit", ms.refit);
-  if (ms.classify) add("rv_update", *ms.rv_update);
+  if (ms.classify) add("rv_update", *ms.classify);
   add("traversal", ms.traversal);
   add("elementary", ms.elementary);
 }
