@@ -1,5 +1,5 @@
 """The charts of scripts/figures accuracy."""
-from charts import COLOURS, MARKERS, label_panels, log_axis, marker, matplotlib, panels, plt, save, test_colour
+from charts import label_panels, log_axis, marker, matplotlib, panels, save, test_colour
 from accuracy_sums import GROUPS, base, is_sweep, sums
 
 NOTHING = {"color": "#e8f4e8", "zorder": 0}  # the band in which a share of zero is drawn
@@ -158,95 +158,7 @@ def draw_hardness(record, folder, pdf):
     return True
 
 
-def settings_by_knob(knobs):
-    return list(dict.fromkeys(setting["knob"] for knob in knobs for setting in knob["settings"]))
-
-
-def draw_knobs(record, folder, pdf):
-    """Time and contacts found, knob by knob: two panels each, a curve a scene."""
-    knobs = record.get("knobs", [])
-    if not knobs:
-        return False
-    names = settings_by_knob(knobs)
-    columns = min(3, len(names))
-    bands = -(-len(names) // columns)
-    figure, cells = plt.subplots(2 * bands, columns, figsize=(8, 3.3 * bands), squeeze=False, height_ratios=[1.3, 1] * bands)
-    for axes in cells.flat:
-        axes.set_visible(False)
-    for place, name in enumerate(names):
-        band, column = divmod(place, columns)
-        top, bottom = cells[2 * band][column], cells[2 * band + 1][column]
-        for number, knob in enumerate(knobs):
-            settings = [s for s in knob["settings"] if s["knob"] == name]
-            x = range(len(settings))
-            look = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)], "ms": 4, "lw": 1.2}
-            found = [100 * s["contacts"] / knob["contacts"] if knob["contacts"] else 100 for s in settings]
-            top.plot(x, [s["ms"] / knob["default_ms"] for s in settings], label=knob["scene"], **look)
-            bottom.plot(x, found, **look)
-            for i, s in enumerate(settings):
-                if s["lost_first"]:
-                    bottom.plot([i], [found[i]], "x", color="red", ms=9, mew=1.5, zorder=4)
-            labels = [s["value"] for s in settings]
-        for axes in (top, bottom):
-            axes.set_visible(True)
-            axes.set_xticks(range(len(labels)))
-            axes.set_xlim(-0.4, len(labels) - 0.6)
-        top.set_xticklabels([])
-        bottom.set_xticklabels(labels, rotation=60 if max(map(len, labels)) > 5 else 0,
-                               ha="right" if max(map(len, labels)) > 5 else "center", fontsize=8)
-        top.set_title(name)
-    ratios = [t["ms"] / knob["default_ms"] for knob in knobs for t in knob["settings"]]
-    least = min([t["contacts"] / knob["contacts"] for knob in knobs for t in knob["settings"] if knob["contacts"]] + [1])
-    for band in range(bands):  # one scale for all
-        for top, bottom in zip(cells[2 * band], cells[2 * band + 1]):
-            top.set_ylim(min(ratios) / 1.3, max(ratios) * 1.3)
-            log_axis(top.yaxis)
-            bottom.set_ylim(100 - 108 * (1 - least) - 0.05, 100 + 8 * (1 - least) + 0.05)
-        cells[2 * band][0].set_ylabel("time")
-        cells[2 * band + 1][0].set_ylabel("found, %")
-    handles, labels = cells[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper center", ncol=3, fontsize=9, title_fontsize=9,
-                  title="time of an interval, where the default takes 1; share of contacts found (red cross: a first one lost)")
-    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.75 / figure.get_size_inches()[1]))
-    save(figure, folder, "accuracy-knobs", pdf=pdf)
-    return True
-
-
-def draw_knob_front(record, folder, pdf):
-    """All settings of all knobs at once: contacts that are missing against time."""
-    knobs = [knob for knob in record.get("knobs", []) if knob["contacts"]]
-    if not knobs:
-        return False
-    names = settings_by_knob(knobs)
-    looks = {name: {"color": COLOURS[n % len(COLOURS)], "marker": MARKERS[n % len(MARKERS)]} for n, name in enumerate(names)}
-    wide = 4 if len(knobs) > 1 else 2
-    lines = -(-(len(names) + 1) // wide)
-    figure, cells = panels(len(knobs), title_height=0.25 * lines + 0.15)
-    for number, (axes, knob) in enumerate(zip(cells, knobs)):
-        floor = 0.3 / knob["contacts"]
-        points = {i: (s["ms"] / knob["default_ms"], max(1 - s["contacts"] / knob["contacts"], floor))
-                  for i, s in enumerate(knob["settings"])}
-        draw_front(axes, points)
-        for i, s in enumerate(knob["settings"]):
-            look = looks[s["knob"]]
-            axes.plot(*points[i], ls="", ms=6, mfc="white" if s["lost_first"] else look["color"], zorder=3, **look)
-        axes.axvline(1, color="#999999", lw=0.8, ls=":", zorder=0)
-        draw_floor(axes, floor, [y for _, y in points.values()], "none missing")
-        log_axis(axes.xaxis)
-        axes.set_title(f"{knob['scene']}: {knob['contacts']:,} contacts", fontsize=9)
-        axes.set_xlabel("time of an interval, default = 1")
-        if number % 2 == 0:
-            axes.set_ylabel("share of contacts missing")
-    handles = [symbol(name, **looks[name]) for name in names]
-    handles.append(symbol("hollow: a first contact lost", marker="o", color="#666666", mfc="white"))
-    figure.legend(handles=handles, ncol=wide, loc="upper center", fontsize=9)
-    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.25 * lines + 0.1) / figure.get_size_inches()[1]))
-    save(figure, folder, "accuracy-knob-front", pdf=pdf)
-    return True
-
-
 def draw_all(record, folder, pdf=False):
     """Draws what the record has, as PDF too where that is asked for; returns the names of the charts that were drawn."""
-    drawings = {"pareto": draw_pareto, "tolerance": draw_tolerance, "hardness": draw_hardness, "knobs": draw_knobs,
-                "knob-front": draw_knob_front}
+    drawings = {"pareto": draw_pareto, "tolerance": draw_tolerance, "hardness": draw_hardness}
     return {name for name, draw in drawings.items() if draw(record, folder, pdf)}

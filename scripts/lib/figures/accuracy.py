@@ -1,18 +1,14 @@
 """Draws charts and writes the page of what accuracy costs, from records of `cscd accuracy`.
 
-  scripts/figures accuracy RECORD.json.gz... --out FOLDER
+  scripts/figures accuracy RECORD.json.gz --out FOLDER
   scripts/figures accuracy RECORD.json.gz --pdf --out FOLDER      for a paper
-
-Elementary tests are of the first record, the other choices (knobs) of all.
 
 accuracy.md            a page: this much truth costs this much time, with what to choose for what
 accuracy.csv           every row on every workload
 accuracy-pareto        wrong answers against time, row by row, Pareto front marked
 accuracy-tolerance     time, false alarms, misses and undecided answers against the tolerance
 accuracy-hardness      time, wrong and undecided answers against hardness
-accuracy-knobs         time of whole intervals and contacts found, knob by knob (where the record has them)
-accuracy-knob-front    all settings of all knobs at once, Pareto front marked
-The figures are PNG files, and with --pdf also PDF files whose text is text; the same records give the same bytes.
+The figures are PNG files, and with --pdf also PDF files whose text is text; the same record gives the same bytes.
 """
 import csv
 import pathlib
@@ -24,10 +20,6 @@ from records import read_record
 from script import existing_folder, parser_of
 
 SCHEMA = "cscd.accuracy/1"
-# What the default has already: their spread is the noise of the machine.
-SAME_AS_DEFAULT = {("elementary", "filtered_exact"), ("filter", "certain sign"), ("relative boxes", "on"),
-                   ("segment seen from", "3 corners"), ("orientation by", "certain sign"), ("gamma", "0.05"), ("theta (degrees)", "10.0"),
-                   ("field cells (edges)", "4"), ("guarantee", "first_contact")}
 
 
 def duration(ns):
@@ -144,8 +136,6 @@ def page(record, drawn):
                         ("hardness", "time and wrong answers by hardness")):
         if name in drawn:
             text += picture(f"accuracy-{name}", title)
-    if record.get("knobs"):
-        text += knob_tables(record)
     text += family_table(record)
     sweep = [row for row in record["rows"] if row["sweep"]]
     if sweep:
@@ -154,7 +144,7 @@ def page(record, drawn):
         text += table(["test", "proves", "time", "contacts lost", "contacts invented", "undecided"],
                       [[f"`{row['name']}`", guarantee(row)] + cells_of(rows[row["name"]]) for row in sweep
                        if row["name"] in rows]) + [""]
-    text += [f"Command: `{command}`" for command in record["commands"]]
+    text += [f"Command: `{' '.join(record['command'])}`"]
     return "\n".join(text) + "\n"
 
 
@@ -206,32 +196,6 @@ def family_table(record):
              "`cscd list families` tells each family's story.", ""] + table(["family"] + names, lines) + [""])
 
 
-def knob_tables(record):
-    text = ["## Beyond the elementary test: one knob at a time", "",
-            "Time of a whole interval against the default's, and what is lost: intervals whose first contact is missing, "
-            "and the share of all contacts that is found. The default is `drvbc` with `filtered_exact`.", ""]
-    scenes = [knob["scene"] for knob in record["knobs"]]
-    lines = {}
-    for knob in record["knobs"]:
-        for s in knob["settings"]:
-            recall = share(s["contacts"], knob["contacts"]) if knob["contacts"] else "no contacts"
-            mark = f"; **{s['lost_first']} first lost**" if s["lost_first"] else ""
-            lines.setdefault((s["knob"], s["value"]), {})[knob["scene"]] = (
-                f"{s['ms'] / knob['default_ms']:.2f}; {recall}{mark}")
-    text += table(["knob", "setting"] + scenes, [[k, v] + [cells.get(scene, "") for scene in scenes]
-                                                 for (k, v), cells in lines.items()])
-    spread = [s["ms"] / knob["default_ms"] for knob in record["knobs"] for s in knob["settings"]
-              if (s["knob"], s["value"]) in SAME_AS_DEFAULT]
-    if spread:
-        text += ["", f"Each cell: time over the default's; contacts found. Settings that are the default under another name came "
-                 f"out at {min(spread):.2f} to {max(spread):.2f}: differences within that say nothing."]
-    text += [""] + picture("accuracy-knobs", "knobs")
-    if any(knob["contacts"] for knob in record["knobs"]):
-        text += ["All settings at once, and the front of what is not beaten in both time and contacts:", "",
-                 *picture("accuracy-knob-front", "front over all knobs")]
-    return text
-
-
 def write_csv(record, path):
     keys = ["queries", "contacts", "false_negatives", "false_positives", "undecided_contacts", "undecided_apart"]
     with path.open("w", newline="") as file:
@@ -251,15 +215,12 @@ def write_csv(record, path):
 
 def main():
     parser = parser_of(__doc__)
-    parser.add_argument("records", nargs="+", type=pathlib.Path)
+    parser.add_argument("record", type=pathlib.Path)
     parser.add_argument("--out", required=True, type=pathlib.Path, help="an existing folder")
     parser.add_argument("--pdf", action="store_true", help="every chart as PDF too")
     arguments = parser.parse_args()
     existing_folder(arguments.out)
-    records = [read_record(path, SCHEMA, "cscd accuracy") for path in arguments.records]
-    record = records[0]
-    record["knobs"] = [knob for one in records for knob in one.get("knobs", [])]
-    record["commands"] = [" ".join(one["command"]) for one in records]
+    record = read_record(arguments.record, SCHEMA, "cscd accuracy")
     drawn = accuracy_charts.draw_all(record, arguments.out, arguments.pdf)
     write_csv(record, arguments.out / "accuracy.csv")
     (arguments.out / "accuracy.md").write_text(page(record, drawn))
