@@ -2,10 +2,9 @@
 
   scripts/record accuracy
 
-Asks every elementary test the same queries (scenes, open query set, hard families), and varies every other choice on scenes with
-contacts (`cscd accuracy`). Writes the record, and the tables, charts and page of `scripts/figures accuracy`, to a new folder
-results/DATE-MACHINE-COMMIT-accuracy. Installs what is missing from Debian's packages, and takes some ten minutes on 2 idle cores when
-everything is built.
+Asks every elementary test the same queries: of scenes, of the open query set, of hard families (`cscd accuracy`). Writes the record,
+and the tables, charts and page of `scripts/figures accuracy`, to a new folder results/DATE-MACHINE-COMMIT-accuracy. Installs what is
+missing from Debian's packages, and takes some ten minutes on 2 idle cores when everything is built.
 """
 import os
 import pathlib
