@@ -40,4 +40,4 @@ def run_kind(entry, description, usual=None):
     if rest and rest[0] in ("-h", "--help"):
         print(says(kinds[name]))
         sys.exit(0)
-    os.execve("/bin/bash", ["bash", str(kinds[name]), *rest], {**os.environ, "SCRIPT": sys.argv[0]})
+    os.execve("/bin/bash", ["bash", str(kinds[name]), *rest], {**os.environ, "CSCD_SCRIPT": sys.argv[0]})

@@ -2,6 +2,7 @@
 import argparse
 import contextlib
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -67,7 +68,7 @@ def git(*words, **options):
 def with_setup(command, **options):
     """Runs a line of bash that uses scripts/lib/setup.sh; the script ends where the line fails."""
     done = subprocess.run(["bash", "-euo", "pipefail", "-c", f'root=$PWD; source scripts/lib/setup.sh; {command}'], cwd=ROOT, text=True,
-                          **options)
+                          env={**os.environ, "CSCD_SCRIPT": pathlib.Path(sys.argv[0]).name}, **options)
     if done.returncode != 0:
         sys.exit(2)
     return done.stdout

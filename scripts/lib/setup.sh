@@ -16,7 +16,7 @@ packages_tests=(assimp-testmodels chromium clang-format pybind11-dev python3-dev
 packages_clang=(clang)
 
 say() { printf '\n== %s\n' "$*"; }
-die() { printf '%s: %s\n' "${SCRIPT:-${0##*/}}" "$*" >&2; exit 2; }  # scripts/lib/kinds.py sets SCRIPT
+die() { printf '%s: %s\n' "${CSCD_SCRIPT:-${0##*/}}" "$*" >&2; exit 2; }  # Python scripts set CSCD_SCRIPT
 
 # Installs those of the given packages that are missing; touches nothing when none is.
 install_packages() {
