@@ -38,7 +38,7 @@ endfunction()
 # Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
 set(CSCD_TIMED_ROOMS "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
 # Rooms that run once for each command. Optimising these takes longer than it saves.
-set(CSCD_BRIEF_ROOMS "^scenes/import(/|$)|^bench/(tables|compare)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/command_line|query/view|query/options|measure/record)$")
+set(CSCD_BRIEF_ROOMS "^bench/(tables|compare)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/command_line|query/view|query/options|measure/record)$")
 
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
