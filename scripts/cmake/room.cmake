@@ -35,8 +35,9 @@ function(cscd_compile_together target)
   endif()
 endfunction()
 
-# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
-set(CSCD_TIMED_ROOMS "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
+# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it. So is each
+# file of scenes/effects, because a program that lists some effects alone (scenes/alone) must be able to leave out the others.
+set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$|^scenes/effects$")
 # Rooms that run once for each command. Optimising these takes longer than it saves.
 set(CSCD_BRIEF_ROOMS "^bench/(tables|compare)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/command_line|query/view|query/options|measure/record)$")
 
@@ -70,7 +71,7 @@ function(cscd_room path)
     target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
     target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
     set(level full)
-    if(NOT path MATCHES "${CSCD_TIMED_ROOMS}")
+    if(NOT path MATCHES "${CSCD_ROOMS_FILE_BY_FILE}")
       cscd_compile_together(${room})
     endif()
     if(path MATCHES "${CSCD_BRIEF_ROOMS}")
