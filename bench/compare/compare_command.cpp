@@ -1,4 +1,4 @@
-#include <CLI/CLI.hpp>  // and not the application alone: tests of this room link what it refers to
+#include <CLI/App.hpp>
 #include <cstdio>
 #include <optional>
 

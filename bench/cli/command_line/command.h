@@ -3,7 +3,8 @@
 // The subcommands of `cscd`: each registers itself on the program and runs in its callback. A refused input
 // is an InputError (main prints its line, exit 2); a run that answers "no" leaves by ExitStatus.
 
-#include <CLI/App.hpp>
+// Whole, because a program that links any command links what CLI::App refers to.
+#include <CLI/CLI.hpp>
 
 namespace cscd::bench {
 
