@@ -140,7 +140,7 @@ TEST_F(CommandLine, SaysFirstWhatEachCommandDoes) {
     EXPECT_NE(head.find("Usage:"), std::string::npos) << command << "\n" << head;
     EXPECT_TRUE(std::isupper(static_cast<unsigned char>(head.front()))) << command << "\n" << head;
   }
-  EXPECT_GT(seen, 20u);
+  EXPECT_GT(seen, 15u);
 }
 
 TEST_F(CommandLine, TakesASceneFileFromAnyPath) {
