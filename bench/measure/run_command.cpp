@@ -99,7 +99,7 @@ Replay replay_of(const RunOptions& options, Input& input, const ReplayRequest& r
 
 Record measured(const RunOptions& options, Input& input, const Replay& replay) {
   if (options.cells.empty()) return execute(input, replay);
-  const std::vector<Cell> cells = divide(input, replay, options.cell_intervals);
+  const std::vector<RunCell> cells = divide(input, replay, options.cell_intervals);
   measure_cells(input, cells, {}, options.cells);
   return join(replay, cells, options.cells);
 }
@@ -154,7 +154,7 @@ bool run_all(const RunOptions& options) {
 bool work(const RunOptions& options) {
   const Worker worker = parse_worker(options.worker);
   Input input = open(options, options.request);
-  const std::vector<Cell> cells =
+  const std::vector<RunCell> cells =
       divide(input, replay_of(options, input, options.request), options.cell_intervals);
   const bool ok = measure_cells(input, cells, worker, options.cells);
   std::printf("worker %s is done; %zu of %zu cells have no result yet\n", options.worker.c_str(),

@@ -84,13 +84,13 @@ Worker parse_worker(const std::string& text) {
   throw InputError("--worker " + text + ": is no worker; write I/N with 1 <= I <= N, such as 1/3");
 }
 
-std::vector<Cell> divide(Input& input, const Replay& replay, std::size_t cell_intervals) {
+std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell_intervals) {
   const ordered_json content = content_of(input), code = code_version();
   const ChosenIntervals& all = replay.intervals;
-  std::vector<Cell> cells;
+  std::vector<RunCell> cells;
   for (std::size_t first = all.range.first; first < all.range.last; first += cell_intervals) {
     const IntervalRange range{first, std::min(first + cell_intervals, all.range.last)};
-    Cell cell{{}, replay};
+    RunCell cell{{}, replay};
     cell.replay.intervals = {range, within(all.verified, range), within(all.counted, range),
                              within(all.timed, range)};
     const ChosenIntervals& own = cell.replay.intervals;
@@ -104,19 +104,19 @@ std::vector<Cell> divide(Input& input, const Replay& replay, std::size_t cell_in
   return cells;
 }
 
-std::vector<const Cell*> missing_cells(std::span<const Cell> cells, const fs::path& folder) {
-  std::vector<const Cell*> missing;
+std::vector<const RunCell*> missing_cells(std::span<const RunCell> cells, const fs::path& folder) {
+  std::vector<const RunCell*> missing;
   std::error_code ignored;
-  for (const Cell& cell : cells)
+  for (const RunCell& cell : cells)
     if (!fs::exists(folder / cell.file_name, ignored)) missing.push_back(&cell);
   return missing;
 }
 
-bool measure_cells(Input& input, std::span<const Cell> cells, Worker worker, const fs::path& folder) {
+bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker, const fs::path& folder) {
   remove_forsaken_files(folder);
   bool ok = true;
   for (std::size_t i = worker.number - 1; i < cells.size(); i += worker.count) {
-    const Cell& cell = cells[i];
+    const RunCell& cell = cells[i];
     const fs::path path = folder / cell.file_name;
     if (fs::exists(path)) {
       ok = read_record(path).verification.ok() && ok;

@@ -13,7 +13,7 @@
 // a worker measures those cells of its share whose files are missing.
 namespace cscd::bench {
 
-struct Cell {
+struct RunCell {
   // The name of the result file. It holds a digest of everything that decides the result: the input's
   // content, the command line with all defaults, the intervals, the kind, and the version of the program.
   std::string file_name;
@@ -28,16 +28,17 @@ struct Worker {
 Worker parse_worker(const std::string& text);
 
 // Divides a replay into cells of `cell_intervals` intervals; the last cell may have fewer.
-std::vector<Cell> divide(Input& input, const Replay& replay, std::size_t cell_intervals);
+std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell_intervals);
 
 // The cells that have no result file in the folder.
-std::vector<const Cell*> missing_cells(std::span<const Cell> cells, const std::filesystem::path& folder);
+std::vector<const RunCell*> missing_cells(std::span<const RunCell> cells,
+                                          const std::filesystem::path& folder);
 
 // Measures the worker's cells that have no result file, and says on standard output which cell is done. A
 // result file, a run record, appears whole or not at all. Several workers may measure the same cell: the
 // first result is kept. Returns whether every strategy kept its promise in these cells. Throws OutputError if
 // the folder does not take a result.
-bool measure_cells(Input& input, std::span<const Cell> cells, Worker worker,
+bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker,
                    const std::filesystem::path& folder);
 
 }  // namespace cscd::bench

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kListedDifferences = 200;  // as many as a single run lists
 constexpr char kAgain[] = "; remove the file, and run the command again";
 
-Record read_result(const Cell& cell, const fs::path& path) {
+Record read_result(const RunCell& cell, const fs::path& path) {
   Record record = read_record(path);
   if (record.command != cell.replay.command || record.counted_intervals != cell.replay.intervals.counted ||
       record.timed_intervals != cell.replay.intervals.timed)
@@ -82,7 +82,7 @@ void add_instructions(const std::optional<double>& more, std::size_t more_interv
 }
 
 // `timed` is how many timed intervals `to` has already.
-void append(const StrategyRecord& more, const Cell& cell, const fs::path& path, std::size_t timed,
+void append(const StrategyRecord& more, const RunCell& cell, const fs::path& path, std::size_t timed,
             StrategyRecord& to) {
   append(more.preparation.distance_and_heat_ms, to.preparation.distance_and_heat_ms);
   append(more.preparation.decomposition_ms, to.preparation.decomposition_ms);
@@ -142,12 +142,12 @@ void leave_out_measurements(StrategyRecord& strategy) {
 
 }  // namespace
 
-Record join(const Replay& whole, std::span<const Cell> cells, const fs::path& folder) {
+Record join(const Replay& whole, std::span<const RunCell> cells, const fs::path& folder) {
   std::set<ordered_json> processes;
   fs::path first_path;
   Record joined;
   bool ok = true;
-  for (const Cell& cell : cells) {
+  for (const RunCell& cell : cells) {
     const fs::path path = folder / cell.file_name;
     Record next = read_result(cell, path);
     if (next.environment.contains("process")) processes.insert(next.environment["process"]);

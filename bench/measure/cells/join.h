@@ -13,6 +13,6 @@ namespace cscd::bench {
 // are joined, sums and maxima are taken of what is one number a run, and the environment is that of the first
 // cell. `whole` is the replay that was divided. Throws InputError if a result is missing, is not its cell's,
 // or comes from another build or, where there are times, from another machine than the others.
-Record join(const Replay& whole, std::span<const Cell> cells, const std::filesystem::path& folder);
+Record join(const Replay& whole, std::span<const RunCell> cells, const std::filesystem::path& folder);
 
 }  // namespace cscd::bench
