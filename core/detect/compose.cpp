@@ -20,6 +20,11 @@ namespace {
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
+// For the first contact alone, the interval is cut short where a contact is found this early in what is
+// looked at, while no more than this share of the descent is done. To look at the shorter interval then costs
+// less than the rest of the descent.
+constexpr double kWorthCutting = 1.0 / 8, kMostDone = 1.0 / 4;
+
 // So many triangle pairs are filtered together, and so many feature pairs are tested together. Either takes
 // some microseconds.
 constexpr std::size_t kFilteredTogether = 64, kAskedTogether = 16;
@@ -62,15 +67,37 @@ class PairTester : public TrianglePairSink {
     counts_ = {};
     met_.start_interval();
     earliest_ = 1;
+    last_ = 1;
+  }
+  // Lets the tester close once it has found a contact early in what is looked at.
+  void let_cut(bool may) { let_close(may && first_only_); }
+  // Where the tester has closed: opens it again, for pairs that touch no later than at the time returned.
+  // What touches at the earliest time found so far is among them.
+  std::optional<double> next_cut() {
+    if (!closed()) return std::nullopt;
+    reopen();
+    let_close(true);
+    begin_again();
+    return last_ = cut();
   }
   // Tests what is left of the interval.
   void finish_interval() {
+    let_close(false);
     flush();
     if (!options_.assignment) return;
     clock_.enter(Stage::elementary);
     test_assigned(options_.assignment->always());
   }
   const PairCounts& counts() const { return counts_; }
+
+  bool is_enough(double t) override {
+    flush();
+    return first_only_ && cut() <= t;
+  }
+  void begin_again() override {
+    flush();
+    if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
+  }
 
  private:
   void take(const std::vector<TrianglePair>& whole) override {
@@ -93,6 +120,12 @@ class PairTester : public TrianglePairSink {
     }
     clock_.enter(Stage::traversal);
   }
+
+  void consider(double done) override {
+    if (may_close() && done <= kMostDone && cut() < kWorthCutting * last_) close();
+  }
+  // Whatever touches at the earliest time found so far touches before this time.
+  double cut() const { return std::min(1.0, earliest_ + 2 * kTimeSlack); }
 
   void test_start(const std::vector<TrianglePair>& block) {
     clock_.enter(Stage::start);
@@ -169,7 +202,7 @@ class PairTester : public TrianglePairSink {
                  [&](std::size_t first, std::size_t last, std::size_t part) {
                    lists_[part].clear();
                    filter(mesh_, *motion_, carried.subspan(first, last - first), test_.single_precision_first,
-                          lists_[part]);
+                          first_only_ ? cut() : 1, lists_[part]);
                  });
     for (const std::vector<FeaturePair>& list : std::span(lists_).first(ranges))
       left_.insert(left_.end(), list.begin(), list.end());
@@ -240,6 +273,7 @@ class PairTester : public TrianglePairSink {
   Tests<MovingVertexFace> vertex_faces_;         // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
+  double last_ = 1;      // the interval is looked at until this time
   struct Bounded {
     float before;  // time before which the two certainly do not touch
     TrianglePair pair;
@@ -271,8 +305,17 @@ class ComposedDetector : public Detector {
     const bool classified = culler_->classify(known);
     clock_.enter(Stage::traversal);
     Report report;
+    tester_.let_cut(first_only_ && culler_->can_shorten());
     report.cull = culler_->cull(tester_);
     tester_.finish_interval();
+    while (const std::optional<double> last = tester_.next_cut()) {
+      clock_.enter(Stage::classify);
+      culler_->shorten(*last);
+      clock_.enter(Stage::traversal);
+      const CullCounts again = culler_->cull(tester_);
+      *report.cull.bvot += *again.bvot;
+      tester_.finish_interval();
+    }
     if (!out.contacts.empty() && !first_only_)
       if (const auto rest = culler_->cull_rest(tester_)) {
         *report.cull.bvot += *rest;

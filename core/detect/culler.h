@@ -34,8 +34,20 @@ class TrianglePairSink {
     if (!block_.empty()) take(block_);
     block_.clear();
   }
+  // Says that all pairs so far will be passed on once more.
+  virtual void begin_again() {}
   std::uint64_t count() const { return count_; }
   bool closed() const { return closed_; }
+  // Whether it may close before it has every pair. A culler then tells it now and then what share of the work
+  // is done.
+  bool may_close() const { return may_close_; }
+  void tell(double done) {
+    if (block_.size() < kWorthTaking) return;
+    flush();
+    consider(done);
+  }
+  // Says that all pairs that may touch until time t have been passed on. Returns whether that is enough.
+  virtual bool is_enough(double /*t*/) { return false; }
   void restart() {
     block_.clear();
     count_ = 0;
@@ -44,12 +56,16 @@ class TrianglePairSink {
 
  protected:
   void close() { closed_ = true; }
+  void reopen() { closed_ = false; }
+  void let_close(bool may) { may_close_ = may; }
 
  private:
+  static constexpr std::size_t kWorthTaking = 256;  // fewer pairs are not worth a look at them by themselves
+  virtual void consider(double /*done*/) {}
   virtual void take(const std::vector<TrianglePair>& block) = 0;
   std::vector<TrianglePair> block_;
   std::uint64_t count_ = 0;
-  bool closed_ = false;
+  bool closed_ = false, may_close_ = false;
 };
 
 // A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions
@@ -73,6 +89,11 @@ class Culler {
   // because it looked for the first contact alone. Returns the number of overlap tests; nothing where cull()
   // has kept all contacts. Stage `traversal`.
   virtual std::optional<std::uint64_t> cull_rest(TrianglePairSink& /*sink*/) { return std::nullopt; }
+  // Returns whether the interval can be cut short (shorten()). Asked after classify().
+  virtual bool can_shorten() const { return false; }
+  // Cuts the interval short: refit() and classify() for its beginning alone, from t = 0 to `last`, in (0, 1].
+  // cull() then passes on every pair that is not proven apart until then. Stage `classify`.
+  virtual void shorten(double /*last*/) {}
   // Forgets all intervals (Detector::forget).
   virtual void forget() {}
   // Returns what preparation has found out (Detector::saved_preparation).

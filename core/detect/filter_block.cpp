@@ -97,7 +97,7 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Feat
 }
 
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
-            bool single_precision_first, std::vector<FeaturePair>& left) {
+            bool single_precision_first, double last, std::vector<FeaturePair>& left) {
   // Filter many triangle pairs first, and append their feature pairs afterwards. A branch on the result of
   // one triangle pair would make the next one wait.
   constexpr std::size_t kTogether = 64;
@@ -107,7 +107,7 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
     for (const auto& [pair, places] : pairs.first(std::min(kTogether, pairs.size()))) {
       const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
       std::optional<CarriedPlaces> kept;
-      if (single_precision_first) kept = not_filtered_in_single(motion, a, b, places);
+      if (single_precision_first) kept = not_filtered_in_single(motion, a, b, places, last);
       if (!kept) kept = not_filtered(motion, a, b, places);
       rest[count++] = {pair, *kept};
     }

@@ -15,9 +15,10 @@ namespace cscd {
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 // Does the same for everything that pairs of triangles carry, with all that two triangles carry at once. If
-// so wished, single precision goes first, which is faster and gives the same answer.
+// so wished, single precision goes first, which is faster and gives the same answer. It may then look at the
+// interval from t = 0 to `last` alone, and drop feature pairs that touch later only.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
-            bool single_precision_first, std::vector<FeaturePair>& left);
+            bool single_precision_first, double last, std::vector<FeaturePair>& left);
 
 // Returns the feature pairs of two triangles, among those at some places, that the filter
 // (core/elementary/question/filter.h) cannot prove apart. The six vertices are loaded once; what fifteen
@@ -26,8 +27,11 @@ CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triang
 // Single-precision version of not_filtered(). Evaluates all fifteen feature pairs of two triangles side by
 // side, with bounds on what single precision loses. Returns nothing if rounding leaves any of them undecided;
 // the caller then asks not_filtered().
+//
+// With `last` below 1, in (0, 1], looks at the interval from t = 0 to that time alone: drops a feature pair
+// only if the pair certainly does not touch until then, and keeps what it cannot decide.
 std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
-                                                    const Triangle& b, CarriedPlaces places);
+                                                    const Triangle& b, CarriedPlaces places, double last = 1);
 
 // Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
 // et al. 2010), one pair at a time. This is the filter of the pipeline `published`. It may drop features that

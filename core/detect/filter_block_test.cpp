@@ -81,7 +81,7 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
         filter(mesh, motion, features, expected);
         for (const bool single_precision_first : {false, true}) {
           left.clear();
-          filter(mesh, motion, std::span(&pairs, 1), single_precision_first, left);
+          filter(mesh, motion, std::span(&pairs, 1), single_precision_first, 1, left);
           ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
         }
         dropped += features.size() - left.size();

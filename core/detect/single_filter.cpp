@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -24,26 +25,45 @@ struct Corners {
     Float16 first, last;
   } end[2];
   float largest;  // absolute coordinate
+  float beyond;   // at the end of the whole interval, where it is cut short; otherwise 0
 
-  // Returns a bound of a coordinate's error: u times the largest coordinate, and the
-  // rounding of the difference in doubles.
-  float error() const { return 1.01F * 0x1p-24F * largest; }
+  // Returns a bound of a coordinate's error: u times the largest coordinate, and the rounding of differences
+  // in doubles. Where the interval is cut short, these round a few times more, but never by more than 2^-49
+  // times the largest coordinate of the whole interval.
+  float error() const { return 1.01F * 0x1p-24F * largest + 0x1p-49F * beyond; }
 };
 
-Corners::End load(std::span<const Vec3> x, const Triangle& a, const Triangle& b) {
+// Returns the corners as the first corner of the first triangle sees them: b0 and the others of `a`, then the
+// others of `b`.
+using Seen = std::array<Double4, 5>;
+Seen seen(std::span<const Vec3> x, const Triangle& a, const Triangle& b) {
   const Double4 from = row_of(x[+a[0]]);
-  const auto seen = [&](VertexId v) { return __builtin_convertvector(row_of(x[+v]) - from, Float4); };
-  const Float8 last = joined<Float8>(seen(b[1]), seen(b[2]));
-  return {joined<Float16>(joined<Float8>(Float4{}, seen(a[1])), joined<Float8>(seen(a[2]), seen(b[0]))),
+  const auto at = [&](VertexId v) { return row_of(x[+v]) - from; };
+  return {at(a[1]), at(a[2]), at(b[0]), at(b[1]), at(b[2])};
+}
+
+Corners::End narrowed(const Seen& seen) {
+  const auto row = [&](std::size_t i) { return __builtin_convertvector(seen[i], Float4); };
+  const Float8 last = joined<Float8>(row(3), row(4));
+  return {joined<Float16>(joined<Float8>(Float4{}, row(0)), joined<Float8>(row(1), row(2))),
           joined<Float16>(last, last)};
 }
 
-Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b) {
-  Corners c{{load(motion.start(), a, b), load(motion.end(), a, b)}, 0};
-  c.largest = folded(
-      larger_size(larger_size(c.end[0].first, c.end[0].last), larger_size(c.end[1].first, c.end[1].last)),
-      [](auto x, auto y) { return x < y ? y : x; });
-  return c;
+float largest_of(const Corners::End& end) {
+  return folded(larger_size(end.first, end.last), [](auto x, auto y) { return x < y ? y : x; });
+}
+
+// The corners at t = 0 and at t = last.
+Corners corners_of(const Motion& motion, const Triangle& a, const Triangle& b, double last) {
+  const Seen start = seen(motion.start(), a, b);
+  Seen end = seen(motion.end(), a, b);
+  float beyond = 0;
+  if (last < 1) {
+    beyond = largest_of(narrowed(end));
+    for (std::size_t i = 0; i < end.size(); ++i) end[i] = start[i] + last * (end[i] - start[i]);
+  }
+  const Corners::End ends[2] = {narrowed(start), narrowed(end)};
+  return {{ends[0], ends[1]}, std::max(largest_of(ends[0]), largest_of(ends[1])), beyond};
 }
 
 // Returns one corner in each lane. The first fifteen of the sixteen lanes stand for the places.
@@ -160,9 +180,10 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
 }  // namespace
 
 std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
-                                                    const Triangle& b, CarriedPlaces places) {
-  const Corners c = corners_of(motion, a, b);
-  if (!(c.largest <= kLargest)) return std::nullopt;
+                                                    const Triangle& b, CarriedPlaces places, double last) {
+  const Corners c = corners_of(motion, a, b, last);
+  if (!(c.largest <= kLargest && c.beyond <= kLargest)) return std::nullopt;
+  const bool whole = last == 1;
   const float error = c.error();
   const VectorLanes16 from = points<3, 3, 3, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2>(c),
                       second = points<5, 5, 5, 2, 2, 2, 4, 5, 3, 4, 5, 3, 4, 5, 3, 3>(c),
@@ -175,14 +196,14 @@ std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const 
   const TripleProducts16 products =
       triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), error), error);
   const unsigned never = products.positive() | products.negative(), sometime = products.mixed();
-  if ((places & ~(never | sometime)) != 0) return std::nullopt;
-  const unsigned left = places & sometime;
+  if (whole && (places & ~(never | sometime)) != 0) return std::nullopt;
+  const unsigned left = places & ~never;
   if (left == 0) return CarriedPlaces{0};
 
   const VectorLanes16 seen[3] = {p, chosen(q, r), chosen(r, second - from)};
   const auto [apart, kept] = sideways(seen, alike(a, b), error);
-  if ((left & ~(apart | kept)) != 0) return std::nullopt;
-  return static_cast<CarriedPlaces>(left & kept);
+  if (whole && (left & ~(apart | kept)) != 0) return std::nullopt;
+  return static_cast<CarriedPlaces>(left & ~apart);
 }
 
 }  // namespace cscd

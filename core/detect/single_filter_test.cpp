@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/detect/filter_block.h"
+#include "core/elementary/catalogue.h"
 #include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
 
@@ -186,6 +187,42 @@ TEST(CarriedLook, LeavesOpenWhatIsBeyondItsRange) {
     return six;
   });
   EXPECT_GT(unlike.open, 150);
+}
+
+// Intervals that are cut short at the time of a contact, or at any other time. Far ends make the differences
+// that are cut as inexact as they can be. Mutations: the interval is cut at nine tenths of `last`; nothing is
+// added to the error for what lies beyond.
+TEST(CutShort, KeepsWhatTouchesUntilThen) {
+  const ElementaryTest& exact = *find_elementary_test("filtered_exact");
+  std::mt19937_64 random(7);
+  std::size_t kept = 0, dropped = 0, later = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double speed = i % 2 ? 0.3 : 3e7, size = i % 2 ? 1 : 1e-3;
+    std::vector<Vec3> start(6), end(6);
+    for (std::size_t v = 0; v < 6; ++v) start[v] = any(random, size), end[v] = start[v] + any(random, speed);
+    const TriangleMesh mesh({test::corners(0, 1, 2), test::corners(3, 4, 5)}, 6);
+    const Motion motion(start, end);
+    const TrianglePair pair{TriangleId{0}, TriangleId{1}};
+    std::array<double, 15> time;
+    for (std::size_t k = 0; k < 15; ++k) {
+      const Answer answer = ask(exact, mesh, motion, carried(mesh, pair, k));
+      time[k] = answer.verdict == Verdict::contact ? answer.time : 2;
+    }
+    for (std::size_t cut = 0; cut < 15; ++cut) {
+      if (time[cut] >= 1) continue;
+      const double last = std::min(1.0, time[cut] + 0x1p-47);
+      const auto left =
+          not_filtered_in_single(motion, mesh.corners(pair.a), mesh.corners(pair.b), kAllCarried, last);
+      if (!left) continue;
+      for (std::size_t k = 0; k < 15; ++k) {
+        const bool is_kept = *left >> k & 1;
+        ASSERT_TRUE(is_kept || time[k] > last) << i << " " << k << " until " << last;
+        kept += is_kept, dropped += !is_kept, later += !is_kept && time[k] <= 1;
+      }
+    }
+  }
+  EXPECT_GT(dropped, kept);
+  EXPECT_GT(later, 1000u) << "what touches later is dropped";
 }
 
 }  // namespace

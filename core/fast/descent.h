@@ -98,6 +98,8 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   void split(NodePair at, std::vector<NodePair>& below);
   // The number of overlap tests in this interval so far.
   std::uint64_t tests() const { return tests_; }
+  // From here on, stops after so many overlap tests of the interval.
+  void stop_after(std::uint64_t tests) { most_tests_ = tests; }
 
  private:
   enum class Star : std::uint8_t { unknown, flat, uncertain };
@@ -139,6 +141,9 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   std::uint64_t tests_ = 0, most_tests_ = 0;
 };
 
+// A pair of triangles that is passed on to the elementary test costs about as much as so many overlap tests.
+inline constexpr std::uint64_t kTestsOfPair = 40;
+
 // The descent of one interval by a team of threads. The descent from the root is split into pairs of nodes,
 // in the order of the descent, and ranges of these are shared out. Each thread has its own scratch memory,
 // and each range its own list of pairs of triangles. The lists are joined in order, so the sink sees the same
@@ -152,6 +157,12 @@ class SharedDescent {
   // of `grid`. A descent that takes more than `most` tests may stop, and has then passed on only some pairs.
   std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
                     std::uint64_t most = kAnyNumber);
+  // Does what run() does, for a sink that may close: tells it now and then what share of the descent is done,
+  // and stops once it is closed. `most` bounds the number of tests, and counts each pair that is passed on as
+  // kTestsOfPair of them. A descent that would take more stops, and returns more than `most`. What is passed
+  // on, and the number of tests, does not depend on the number of threads.
+  std::uint64_t run_until_closed(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
+                                 std::uint64_t most = kAnyNumber);
   static constexpr std::uint64_t kAnyNumber = std::numeric_limits<std::uint64_t>::max();
 
  private:
@@ -159,6 +170,11 @@ class SharedDescent {
    public:
     KeptPairs() : TrianglePairSink(1 << 9) {}
     std::vector<TrianglePair> pairs;
+    std::uint64_t cost() const { return kTestsOfPair * count(); }
+    void clear() {
+      pairs.clear();
+      restart();
+    }
 
    private:
     void take(const std::vector<TrianglePair>& block) override {
@@ -166,13 +182,15 @@ class SharedDescent {
     }
   };
   void warm_cache() const;
-  void split_into_subtrees();
-  void pass_on_in_order(TrianglePairSink& sink);
+  void split_into_subtrees(std::size_t ranges);
+  std::span<const NodePair> subtrees_of(std::size_t range, std::size_t ranges) const;
+  static void pass_on(KeptPairs& kept, TrianglePairSink& sink);
 
   const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
-  std::deque<KeptPairs> kept_;  // [ranges]: the pairs that a range passed on
+  std::deque<KeptPairs> kept_;           // [ranges]: the pairs that a range passed on
+  std::vector<std::uint64_t> tests_of_;  // [ranges]: overlap tests, of a descent that may stop
   std::vector<NodePair> subtrees_, next_;
   std::uint64_t tests_ = 0;  // overlap tests of the last interval
 };

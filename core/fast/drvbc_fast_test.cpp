@@ -1,5 +1,6 @@
 #include "core/fast/drvbc_fast.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -101,6 +102,59 @@ TEST(DrvbcFast, FindsTheSameWithoutAnyOfItsIdeas) {
 TEST(DrvbcFast, NeedsAThread) {
   const Scene scene(0);
   for (const int threads : {0, -1}) EXPECT_THROW(make_drvbc_fast(scene.setup(threads)), InputError);
+}
+
+// A tube whose vertices fly apart, so that thousands of features touch. Mutations: the interval is cut a
+// little too early; pairs are not passed on again after the cut; the number of threads decides where it is.
+TEST(CutShort, FindsTheSameFirstContactForLess) {
+  std::uint64_t short_tests = 0, whole_tests = 0;
+  for (int seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    // Short descents are not stopped; a small surface flies so far that it is looked at in parts.
+    const bool far = seed % 4 == 0;
+    test::Shape shape = far ? test::uneven_tube(12, 70, 15, [](double) { return 0.8; })
+                            : test::uneven_tube(48, 180, 15, [](double) { return 0.8; });
+    const Vec3 origin = seed % 2 ? Vec3::Zero() : Vec3(3e4, -2e4, 1e5);
+    const double scale = seed % 3 ? 1 : 1e-3;
+    for (Vec3& p : shape.positions) p = origin + scale * p;
+    const TriangleMesh mesh = shape.mesh();
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::vector<Vec3> end;
+    for (const Vec3& p : shape.positions)
+      end.push_back(p + scale * (far ? 30 : 0.3) * Vec3(unit(random), unit(random), unit(random)));
+    const Motion motion(shape.positions, end);
+    for (const bool complete : {false, true}) {
+      const auto found = [&](bool first, int threads, std::uint32_t long_descent, Report& report) {
+        StrategyInput setup{mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact"), threads};
+        setup.first_only = first;
+        ContactSet contacts;
+        report = make_drvbc_fast(setup, {.long_descent = long_descent, .complete = complete})
+                     .detector->detect({.motion = motion, .starts_embedded = true}, contacts);
+        contacts.sort();
+        keep_first(contacts);
+        return contacts.contacts;
+      };
+      Report all, cut, on_two, whole;
+      const std::uint32_t usual = DrvbcFastOptions().long_descent;
+      const std::vector<Contact> truth = found(false, 1, usual, all);
+      ASSERT_FALSE(truth.empty());
+      const auto same = [&](const std::vector<Contact>& contacts) {
+        return std::ranges::equal(contacts, truth, [](const Contact& a, const Contact& b) {
+          return a.pair == b.pair && a.time == b.time;
+        });
+      };
+      EXPECT_TRUE(same(found(true, 1, usual, cut)));
+      EXPECT_TRUE(same(found(true, 2, usual, on_two)));
+      EXPECT_TRUE(same(found(true, 1, DrvbcFastOptions::kNever, whole)));
+      EXPECT_EQ(*on_two.cull.bvot, *cut.cull.bvot);
+      EXPECT_EQ(on_two.cull.pctp, cut.cull.pctp);
+      EXPECT_EQ(on_two.pairs.elementary_tests, cut.pairs.elementary_tests);
+      short_tests += *cut.cull.bvot;
+      whole_tests += *whole.cull.bvot;
+    }
+  }
+  EXPECT_LT(2 * short_tests, whole_tests);
 }
 
 }  // namespace

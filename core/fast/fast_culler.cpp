@@ -6,10 +6,11 @@
 namespace cscd::fast {
 namespace {
 
-constexpr std::size_t kRange = 512;        // patches that are looked at together, 20 microseconds of work
-constexpr std::size_t kCappedRange = 128;  // patches where caps are looked at too
-constexpr std::size_t kAhead = 2;          // positions are fetched so many patches before the look
-constexpr std::size_t kSampled = 256;      // about so many patches are asked how far they move
+constexpr std::size_t kRange = 512;           // patches that are looked at together, 20 microseconds of work
+constexpr std::size_t kCappedRange = 128;     // patches where caps are looked at too
+constexpr std::size_t kAhead = 2;             // positions are fetched so many patches before the look
+constexpr std::size_t kSampled = 256;         // about so many patches are asked how far they move
+constexpr std::size_t kWorthStopping = 1024;  // patches; the descent of fewer is too short to be stopped
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const StrategyInput& setup, const Covers& covers,
@@ -42,6 +43,7 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
 
 void FastCuller::refit(const Motion& motion) {
   motion_ = motion;
+  last_ = 1;
   positions_.update(motion, team_);
   grid_ = Grid(positions_.error());
 }
@@ -89,13 +91,46 @@ std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
 std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
   if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known()) {
     const Moved moved = move_apart();
-    // A position in between, start + t (end - start), rounds three times. Far from the origin it may be off
-    // by so much that the grid's steps are wider than patches, and then nothing is proven apart.
-    rounding_ = 0x1p-50 * positions_.largest_in_scene();
-    const bool can_tell = Grid(positions_.error_beside(rounding_)).steps() * moved.width >= 1;
-    if (moved.far() && can_tell) return cull_parts(sink);
+    if (moved.far() && can_tell_in_between(moved)) {
+      if (!sink.may_close()) {
+        rounding_ = error_in_between();
+        return cull_parts(sink, false);
+      }
+      const std::uint64_t most = options_.long_descent * patch_count();
+      tests_ = descent_.run_until_closed(bounds_, grid_, sink, most);
+      const std::uint64_t tests = *tests_;
+      if (sink.closed() || tests <= most) return tests;
+      sink.begin_again();
+      rounding_ = error_in_between();
+      return tests + cull_parts(sink, true);
+    }
   }
-  return *(tests_ = descent_.run(bounds_, grid_, sink));
+  const bool may_stop = sink.may_close() && patch_count() >= kWorthStopping;
+  return *(tests_ = may_stop ? descent_.run_until_closed(bounds_, grid_, sink)
+                             : descent_.run(bounds_, grid_, sink));
+}
+
+// Returns by how much a position in between, start + t (end - start), may be off: it rounds three times.
+double FastCuller::error_in_between() const {
+  return 0x1p-50 * positions_.largest_in_scene();
+}
+
+// Far from the origin, positions in between may be off by so much that the grid's steps are wider than
+// patches, and then nothing is proven apart.
+bool FastCuller::can_tell_in_between(const Moved& moved) const {
+  return Grid(positions_.error_beside(error_in_between())).steps() * moved.width >= 1;
+}
+
+bool FastCuller::can_shorten() const {
+  return options_.long_descent != DrvbcFastOptions::kNever && positions_.known() &&
+         can_tell_in_between(move_apart());
+}
+
+void FastCuller::shorten(double last) {
+  rounding_ = error_in_between();
+  last_ = last;
+  tests_.reset();  // covers stay as they are within an interval
+  begin({0, kFinest});
 }
 
 // How far places of the surface move apart, on the average.
@@ -121,31 +156,50 @@ FastCuller::Moved FastCuller::move_apart() const {
   return {way / samples, width / samples};
 }
 
-// The parts pass on a pair of triangles again and again, so pairs are collected first.
-std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
+// The parts pass on a pair of triangles again and again, so pairs are collected first: from all parts, or,
+// where the sink may close, up to the first part after which it needs no more. `is_long` says that the
+// descent of the whole interval is known to be long.
+std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink, bool is_long) {
   found_.pairs.clear();
-  use_whole_step_ = false;
-  std::uint64_t tests = cull_part({0, kFinest});
+  passed_on_ = 0;
+  use_whole_step_ = enough_ = false;
+  const Part whole{0, kFinest};
+  const std::uint64_t tests = is_long ? cull_halves(whole, sink) : cull_part(whole, sink);
   if (use_whole_step_) {
-    rounding_ = 0;  // both ends of the interval are given
-    begin({0, kFinest});
-    found_.pairs.clear();
+    if (last_ == 1) rounding_ = 0;  // both ends of the interval are given
+    begin(whole);
+    sink.begin_again();
     return tests + *(tests_ = descent_.run(bounds_, grid_, sink));
   }
-  for (TrianglePair& pair : found_.pairs)
-    if (pair.b < pair.a) std::swap(pair.a, pair.b);
-  const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
-  std::ranges::sort(found_.pairs, {}, ends);
-  const auto same = [&](const TrianglePair& a, const TrianglePair& b) { return ends(a) == ends(b); };
-  found_.pairs.erase(std::unique(found_.pairs.begin(), found_.pairs.end(), same), found_.pairs.end());
-  for (const TrianglePair& pair : found_.pairs) sink.add(pair.a, pair.b);
+  pass_on_new(sink);
   return tests;
+}
+
+// Passes on the pairs that were found since the last call and that were not found before. Those that have
+// been passed on are sorted, at the front.
+void FastCuller::pass_on_new(TrianglePairSink& sink) {
+  const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
+  const auto same = [&](const TrianglePair& a, const TrianglePair& b) { return ends(a) == ends(b); };
+  std::vector<TrianglePair>& pairs = found_.pairs;
+  const auto first_new = pairs.begin() + static_cast<std::ptrdiff_t>(passed_on_);
+  std::for_each(first_new, pairs.end(), [](TrianglePair& pair) {
+    if (pair.b < pair.a) std::swap(pair.a, pair.b);
+  });
+  std::ranges::sort(first_new, pairs.end(), {}, ends);
+  pairs.erase(std::unique(first_new, pairs.end(), same), pairs.end());
+  const auto known = [&](const TrianglePair& pair) {
+    return std::ranges::binary_search(pairs.begin(), first_new, ends(pair), {}, ends);
+  };
+  pairs.erase(std::remove_if(first_new, pairs.end(), known), pairs.end());
+  std::for_each(first_new, pairs.end(), [&](const TrianglePair& pair) { sink.add(pair.a, pair.b); });
+  std::ranges::inplace_merge(pairs.begin(), first_new, pairs.end(), {}, ends);
+  passed_on_ = pairs.size();
 }
 
 // Collects the pairs of a part that has been looked at, and returns the number of overlap tests. A part in
 // which the surface moves far is halved if its descent and its pairs cost too much.
-std::uint64_t FastCuller::cull_part(const Part& part) {
-  if (use_whole_step_) return 0;
+std::uint64_t FastCuller::cull_part(const Part& part, TrianglePairSink& sink) {
+  if (use_whole_step_ || enough_) return 0;
   const bool can_split = part.last - part.first > 1 && move_apart().far();
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
@@ -154,16 +208,26 @@ std::uint64_t FastCuller::cull_part(const Part& part) {
   found_.flush();
   if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) {
     use_whole_step_ = found_.pairs.size() > kMostCollected;
+    if (sink.may_close() && !use_whole_step_) {
+      pass_on_new(sink);
+      enough_ = sink.is_enough(last_ * part.last / kFinest);
+    }
     return *tests_;
   }
   found_.pairs.resize(before);
-  std::uint64_t tests = std::min(*tests_, most);  // how many more were made depends on the number of threads
+  return std::min(*tests_, most)  // how many more were made depends on the number of threads
+         + cull_halves(part, sink);
+}
+
+std::uint64_t FastCuller::cull_halves(const Part& part, TrianglePairSink& sink) {
+  std::uint64_t tests = 0;
   tests_.reset();
   const unsigned middle = (part.first + part.last) / 2;
   for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
+    if (enough_) break;
     begin(half);
     use_whole_step_ |= !positions_.known();  // every pair of triangles would be collected
-    tests += cull_part(half);
+    tests += cull_part(half, sink);
   }
   return tests;
 }
@@ -173,9 +237,9 @@ void FastCuller::begin(const Part& part) {
   const std::span<const Vec3> start = motion_->start(), end = motion_->end();
   const auto at = [&](unsigned time, std::vector<Vec3>& positions) {
     if (time == 0) return start;
-    if (time == kFinest) return end;
+    if (time == kFinest && last_ == 1) return end;
     positions.resize(start.size());
-    const double t = static_cast<double>(time) / kFinest;
+    const double t = last_ * time / kFinest;
     for (std::size_t v = 0; v < start.size(); ++v) positions[v] = start[v] + t * (end[v] - start[v]);
     return std::span<const Vec3>(positions);
   };

@@ -18,9 +18,6 @@
 
 namespace cscd::fast {
 
-// A pair of triangles that is passed on to the elementary test costs about as much as so many overlap tests.
-inline constexpr std::uint64_t kTestsOfPair = 40;
-
 // The culler behind all strategies that make_drvbc_fast (drvbc_fast.h) prepares. An interval takes one pass
 // over all vertices (refit), one pass over all patches (classify), and a descent to the pairs of triangles
 // that nothing proves apart (cull), all three on as many threads as the set-up asks for.
@@ -51,6 +48,8 @@ class FastCuller : public Culler {
   bool classify(const Step& step) override;
   CullCounts cull(TrianglePairSink& sink) override;
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
+  bool can_shorten() const override;
+  void shorten(double last) override;
   void forget() override;
   // Returns nothing after an exception has broken off a change of clusters, until the next interval.
   std::vector<std::byte> saved_preparation() const override {
@@ -65,7 +64,7 @@ class FastCuller : public Culler {
   std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
 
  private:
-  // A part of the interval, from t = first / kFinest to last / kFinest.
+  // A part of the interval that is looked at, from t = last_ first / kFinest to last_ last / kFinest.
   struct Part {
     unsigned first, last;
   };
@@ -85,9 +84,13 @@ class FastCuller : public Culler {
     bool far() const { return way > width; }
   };
   Moved move_apart() const;
+  double error_in_between() const;
+  bool can_tell_in_between(const Moved& moved) const;
   std::uint64_t descend(TrianglePairSink& sink);
-  std::uint64_t cull_parts(TrianglePairSink& sink);
-  std::uint64_t cull_part(const Part& part);
+  std::uint64_t cull_parts(TrianglePairSink& sink, bool is_long);
+  std::uint64_t cull_part(const Part& part, TrianglePairSink& sink);
+  std::uint64_t cull_halves(const Part& part, TrianglePairSink& sink);
+  void pass_on_new(TrianglePairSink& sink);
   void begin(const Part& part);
   void look_at(const Motion& motion);
   void look(std::size_t patch);
@@ -110,11 +113,14 @@ class FastCuller : public Culler {
   std::optional<AdaptiveCover> following_;
   std::optional<std::uint64_t> tests_;  // that the last interval or part took; none before the first one
   std::optional<Motion> motion_;
+  double last_ = 1;  // the interval is looked at from t = 0 to this time
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
   double rounding_ = 0;          // by how much positions in between are off
   bool use_whole_step_ = false;  // whether the interval has to be looked at as a whole
+  bool enough_ = false;          // whether the sink needs no pairs of later parts
   Found found_;
+  std::size_t passed_on_ = 0;  // of the pairs found, how many the sink has
 };
 
 }  // namespace cscd::fast

@@ -9,6 +9,16 @@ namespace {
 // The work below a pair of nodes differs widely. There are enough pairs in a range that the ranges even out,
 // and enough ranges that nobody waits long for the last one.
 constexpr std::size_t kRangesAThread = 16, kPairsARange = 8;
+// A descent that may stop has so many ranges, on any number of threads, and looks after each whether it may.
+constexpr unsigned kStopBits = 6;
+constexpr std::size_t kStops = 1 << kStopBits;
+// Returns the range that comes at a place in the order, which reverses the bits of the place: the first few
+// ranges are then from all over the surface.
+std::size_t place_of(std::size_t i) {
+  std::size_t reversed = 0;
+  for (unsigned bit = 0; bit < kStopBits; ++bit) reversed |= (i >> bit & 1) << (kStopBits - 1 - bit);
+  return reversed;
+}
 
 // A descent that made so many tests for each patch has met nearly all patches, and the next descent will too.
 constexpr std::size_t kTestsWhereAllAreMet = 32;
@@ -25,7 +35,7 @@ constexpr std::uint64_t kTestsWorthWaking = 20'000;
 
 SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
     : input_(input), team_(team), by_thread_(team.threads(), PatchDescent(input)) {
-  if (team.threads() > 1) kept_.resize(kRangesAThread * team.threads());
+  if (team.threads() > 1) kept_.resize(std::max(kStops, kRangesAThread * team.threads()));
 }
 
 std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
@@ -36,19 +46,57 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
                     [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
   if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) warm_cache();
   subtrees_.assign(1, {0, 0});
-  if (kept_.empty()) {
+  const std::size_t ranges = team_.threads() > 1 ? kRangesAThread * team_.threads() : 0;
+  if (ranges == 0) {
     by_thread_[0].descend(subtrees_[0], sink);
   } else {
-    split_into_subtrees();
-    team.parallel_for(kept_.size(), [&](std::size_t range, std::size_t thread) {
-      const std::size_t first = subtrees_.size() * range / kept_.size();
-      const std::size_t last = subtrees_.size() * (range + 1) / kept_.size();
-      for (std::size_t i = first; i < last; ++i) by_thread_[thread].descend(subtrees_[i], kept_[range]);
+    split_into_subtrees(ranges);
+    team.parallel_for(ranges, [&](std::size_t range, std::size_t thread) {
+      for (const NodePair pair : subtrees_of(range, ranges)) by_thread_[thread].descend(pair, kept_[range]);
     });
-    pass_on_in_order(sink);
+    for (std::size_t range = 0; range < ranges; ++range) pass_on(kept_[range], sink);
   }
   tests_ = 0;
   for (const PatchDescent& descent : by_thread_) tests_ += descent.tests();
+  return tests_;
+}
+
+std::uint64_t SharedDescent::run_until_closed(std::span<const NodeBounds> bounds, const Grid& grid,
+                                              TrianglePairSink& sink, std::uint64_t most) {
+  const Team alone;
+  const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
+  team.parallel_for(by_thread_.size(), [&](std::size_t i, std::size_t) {
+    by_thread_[i].start_interval(bounds, grid, kAnyNumber);
+  });
+  if (kept_.size() < kStops) kept_.resize(kStops);
+  tests_of_.resize(kStops);
+  subtrees_.assign(1, {0, 0});
+  split_into_subtrees(kStops);
+  tests_ = by_thread_[0].tests();
+  std::uint64_t cost = tests_;
+  for (std::size_t first = 0; first < kStops; first += team.threads()) {
+    const std::size_t last = std::min(first + team.threads(), kStops);
+    team.parallel_for(last - first, [&](std::size_t i, std::size_t thread) {
+      const std::size_t range = place_of(first + i);
+      const std::uint64_t before = by_thread_[thread].tests();
+      if (most != kAnyNumber) by_thread_[thread].stop_after(before + most);
+      for (const NodePair pair : subtrees_of(range, kStops)) by_thread_[thread].descend(pair, kept_[range]);
+      tests_of_[range] = by_thread_[thread].tests() - before;
+    });
+    for (std::size_t i = first; i < last; ++i) {
+      KeptPairs& kept = kept_[place_of(i)];
+      tests_ += tests_of_[place_of(i)];
+      cost += tests_of_[place_of(i)] + kept.cost();
+      const bool too_long = cost > most;
+      if (!too_long) {
+        pass_on(kept, sink);
+        sink.tell(static_cast<double>(i + 1) / kStops);
+        if (!sink.closed()) continue;
+      }
+      for (; i < last; ++i) kept_[place_of(i)].clear();
+      return tests_ = too_long ? std::max(tests_, most + 1) : tests_;
+    }
+  }
   return tests_;
 }
 
@@ -61,9 +109,9 @@ void SharedDescent::warm_cache() const {
 }
 
 // Splits pairs of nodes level by level, until there are enough for all ranges.
-void SharedDescent::split_into_subtrees() {
+void SharedDescent::split_into_subtrees(std::size_t ranges) {
   bool any = true;
-  while (any && subtrees_.size() < kPairsARange * kept_.size()) {
+  while (any && subtrees_.size() < kPairsARange * ranges) {
     any = false;
     next_.clear();
     for (const NodePair pair : subtrees_) {
@@ -78,13 +126,15 @@ void SharedDescent::split_into_subtrees() {
   }
 }
 
-void SharedDescent::pass_on_in_order(TrianglePairSink& sink) {
-  for (KeptPairs& kept : kept_) {
-    kept.flush();
-    for (const TrianglePair& pair : kept.pairs) sink.add(pair.a, pair.b);
-    kept.pairs.clear();
-    kept.restart();
-  }
+std::span<const NodePair> SharedDescent::subtrees_of(std::size_t range, std::size_t ranges) const {
+  const std::size_t first = subtrees_.size() * range / ranges;
+  return std::span(subtrees_).subspan(first, subtrees_.size() * (range + 1) / ranges - first);
+}
+
+void SharedDescent::pass_on(KeptPairs& kept, TrianglePairSink& sink) {
+  kept.flush();
+  for (const TrianglePair& pair : kept.pairs) sink.add(pair.a, pair.b);
+  kept.clear();
 }
 
 }  // namespace cscd::fast
