@@ -26,7 +26,7 @@ void clusters(const ClusterOptions& options) {
   OutputFile output(options.output, options.force);
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
-  if (strategy == nullptr) strategy = &default_strategy(input);
+  if (strategy == nullptr) strategy = &default_strategy(input, true);
   if (options.frame >= input.clip->interval_count())
     throw InputError("--frame " + std::to_string(options.frame) + ": " + options.input +
                      " has intervals 0 to " + std::to_string(input.clip->interval_count() - 1) +

@@ -73,8 +73,8 @@ ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json)
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   input.threads = options.threads;
   ignore(input, options.ignored);
-  const Strategy& strategy =
-      options.strategy.empty() ? default_strategy(input) : strategy_named(options.strategy);
+  const Strategy& strategy = options.strategy.empty() ? default_strategy(input, options.answers.first)
+                                                      : strategy_named(options.strategy);
   input.use_bones = gets_bones(strategy, input.clip->interval_count());
   const IntervalRange range = parse_frames(options.frames, input);
   const std::size_t listed_pairs = most_start_pairs(options.start_pairs);

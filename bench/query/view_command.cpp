@@ -37,7 +37,7 @@ struct ViewOptions : ViewRequest {
 };
 
 std::vector<const Strategy*> chosen_strategies(const ViewRequest& options, const Input& input) {
-  if (options.strategies.empty()) return {&default_strategy(input)};
+  if (options.strategies.empty()) return {&default_strategy(input, options.answers.first)};
   std::vector<const Strategy*> chosen;
   for (const std::string& name : options.strategies) chosen.push_back(&strategy_named(name));
   return chosen;

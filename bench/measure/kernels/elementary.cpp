@@ -79,7 +79,7 @@ Queries of_scene(const std::string& scene, Source source) {
   kept = &result;
   Input input = open_input(scene);
   const StrategyInput setup = input.setup(kKeep);
-  const Strategy& strategy = source == Source::query ? default_strategy(input) : complete_reference();
+  const Strategy& strategy = source == Source::query ? default_strategy(input, true) : complete_reference();
   const Prepared prepared = strategy.make(setup);
   PlainCuller<Kdop16> culler(setup);
   ContactSet contacts;

@@ -171,7 +171,7 @@ TEST_P(Ignoring, LeavesAllOtherContactsOfRandomCharacters) {
     std::mt19937_64 random(seed);
     Input input = random_input(seed, seed % 3 == 0);
     const Strategy& strategy =
-        allows(input, strategy_named(name)) ? strategy_named(name) : default_strategy(input);
+        allows(input, strategy_named(name)) ? strategy_named(name) : default_strategy(input, true);
     IgnoreRequest request;
     if (input.rig && seed % 2 == 0) request.neighbours = static_cast<int>(random() % 2);
     if (seed % 4 != 2 || !request.neighbours) request.pairs.push_back(random_pair(input, random));

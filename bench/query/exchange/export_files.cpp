@@ -109,7 +109,7 @@ class Marker {
  public:
   explicit Marker(Input& input)
       : input_(input),
-        strategy_(default_strategy(input)),
+        strategy_(default_strategy(input, false)),
         elementary_(elementary_test_named("filtered_exact")),
         answerer_(prepared_input(input, strategy_), strategy_, elementary_, {}),
         observer_(strategy_.make(input.setup(elementary_))) {}

@@ -155,10 +155,11 @@ bool allows(const Input& input, const Strategy& strategy) {
   return !why_not(strategy, input.mesh, input.rig.has_value());
 }
 
-const Strategy& default_strategy(const Input& input) {
+const Strategy& default_strategy(const Input& input, bool first) {
   const Strategy* chosen = &complete_fallback();
+  const Guarantee wanted = first ? Guarantee::first_contact : Guarantee::all_from_embedded;
   for (const Strategy* strategy : strategies_in(""))
-    if (strategy->guarantee == Guarantee::first_contact && allows(input, *strategy)) chosen = strategy;
+    if (strategy->guarantee == wanted && allows(input, *strategy)) chosen = strategy;
   return *chosen;
 }
 

@@ -76,7 +76,9 @@ double frame_number(const Input& input, std::size_t frame);
 // Whether the input has what a strategy needs.
 bool allows(const Input& input, const Strategy& strategy);
 
-// The last first_contact row without a group that the input allows, or else the complete reference.
-const Strategy& default_strategy(const Input& input);
+// What answers where no strategy is named: a row that promises the first contact alone if `first` says that
+// no other is asked for, otherwise one that promises all of them. The last such row without a group that the
+// input allows, or else the complete fallback.
+const Strategy& default_strategy(const Input& input, bool first);
 
 }  // namespace cscd::bench
