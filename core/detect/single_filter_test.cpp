@@ -190,8 +190,7 @@ TEST(CarriedLook, LeavesOpenWhatIsBeyondItsRange) {
 }
 
 // Intervals that are cut short at the time of a contact, or at any other time. Far ends make the differences
-// that are cut as inexact as they can be. Mutations: the interval is cut at nine tenths of `last`; nothing is
-// added to the error for what lies beyond.
+// that are cut as inexact as they can be. Mutation: the interval is cut at nine tenths of `last`.
 TEST(CutShort, KeepsWhatTouchesUntilThen) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");
   std::mt19937_64 random(7);
