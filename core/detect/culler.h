@@ -34,19 +34,20 @@ class TrianglePairSink {
     if (!block_.empty()) take(block_);
     block_.clear();
   }
-  // Says that all pairs so far will be passed on once more.
+  // The culler calls this before it passes on all pairs of the interval once more.
   virtual void begin_again() {}
   std::uint64_t count() const { return count_; }
   bool closed() const { return closed_; }
-  // Whether it may close before it has every pair. A culler then tells it now and then what share of the work
-  // is done.
+  // Returns whether the sink may close before it has every pair. A culler then calls tell() now and then,
+  // with the share of its work that is done, in [0, 1].
   bool may_close() const { return may_close_; }
   void tell(double done) {
     if (block_.size() < kWorthTaking) return;
     flush();
     consider(done);
   }
-  // Says that all pairs that may touch until time t have been passed on. Returns whether that is enough.
+  // The culler calls this when it has passed on all pairs that may touch until time t. Returns whether the
+  // sink needs no others.
   virtual bool is_enough(double /*t*/) { return false; }
   void restart() {
     block_.clear();

@@ -25,11 +25,11 @@ struct Corners {
     Float16 first, last;
   } end[2];
   float largest;  // absolute coordinate
-  float beyond;   // at the end of the whole interval, where it is cut short; otherwise 0
+  float beyond;   // largest absolute coordinate at t = 1, where the interval is cut short; otherwise 0
 
   // Returns a bound of a coordinate's error: u times the largest coordinate, and the rounding of differences
-  // in doubles. Where the interval is cut short, these round a few times more, but never by more than 2^-49
-  // times the largest coordinate of the whole interval.
+  // in doubles. Where the interval is cut short, each coordinate at its end comes from the coordinates at
+  // t = 0 and t = 1, which rounds a few times more: by at most 2^-49 times `beyond`.
   float error() const { return 1.01F * 0x1p-24F * largest + 0x1p-49F * beyond; }
 };
 
