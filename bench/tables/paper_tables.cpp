@@ -28,7 +28,7 @@ std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::
       ordered_json own = column;
       for (auto& [key, value] : own.items())
         if (value.is_string()) value = replaced(value, "{strategy}", strategy);
-      const bool beside_itself = own.value("over", "") == own.at("strategy");
+      const bool beside_itself = own.value("over", "") == own.at("strategy").get<std::string>();
       if (!beside_itself) columns.push_back(std::move(own));
     }
   }

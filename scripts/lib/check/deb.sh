@@ -27,8 +27,13 @@ bare() {
   mmdebstrap --quiet --mode=root --variant=minbase "$suite" "$work/$1"
   mount -t proc proc "$work/$1/proc"  # where a program asks for its own place
   mounted+=("$work/$1/proc")
+  # Where a proxy signs what npm fetches, its certificate is needed in there, too.
+  [ -z "${NODE_EXTRA_CA_CERTS:-}" ] || cp "$NODE_EXTRA_CA_CERTS" "$work/$1/certificates"
 }
-inside() { local name=$1; shift; env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$work/$name" "$@"; }
+inside() {
+  local name=$1; shift
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root NODE_EXTRA_CA_CERTS=/certificates chroot "$work/$name" "$@"
+}
 
 if [ "${1:-}" = --debian ]; then
   echo "Makes two bare Debian $debian below ${TMPDIR:-/tmp} and builds in one of them: half an hour on 2 idle cores, 4 GB, gone"
@@ -47,7 +52,7 @@ install_packages "${packages_build[@]}" "${packages_compare[@]}" pybind11-dev py
 # The packages need what is named here, and none of the other test programs.
 cmake -S $root -B /b -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON
 mapfile -t tests < <(ninja -C /b -t targets all | grep -oE '^(core|library|baselines)[a-z_]*_test:' | tr -d :)
-ninja -C /b cscd cscd-import cscd_manual cscd_static cscd_shared cscd_python "${tests[@]}"
+ninja -k 0 -C /b cscd cscd-import cscd_manual cscd_static cscd_shared cscd_python "${tests[@]}"
 for test in "${tests[@]}"; do "/b/$test" --gtest_brief=1; done
 cd /b
 cpack -B /packages
