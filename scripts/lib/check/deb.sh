@@ -47,7 +47,7 @@ if [ "${1:-}" = --debian ]; then
 set -euo pipefail
 root=/cscd
 source $root/scripts/lib/setup.sh
-install_packages "${packages_build[@]}" "${packages_compare[@]}" pybind11-dev python3-dev python3-numpy dpkg-dev >/log 2>&1 ||
+install_packages "${packages_build[@]}" "${packages_compare[@]}" pybind11-dev python3-dev python3-numpy dpkg-dev file >/log 2>&1 ||
   { tail -n 20 /log; exit 1; }
 # The packages need what is named here, and none of the other test programs.
 cmake -S $root -B /b -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON
@@ -63,7 +63,7 @@ else
   echo "Installs what a build takes, mmdebstrap and dpkg-dev where they are missing; builds the program,"
   echo "and the library for each instruction set, unless a build is named; makes a Debian 12 below ${TMPDIR:-/tmp} (three minutes,"
   echo "some hundred megabytes to fetch, gone afterwards)."
-  install_packages "${packages_build[@]}" pybind11-dev python3-dev mmdebstrap dpkg-dev
+  install_packages "${packages_build[@]}" pybind11-dev python3-dev mmdebstrap dpkg-dev file
   if [ -z "$build" ]; then
     say "build"
     build=$root/build-deb
