@@ -17,7 +17,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/answer_json.h"
-#include "bench/query/answer/answer_summary.h"
+#include "bench/query/answer/answer_text.h"
 #include "bench/query/input/input.h"
 #include "bench/query/options/answer_options.h"
 #include "core/base/error.h"
@@ -63,63 +63,52 @@ std::size_t most_start_pairs(const std::string& text) {
   return count;
 }
 
-struct ClipAnswer {
-  json document;  // null unless it was asked for
-  bool collides = false;
-  IntervalVerdict verdict = IntervalVerdict::clear;
-};
-
-ClipAnswer answer_clip(const QueryOptions& options, Input input, bool with_json) {
+// Answers the chosen intervals of a clip, and keeps them if `keep_intervals` says so.
+ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceNames& names,
+                       bool keep_intervals) {
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
-  input.threads = options.threads;
-  ignore(input, options.ignored);
   const Strategy& strategy = options.strategy.empty() ? default_strategy(input, options.answers.first)
                                                       : strategy_named(options.strategy);
   input.use_bones = gets_bones(strategy, input.clip->interval_count());
   const IntervalRange range = parse_frames(options.frames, input);
-  const std::size_t listed_pairs = most_start_pairs(options.start_pairs);
   Watchdog watchdog = watchdog_of(options, input);
   if (!options.preparation.empty()) input.preparation = read_preparation(options.preparation);
   Answerer answerer(input, strategy, elementary, options.answers);
   if (!options.preparation.empty() && input.preparation.empty())
     write_preparation(options.preparation, answerer.saved_preparation(), strategy);
-  const SurfaceNames names(input);
-  AnswerSummary summary;
-  summary.preparation_ms = answerer.preparation_ms();
-  json intervals = json::array();
-  {
-    Progress progress("query " + options.input, range.last - range.first);
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      watchdog.restart();
-      const IntervalAnswer answer = answerer.answer(i);
-      const scenes::ClipInterval interval = input.clip->load(i);
-      summary.add(answer, interval.motion, names);
-      if (with_json) intervals.push_back(interval_json(input, names, answer, interval.motion, listed_pairs));
-      progress.advance();
-    }
+  ClipAnswer answer = prepared_answer(input, names, strategy, elementary, options.answers, answerer);
+  Progress progress("query " + options.input, range.last - range.first);
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    watchdog.restart();
+    IntervalAnswer interval = answerer.answer(i);
+    answer.summary.add(interval, input.clip->load(i).motion, names);
+    if (keep_intervals) answer.intervals.push_back(std::move(interval));
+    progress.advance();
   }
-  watchdog.restart();
-  const bool left_out = !options.answers.keep_rest_crossings;
   if (answerer.new_triangles() > 0)
     std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
                 options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());
-  std::printf("%s", summary_text(input, names, summary, answerer.rest_crossings(), left_out).c_str());
+  return answer;
+}
 
-  ClipAnswer result{nullptr, summary.collides(), summary.verdict()};
-  if (!with_json) return result;
-  result.document = {{"schema", kSchema},
-                     {"input", options.input},
-                     {"strategy", strategy.name},
-                     {"guarantee", to_string(strategy.guarantee)},
-                     {"elementary", elementary.name},
-                     {"threads", answerer.threads()},
-                     {"first_only", options.answers.first},
-                     {"rest_crossings", rest_json(input, names, answerer.rest_crossings(), left_out)},
-                     {"ignore", ignored_json(input)},
-                     {"summary", summary_json(input, summary)},
-                     {"intervals", std::move(intervals)}};
-  if (input.import) result.document["import"] = import_json(*input.import);
-  return result;
+// What was said of a clip, or of all clips of a file.
+struct Said {
+  IntervalVerdict verdict = IntervalVerdict::clear;  // of a clip that touches or crosses, if there is one
+  json document = nullptr;                           // unless it was asked for
+};
+
+Said say_clip(const QueryOptions& options, Input input, bool with_json) {
+  input.threads = options.threads;
+  ignore(input, options.ignored);
+  const SurfaceNames names(input);
+  const ClipAnswer answer = answer_clip(options, input, names, with_json);
+  std::printf("%s", clip_text(answer).c_str());
+  Said said{answer.summary.verdict()};
+  if (!with_json) return said;
+  said.document = clip_json(answer, most_start_pairs(options.start_pairs));
+  said.document["schema"] = kSchema;
+  said.document["input"] = options.input;
+  return said;
 }
 
 // "'walk', 'run', 'jump' and 2 more".
@@ -180,7 +169,7 @@ class AllVerdicts {
 
 // Answers the clips of a model file, one after the other. A clip of one pose moves nothing and is passed
 // over.
-ClipAnswer answer_all_clips(QueryOptions options, Input first, bool with_json) {
+Said say_all_clips(QueryOptions options, Input first, bool with_json) {
   const scenes::ImportReport seen = *first.import;
   if (!options.frames.empty())
     throw InputError("--frames " + options.frames + ": is for one clip, and " + options.input + " has " +
@@ -189,7 +178,8 @@ ClipAnswer answer_all_clips(QueryOptions options, Input first, bool with_json) {
     throw InputError("--preparation: is for one clip; name one with --clip (cscd inspect lists them)");
   std::printf("%s (%s)\n  %zu clips, %s\n%s", options.input.c_str(), seen.format.c_str(), seen.clips.size(),
               rate_text(seen).c_str(), surface_text(seen).c_str());
-  ClipAnswer all{{{"schema", kSchema}, {"input", options.input}, {"clips", json::array()}}};
+  Said all;
+  all.document = {{"schema", kSchema}, {"input", options.input}, {"clips", json::array()}};
   all.document["import"] = import_json(seen);
   all.document["import"]["clip"] = nullptr;  // none of them alone
   AllVerdicts verdicts;
@@ -201,10 +191,10 @@ ClipAnswer answer_all_clips(QueryOptions options, Input first, bool with_json) {
     options.model.import.clip.clear();
     options.model.import.clip_number = clip;
     const bool is_open = seen.chosen_clip == static_cast<long>(clip);
-    ClipAnswer one = answer_clip(
-        options, is_open ? std::move(first) : open_input(options.input, options.model), with_json);
+    Said one =
+        say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model), with_json);
     verdicts.add(seen.clips[clip].name, one.verdict);
-    all.collides = all.collides || one.collides;
+    if (collides(one.verdict)) all.verdict = one.verdict;
     if (with_json) all.document["clips"].push_back(std::move(one.document));
   }
   if (verdicts.answered() == 0)
@@ -218,7 +208,7 @@ ClipAnswer answer_all_clips(QueryOptions options, Input first, bool with_json) {
 
 // Without a name, all clips are asked about. The first that moves has then been opened, which tells how many
 // there are; a file of one clip is read once.
-ClipAnswer answer_input(const QueryOptions& options, bool with_json) {
+Said say_answers(const QueryOptions& options, bool with_json) {
   const bool all = options.model.import.clip == kAllClips && is_model_file(options.input);
   ModelOptions model = options.model;
   if (all) {
@@ -226,9 +216,9 @@ ClipAnswer answer_input(const QueryOptions& options, bool with_json) {
     model.import.survey = true;
   }
   Input input = open_input(options.input, model);
-  if (all || !input.clip_was_named) return answer_all_clips(options, std::move(input), with_json);
+  if (all || !input.clip_was_named) return say_all_clips(options, std::move(input), with_json);
   say_what_was_read(input, stdout);
-  return answer_clip(options, std::move(input), with_json);
+  return say_clip(options, std::move(input), with_json);
 }
 
 void query(QueryOptions options) {
@@ -238,12 +228,12 @@ void query(QueryOptions options) {
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
 
-  const ClipAnswer answer = answer_input(options, output.has_value());
+  const Said said = say_answers(options, output.has_value());
   if (output) {
     // Names of files and their text may hold anything: what is no UTF-8 is replaced.
-    output->commit(answer.document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    output->commit(said.document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   }
-  if (options.fail_on_contact && answer.collides) throw kContactFound;
+  if (options.fail_on_contact && collides(said.verdict)) throw kContactFound;
 }
 
 }  // namespace

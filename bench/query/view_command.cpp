@@ -84,9 +84,10 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   for (const Strategy* strategy : strategies) {
     watchdog.restart();
     input.use_bones = gets_bones(*strategy, input.clip->interval_count());
+    Answerer answerer(input, *strategy, elementary, options.answers);
+    ClipAnswer answer = prepared_answer(input, names, *strategy, elementary, options.answers, answerer);
     contestants.emplace_back(
-        new Contestant{Answerer(input, *strategy, elementary, options.answers),
-                       StrategyRecording(input, names, *strategy, elementary, clip.grid())});
+        new Contestant{std::move(answerer), StrategyRecording(std::move(answer), clip.grid())});
   }
   input.use_bones = true;  // strategies that do without take no notice
   {
@@ -108,21 +109,15 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   watchdog.restart();
 
   const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
-  const bool left_out = !options.answers.keep_rest_crossings;
   json rows = json::array();
-  for (std::size_t s = 0; s < contestants.size(); ++s) {
-    Contestant& contestant = *contestants[s];
-    contestant.recording.set_preparation(contestant.answerer.preparation_ms());
-    rows.push_back(contestant.recording.write(sections, "s" + std::to_string(s) + ".",
-                                              contestant.answerer.rest_crossings(), left_out));
-  }
-  const Contestant& first = *contestants.front();
+  for (std::size_t s = 0; s < contestants.size(); ++s)
+    rows.push_back(contestants[s]->recording.write(sections, "s" + std::to_string(s) + "."));
   std::printf("%s", rows[0]["text"].get<std::string>().c_str());
   json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
                  {"engine_colours", !options.strategies.empty()},
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
-                 {"rest", rest_json(input, names, first.answerer.rest_crossings(), left_out)},
+                 {"rest", rest_json(contestants.front()->recording.answer())},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
   return header;

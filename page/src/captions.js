@@ -8,7 +8,7 @@ import { many, markOf, VERDICTS } from "./words.js";
 export class Captions {
   constructor(recording) { this.recording = recording; }
 
-  // The sentences are made where the answers are (bench/query/answer/answer_summary.h).
+  // The sentences are made where the answers are (bench/query/answer/answer_text.h).
   sayVerdict({ summary, details }) {
     const bad = summary.touches + summary.intersects_at_start > 0, verdict = byId("verdict");
     verdict.className = bad ? "bad" : summary.undecided > 0 ? "" : "good";

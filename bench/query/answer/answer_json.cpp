@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/cli/output/report_json.h"
+#include "bench/query/answer/answer_text.h"
 #include "core/detect/contact_geometry.h"
 
 namespace cscd::bench {
@@ -92,21 +93,6 @@ json contact_json(const Input& input, const SurfaceNames& names, const Contact& 
   return out;
 }
 
-}  // namespace
-
-std::optional<double> second_of(const Input& input, const ClipMoment& moment) {
-  if (!input.import) return std::nullopt;
-  const std::size_t frames = input.clip->frame_count();
-  const double from = second_of_frame(*input.import, moment.interval, frames);
-  const double to = second_of_frame(*input.import, moment.interval + 1, frames);
-  return (1 - moment.time) * from + moment.time * to;
-}
-
-double frame_of(const Input& input, const ClipMoment& moment) {
-  const std::optional<double> seconds = second_of(input, moment);
-  return seconds ? frame_at(*input.import, *seconds) : static_cast<double>(moment.interval) + moment.time;
-}
-
 json moment_json(const Input& input, const ClipMoment& moment) {
   const std::optional<double> seconds = second_of(input, moment);
   return {{"interval", moment.interval},
@@ -115,12 +101,13 @@ json moment_json(const Input& input, const ClipMoment& moment) {
           {"seconds", seconds ? json(*seconds) : json()}};
 }
 
-json interval_json(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
-                   const Motion& motion, std::size_t most_start_pairs) {
+json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::size_t most_start_pairs) {
+  const Input& input = clip.input;
+  const Motion motion = input.clip->load(answer.index).motion;
   json contacts = json::array(), undecided = json::array(), start_pairs = json::array(), collides;
   for (const Contact& contact : answer.found.contacts)
     (contact.verdict == Verdict::contact ? contacts : undecided)
-        .push_back(contact_json(input, names, contact, motion));
+        .push_back(contact_json(input, clip.names, contact, motion));
   for (std::size_t i = 0; i < std::min(most_start_pairs, answer.start.pairs.size()); ++i)
     start_pairs.push_back({number(answer.start.pairs[i].first), number(answer.start.pairs[i].second)});
   if (answer.verdict != IntervalVerdict::undecided) collides = answer.verdict != IntervalVerdict::clear;
@@ -150,19 +137,76 @@ json interval_json(const Input& input, const SurfaceNames& names, const Interval
   return out;
 }
 
-json rest_json(const Input& input, const SurfaceNames& names, const Crossings& rest, bool left_out) {
-  json parts = json::array();
-  for (const auto& [pair, count] : pairs_by_part(names, input.mesh, rest))
-    parts.push_back({{"first", pair.first}, {"second", pair.second}, {"pairs", count}});
-  return {{"pairs", rest.total}, {"left_out", left_out}, {"parts", std::move(parts)}};
-}
-
+// What was asked to be ignored; null for nothing.
 json ignored_json(const Input& input) {
   if (!input.ignored) return nullptr;
   json pairs = json::array(), neighbours;
   for (const auto& [first, second] : input.ignored->names) pairs.push_back({first, second});
   if (input.ignored->neighbours) neighbours = *input.ignored->neighbours;
   return {{"pairs", std::move(pairs)}, {"neighbours", std::move(neighbours)}};
+}
+
+}  // namespace
+
+json rest_json(const ClipAnswer& answer) {
+  json parts = json::array();
+  for (const auto& [pair, count] : pairs_by_part(answer.names, answer.input.mesh, answer.rest))
+    parts.push_back({{"first", pair.first}, {"second", pair.second}, {"pairs", count}});
+  return {{"pairs", answer.rest.total}, {"left_out", answer.rest_left_out}, {"parts", std::move(parts)}};
+}
+
+json summary_json(const ClipAnswer& answer) {
+  const AnswerSummary& s = answer.summary;
+  json strategies = json::array(), met = json::array(), ignored = json::array(), first, worst;
+  for (const auto& [name, count] : s.strategies) strategies.push_back({{"name", name}, {"intervals", count}});
+  for (const auto& [names, count] : most_first(s.met))
+    met.push_back({{"first", names.first}, {"second", names.second}, {"intervals", count}});
+  for (const auto& [names, here] : s.ignored)
+    ignored.push_back({{"first", names.first},
+                       {"second", names.second},
+                       {"intervals", here.intervals},
+                       {"start_pairs", here.start_pairs},
+                       {"contacts", here.contacts}});
+  if (s.first) first = moment_json(answer.input, s.first->moment);
+  if (s.worst) {
+    worst = moment_json(answer.input, s.worst->moment);
+    worst["start_pairs"] = s.worst->start_pairs;
+    worst["contacts"] = s.worst->contacts;
+  }
+  return {{"verdict", to_string(s.verdict())},
+          {"sentence", verdict_sentence(answer)},
+          {"intervals", s.intervals()},
+          {"clear", s.count(IntervalVerdict::clear)},
+          {"touches", s.count(IntervalVerdict::touches)},
+          {"intersects_at_start", s.count(IntervalVerdict::intersects_at_start)},
+          {"undecided", s.count(IntervalVerdict::undecided)},
+          {"proven", s.proven},
+          {"ms",
+           {{"query", s.query_ms},
+            {"embedding", s.embedding_ms},
+            {"wall", s.wall_ms},
+            {"load", s.load_ms},
+            {"preparation", answer.preparation_ms}}},
+          {"with_left_out", s.with_left_out},
+          {"strategies", std::move(strategies)},
+          {"first", std::move(first)},
+          {"worst", std::move(worst)},
+          {"met", std::move(met)},
+          {"with_ignored", s.with_ignored},
+          {"ignored", std::move(ignored)}};
+}
+
+json clip_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
+  json intervals = json::array();
+  for (const IntervalAnswer& interval : answer.intervals)
+    intervals.push_back(interval_json(answer, interval, most_start_pairs));
+  json out = {{"strategy", answer.strategy.name},     {"guarantee", to_string(answer.strategy.guarantee)},
+              {"elementary", answer.elementary.name}, {"threads", answer.threads},
+              {"first_only", answer.first_only},      {"rest_crossings", rest_json(answer)},
+              {"ignore", ignored_json(answer.input)}, {"summary", summary_json(answer)},
+              {"intervals", std::move(intervals)}};
+  if (answer.input.import) out["import"] = import_json(*answer.input.import);
+  return out;
 }
 
 }  // namespace cscd::bench

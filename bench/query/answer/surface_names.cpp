@@ -115,19 +115,25 @@ TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const
   return second ? seconds.front() : firsts.front();
 }
 
-std::map<std::pair<std::string, std::string>, std::size_t> pairs_by_part(const SurfaceNames& names,
-                                                                         const TriangleMesh& mesh,
-                                                                         const Crossings& crossings) {
+std::map<NamePair, std::size_t> pairs_by_part(const SurfaceNames& names, const TriangleMesh& mesh,
+                                              const Crossings& crossings) {
   std::map<std::string, std::size_t> size;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     ++size[names.part_of(TriangleId{static_cast<std::int32_t>(t)})];
-  std::map<std::pair<std::string, std::string>, std::size_t> count;
+  std::map<NamePair, std::size_t> count;
   for (const CrossingPair& pair : crossings.pairs) {
     std::string a = names.part_of(pair.first), b = names.part_of(pair.second);
     if (size[a] > size[b] || (size[a] == size[b] && a > b)) std::swap(a, b);
     ++count[{std::move(a), std::move(b)}];
   }
   return count;
+}
+
+std::vector<std::pair<NamePair, std::size_t>> most_first(const std::map<NamePair, std::size_t>& counts) {
+  std::vector<std::pair<NamePair, std::size_t>> sorted(counts.begin(), counts.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return sorted;
 }
 
 }  // namespace cscd::bench

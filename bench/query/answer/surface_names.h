@@ -11,6 +11,8 @@
 // What people call the places of a surface: names from the model file where there is one.
 namespace cscd::bench {
 
+using NamePair = std::pair<std::string, std::string>;
+
 class SurfaceNames {
  public:
   // `input` must outlive it.
@@ -40,8 +42,9 @@ class SurfaceNames {
 
 // How many pairs of triangles join two parts: ("eye_l", "head") to 96. The part with fewer triangles comes
 // first.
-std::map<std::pair<std::string, std::string>, std::size_t> pairs_by_part(const SurfaceNames& names,
-                                                                         const TriangleMesh& mesh,
-                                                                         const Crossings& crossings);
+std::map<NamePair, std::size_t> pairs_by_part(const SurfaceNames& names, const TriangleMesh& mesh,
+                                              const Crossings& crossings);
+// Sorts by the counts, largest first; equal counts stay in the order of the names.
+std::vector<std::pair<NamePair, std::size_t>> most_first(const std::map<NamePair, std::size_t>& counts);
 
 }  // namespace cscd::bench

@@ -10,7 +10,7 @@
 #include "bench/measure/strategies/applicable.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
-#include "bench/query/answer/answer_json.h"
+#include "bench/query/answer/clip_moment.h"
 #include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "bench/query/answer/answer_json.h"
+#include "bench/query/answer/clip_moment.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -62,9 +62,9 @@ json ClipRecording::write(Sections& sections) const {
   json numbers = json::array(), seconds = json::array();
   for (std::size_t f = range_.first; f <= range_.last; ++f) {
     const bool last = f == range_.last;
-    const json moment = moment_json(input_, {last ? f - 1 : f, last ? 1.0 : 0.0});
-    numbers.push_back(moment["frame"]);
-    seconds.push_back(moment["seconds"]);
+    const ClipMoment moment{last ? f - 1 : f, last ? 1.0 : 0.0};
+    numbers.push_back(frame_of(input_, moment));
+    if (input_.import) seconds.push_back(*second_of(input_, moment));
   }
   const Vec3 origin = grid_.origin();
   return {{"frames", added_},

@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "bench/query/answer/answer_json.h"
+#include "bench/query/answer/answer_text.h"
 #include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
@@ -66,21 +68,18 @@ void ObserverRecording::write(Sections& sections, const std::string& prefix) con
   bench::add(sections, prefix + "observer_place", place_);
 }
 
-StrategyRecording::StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
-                                     const ElementaryTest& elementary, const ViewGrid& grid)
-    : input_(input),
-      names_(names),
-      strategy_(strategy),
-      prepared_(strategy.make(input.setup(elementary))),
+StrategyRecording::StrategyRecording(ClipAnswer answer, const ViewGrid& grid)
+    : answer_(std::move(answer)),
+      prepared_(answer_.strategy.make(answer_.input.setup(answer_.elementary))),
       grid_(grid) {
   if (prepared_.preparation.atomic_clusters > std::numeric_limits<std::uint16_t>::max())
-    throw InputError("strategy " + std::string(strategy.name) +
+    throw InputError("strategy " + std::string(answer_.strategy.name) +
                      ": made more than 65535 clusters, more than a page shows; choose a --component");
 }
 
 void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInterval& interval,
                             TextTable& places) {
-  summary_.add(answer, interval.motion, names_);
+  answer_.summary.add(answer, interval.motion, answer_.names);
   const std::string by(answer.strategy->name);
   auto known = std::find(answered_by_.begin(), answered_by_.end(), by);
   if (known == answered_by_.end()) known = answered_by_.insert(known, by);
@@ -93,11 +92,11 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
   tests_.push_back(count(answer.report.pairs.elementary_tests));
 
   std::uint32_t contacts = 0, kept = 0;
-  std::vector<bool> touched(input_.mesh.triangle_count());
+  std::vector<bool> touched(answer_.input.mesh.triangle_count());
   for (const Contact& contact : answer.found.contacts) {
     if (contact.verdict != Verdict::contact) continue;
     ++contacts;
-    mark_touched(input_.mesh, contact.pair, touched);
+    mark_touched(answer_.input.mesh, contact.pair, touched);
     if (kept == kMostContacts) continue;
     ++kept;
     add_contact(contact, interval.motion, places);
@@ -121,18 +120,19 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
   const auto vertex = [&](VertexId v) { vertex_.push_back(static_cast<std::int32_t>(v)); };
   if (face) {
     vertex(VertexId{contact.pair.a});
-    for (const VertexId v : input_.mesh.corners(TriangleId{contact.pair.b})) vertex(v);
+    for (const VertexId v : answer_.input.mesh.corners(TriangleId{contact.pair.b})) vertex(v);
   } else {
     for (const std::int32_t edge : {contact.pair.a, contact.pair.b})
-      for (const VertexId v : input_.mesh.ends(EdgeId{edge})) vertex(v);
+      for (const VertexId v : answer_.input.mesh.ends(EdgeId{edge})) vertex(v);
   }
-  const ContactGeometry geometry = contact_geometry(input_.mesh, motion, contact.pair, contact.time);
+  const ContactGeometry geometry = contact_geometry(answer_.input.mesh, motion, contact.pair, contact.time);
   along_first_.push_back(face ? 0 : share(geometry.weights[0]));
   const Vec3 normal = geometry.normal.value_or(Vec3::Zero());
   for (int axis = 0; axis < 3; ++axis)
     normal_.push_back(static_cast<std::int8_t>(std::lround(127 * normal[axis])));
   for (const bool second : {false, true})
-    place_.push_back(places.number_of(names_.place_of(names_.triangle_of(contact.pair, second))));
+    place_.push_back(
+        places.number_of(answer_.names.place_of(answer_.names.triangle_of(contact.pair, second))));
 }
 
 // Asks the observers. A cluster goes by the first of its atomic clusters, so that it keeps its number from
@@ -141,7 +141,7 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
 void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   ContactSet ignored;
   prepared_.detector->forget();
-  const Rig::Interval* bones = interval.bones && input_.use_bones ? &*interval.bones : nullptr;
+  const Rig::Interval* bones = interval.bones && answer_.input.use_bones ? &*interval.bones : nullptr;
   const Report report = prepared_.detector->detect({interval.motion, bones}, ignored);
   const RadialView view = prepared_.detector->radial_view();
   clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
@@ -154,7 +154,8 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
     std::int32_t& known = label[static_cast<std::size_t>(atomic[t])];
     if (known < 0) known = view.cluster[t];
     if (known != view.cluster[t])
-      throw std::logic_error("an atomic cluster of " + std::string(strategy_.name) + " has two observers");
+      throw std::logic_error("an atomic cluster of " + std::string(answer_.strategy.name) +
+                             " has two observers");
   }
   for (std::size_t a = 0; a < label.size(); ++a)
     cluster_of_atomic_.push_back(first.try_emplace(label[a], static_cast<std::uint16_t>(a)).first->second);
@@ -169,8 +170,7 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   patch_ = view.patch;
 }
 
-json StrategyRecording::write(Sections& sections, const std::string& prefix, const Crossings& rest,
-                              bool left_out) const {
+json StrategyRecording::write(Sections& sections, const std::string& prefix) const {
   const auto put = [&](const char* name, const auto& values) { bench::add(sections, prefix + name, values); };
   put("verdict", verdict_);
   put("proven", proven_);
@@ -204,17 +204,17 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix, con
       put(("cover" + std::to_string(c + 1) + ".cluster").c_str(), further_covers_[c]);
     put("patch", patch_);
   }
-  return {{"name", strategy_.name},
-          {"guarantee", to_string(strategy_.guarantee)},
-          {"source", strategy_.source},
+  return {{"name", answer_.strategy.name},
+          {"guarantee", to_string(answer_.strategy.guarantee)},
+          {"source", answer_.strategy.source},
           {"answered_by", answered_by_},
           {"atomic_clusters", prepared_.preparation.atomic_clusters},
           {"has_clusters", has_clusters()},
           {"covers", observers_.size()},
           {"has_patches", !patch_.empty()},
-          {"summary", summary_json(input_, summary_)},
-          {"details", details_text(summary_sentences(input_, names_, summary_, rest, left_out))},
-          {"text", summary_text(input_, names_, summary_, rest, left_out)}};
+          {"summary", summary_json(answer_)},
+          {"details", details_text(answer_)},
+          {"text", clip_text(answer_)}};
 }
 
 }  // namespace cscd::bench

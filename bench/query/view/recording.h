@@ -7,10 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/query/answer/answer.h"
-#include "bench/query/answer/answer_summary.h"
-#include "bench/query/answer/surface_names.h"
-#include "bench/query/input/input.h"
+#include "bench/query/answer/clip_answer.h"
 #include "bench/query/view/position_coder.h"
 #include "bench/query/view/sections.h"
 #include "core/detect/radial_view.h"
@@ -69,28 +66,22 @@ class StrategyRecording {
 
   // Prepares the strategy once more, to ask its observers: an Answerer may have another strategy answer.
   // Observers are placed on `grid`, which must outlive the recording.
-  StrategyRecording(const Input& input, const SurfaceNames& names, const Strategy& strategy,
-                    const ElementaryTest& elementary, const ViewGrid& grid);
+  StrategyRecording(ClipAnswer answer, const ViewGrid& grid);
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
-  // Tells how long the preparation of what answers took.
-  void set_preparation(double milliseconds) { summary_.preparation_ms = milliseconds; }
+  const ClipAnswer& answer() const { return answer_; }
   bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
 
   // Adds all arrays to `sections`, their names behind `prefix`, and returns what else the page has to know.
-  nlohmann::json write(Sections& sections, const std::string& prefix, const Crossings& rest,
-                       bool left_out) const;
+  nlohmann::json write(Sections& sections, const std::string& prefix) const;
 
  private:
   void add_contact(const Contact& contact, const Motion& motion, TextTable& places);
   void add_view(const scenes::ClipInterval& interval);
 
-  const Input& input_;
-  const SurfaceNames& names_;
-  const Strategy& strategy_;
+  ClipAnswer answer_;
   Prepared prepared_;
   const ViewGrid& grid_;
-  AnswerSummary summary_;
   std::vector<std::string> answered_by_;
 
   // [intervals]

@@ -1,0 +1,210 @@
+#include "bench/query/answer/answer_text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+namespace cscd::bench {
+namespace {
+
+constexpr std::size_t kMostListed = 5;  // of pairs of names, in a text
+
+std::string number(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.4g", value);
+  return digits;
+}
+
+// Frames of a long clip keep their hundredths.
+std::string frame_text(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.10g", std::round(100 * value) / 100);
+  return digits;
+}
+
+std::string many(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::string moment_text(const Input& input, const ClipMoment& moment) {
+  const std::optional<double> seconds = second_of(input, moment);
+  std::string text = "frame " + frame_text(frame_of(input, moment));
+  // Seconds count from the start of the clip, and frames from the start of the file's time line.
+  const bool late = input.import && frame_at(*input.import, 0) != 0;
+  if (seconds) text += " (" + number(*seconds) + (late ? " s into the clip)" : " s)");
+  return text;
+}
+
+// "hand_l touches hips", "tail touches itself".
+std::string meeting_text(const NamePair& both, const std::string& verb) {
+  return both.first + " " + verb + " " + (both.first == both.second ? "itself" : both.second);
+}
+
+// "eye_l in head: 96 pairs, teeth in head: 12 pairs, and 3 more".
+template <class Text>
+std::string listed(const std::map<NamePair, std::size_t>& counts, const Text& text) {
+  std::string out;
+  const auto sorted = most_first(counts);
+  for (std::size_t i = 0; i < std::min(kMostListed, sorted.size()); ++i)
+    out += (i > 0 ? ", " : "") + text(sorted[i].first, sorted[i].second);
+  if (sorted.size() > kMostListed) out += ", and " + std::to_string(sorted.size() - kMostListed) + " more";
+  return out;
+}
+
+// "LeftLeg and LeftUpLeg (24 intervals)".
+std::string met_text(const NamePair& both, std::size_t intervals) {
+  return both.first + " and " + (both.first == both.second ? "itself" : both.second) + " (" +
+         many(intervals, "interval") + ")";
+}
+
+std::string ignored_text(const Input& input, const AnswerSummary& s) {
+  std::string asked;
+  for (const NamePair& both : input.ignored->names) asked += " --ignore " + both.first + ":" + both.second;
+  if (input.ignored->neighbours)
+    asked += " --ignore-neighbours " + std::to_string(*input.ignored->neighbours);
+  if (s.with_ignored == 0) return "ignored: nothing that touches (" + asked.substr(1) + ")";
+  std::map<NamePair, std::size_t> intervals;
+  std::size_t contacts = 0, pairs = 0;
+  for (const auto& [both, here] : s.ignored) {
+    intervals[both] = here.intervals;
+    contacts += here.contacts;
+    pairs += here.start_pairs;
+  }
+  return "ignored: " + listed(intervals, met_text) + "; " + many(contacts, "contact") + " and " +
+         many(pairs, "crossing pair") + " of triangles in " + many(s.with_ignored, "interval") + " (" +
+         asked.substr(1) + ")";
+}
+
+// "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
+std::string subject_of(const Input& input) {
+  const std::string name = std::filesystem::path(input.name).filename().string();
+  if (!input.import) return name;
+  const scenes::ImportReport& report = *input.import;
+  std::string rest;
+  if (const std::string clip = clip_title(report); !clip.empty()) rest += ", " + clip;
+  if (const std::size_t chosen = report.chosen_components.size(); chosen < report.components)
+    rest += (chosen == 1 ? ", component " + std::to_string(report.chosen_components[0])
+                         : ", " + std::to_string(chosen) + " components") +
+            " of " + std::to_string(report.components) + " alone";
+  return name + rest + (rest.empty() ? "" : ",");
+}
+
+std::string of_intervals(std::size_t count, const AnswerSummary& s) {
+  return std::to_string(count) + " of " + many(s.intervals(), "interval");
+}
+
+// The predicate of a verdict: one class a line.
+std::string verdict_predicate(const ClipAnswer& answer) {
+  const Input& input = answer.input;
+  const AnswerSummary& s = answer.summary;
+  const std::size_t touch = s.count(IntervalVerdict::touches),
+                    cross = s.count(IntervalVerdict::intersects_at_start),
+                    undecided = s.count(IntervalVerdict::undecided);
+  if (!collides(s.verdict())) {
+    const std::string frames = " in frames " + frame_text(frame_of(input, {s.first_index, 0})) + " to " +
+                               frame_text(frame_of(input, {s.last_index, 1}));
+    const std::string rest = s.with_left_out > 0 ? "what crosses at rest" : "";
+    const std::string ignored = s.with_ignored > 0 ? "what is ignored" : "";
+    const std::string both = rest + (rest.empty() || ignored.empty() ? "" : " and ") + ignored;
+    const std::string apart = both.empty() ? "" : ", apart from " + both;
+    if (undecided > 0)
+      return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
+             of_intervals(undecided, s) + "; ask again with another --elementary";
+    return s.moves ? "does not touch itself" + frames + apart
+                   : "does not move" + frames + ", and does not touch itself" + apart;
+  }
+  std::string text;
+  if (cross > 0) text = "crosses itself at the start of " + of_intervals(cross, s);
+  if (touch > 0)
+    text += cross > 0 ? " and touches itself in " + std::to_string(touch) + " more"
+                      : "touches itself in " + of_intervals(touch, s);
+  const AnswerSummary::Meeting& first = *s.first;
+  return text + ", first at " + moment_text(input, first.moment) + ": " +
+         meeting_text(first.names, first.crosses ? "crosses" : "touches");
+}
+
+// What is said below the verdict, without full stops; empty where there is nothing to say.
+struct Sentences {
+  std::string counts, worst, met, ignored, rest, proven, rate, choice;
+};
+
+Sentences sentences(const ClipAnswer& answer) {
+  const Input& input = answer.input;
+  const AnswerSummary& s = answer.summary;
+  Sentences out;
+  out.counts = many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) +
+               " clear, " + std::to_string(s.count(IntervalVerdict::touches)) + " touch, " +
+               std::to_string(s.count(IntervalVerdict::intersects_at_start)) + " cross at their start";
+  if (s.count(IntervalVerdict::undecided) > 0)
+    out.counts += ", " + std::to_string(s.count(IntervalVerdict::undecided)) + " undecided";
+  if (s.worst) {
+    out.worst = "worst: interval " + std::to_string(s.worst->moment.interval) + ", from " +
+                moment_text(input, {s.worst->moment.interval, 0}) + ": ";
+    if (s.worst->start_pairs > 0)
+      out.worst += many(s.worst->start_pairs, "pair") + " of triangles cross at its start, and ";
+    out.worst += many(s.worst->contacts, "contact");
+  }
+  if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
+  if (input.ignored) out.ignored = ignored_text(input, s);
+  if (answer.rest.total > 0) {
+    out.rest = "crosses at rest: " +
+               listed(pairs_by_part(answer.names, input.mesh, answer.rest),
+                      [](const NamePair& both, std::size_t count) {
+                        return both.first +
+                               (both.first == both.second ? " with itself: " : " in " + both.second + ": ") +
+                               many(count, "pair");
+                      });
+    out.rest += answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
+                                           " (--keep-rest-crossings counts it)"
+                                     : "; counted, as asked";
+  }
+  std::string answered;
+  for (const auto& [name, count] : s.strategies)
+    answered += (answered.empty() ? "" : ", ") + name +
+                (s.strategies.size() > 1 ? " (" + std::to_string(count) + ")" : "");
+  out.proven = "answered by " + answered + ", " +
+               (s.proven == s.intervals()
+                    ? "every answer proven"
+                    : std::to_string(s.proven) + " of " + std::to_string(s.intervals()) + " proven");
+  if (input.import) out.rate = rate_text(*input.import);
+  if (!input.clip_was_named)
+    out.choice =
+        "this is the first clip that moves the surface; --clip names another, and --clip all takes every one";
+  return out;
+}
+
+}  // namespace
+
+std::string verdict_sentence(const ClipAnswer& answer) {
+  return subject_of(answer.input) + " " + verdict_predicate(answer) + ".";
+}
+
+std::string clip_text(const ClipAnswer& answer) {
+  const AnswerSummary& s = answer.summary;
+  const Sentences said = sentences(answer);
+  std::string out = verdict_sentence(answer) + "\n";
+  for (const std::string* line :
+       {&said.counts, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
+    if (!line->empty()) out += "  " + *line + "\n";
+  return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
+         number(s.embedding_ms) + " to know what crosses at the starts; " + number(answer.preparation_ms) +
+         " ms to prepare and " + number(s.load_ms) + " ms to read frames came on top\n";
+}
+
+std::string details_text(const ClipAnswer& answer) {
+  const Sentences said = sentences(answer);
+  std::string out;
+  for (const std::string* sentence :
+       {&said.counts, &said.worst, &said.ignored, &said.rest, &said.proven, &said.rate, &said.choice}) {
+    if (sentence->empty()) continue;
+    std::string capital = *sentence;
+    capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
+    out += (out.empty() ? "" : " ") + capital + ".";
+  }
+  return out;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "bench/query/answer/clip_answer.h"
+
+// Answers as text.
+namespace cscd::bench {
+
+// One sentence that says what was asked about, does it touch or cross itself, how often, and when first.
+// Texts, pages and JSON all show this sentence.
+std::string verdict_sentence(const ClipAnswer& answer);
+
+// Several lines, the verdict first.
+std::string clip_text(const ClipAnswer& answer);
+
+// What clip_text() says below the verdict as one paragraph, for a page that lists by itself what met.
+std::string details_text(const ClipAnswer& answer);
+
+}  // namespace cscd::bench

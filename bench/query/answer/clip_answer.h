@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/clip_moment.h"
+#include "bench/query/answer/surface_names.h"
+
+namespace cscd::bench {
+
+// Sums up the answers to the intervals of a clip.
+struct AnswerSummary {
+  std::array<std::size_t, 4> verdicts{};          // by IntervalVerdict
+  std::map<std::string, std::size_t> strategies;  // how many intervals each answered
+  std::size_t proven = 0;
+  std::size_t with_left_out = 0;                // intervals from which something was left out
+  bool moves = false;                           // more than by rounding
+  std::size_t first_index = 0, last_index = 0;  // of the intervals, which come in growing order
+  // The first moment at which something touches or crosses, and the names of what meets.
+  struct Meeting {
+    ClipMoment moment;
+    bool crosses = false;  // else touches
+    NamePair names;
+  };
+  std::optional<Meeting> first;
+  // The interval in which most goes wrong: most pairs of triangles that cross at its start, or, where none
+  // cross anywhere, most contacts.
+  struct Worst {
+    ClipMoment moment;
+    std::size_t start_pairs = 0, contacts = 0;
+  };
+  std::optional<Worst> worst;
+  // Bones, or else parts, that met: in how many intervals.
+  std::map<NamePair, std::size_t> met;
+  // What is ignored, by bones or else parts.
+  struct IgnoredHere {
+    std::size_t intervals = 0, start_pairs = 0, contacts = 0;
+  };
+  std::map<NamePair, IgnoredHere> ignored;
+  std::size_t with_ignored = 0;  // intervals in which something is
+  double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0;
+
+  std::size_t intervals() const;
+  std::size_t count(IntervalVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
+  // The worst verdict of any interval.
+  IntervalVerdict verdict() const;
+  // `motion` is that of the interval.
+  void add(const IntervalAnswer& answer, const Motion& motion, const SurfaceNames& names);
+
+ private:
+  void add_ignored(const IntervalAnswer& answer, const SurfaceNames& names);
+};
+
+// Whether anything touches or crosses.
+constexpr bool collides(IntervalVerdict verdict) {
+  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
+}
+
+// What one strategy answers to a clip, or to some intervals of it. Texts (answer_text.h) and JSON
+// (answer_json.h) are written from this alone.
+struct ClipAnswer {
+  const Input& input;
+  const SurfaceNames& names;
+  const Strategy& strategy;
+  const ElementaryTest& elementary;
+  bool first_only = false, rest_left_out = true;  // as was asked
+  int threads = 1;
+  double preparation_ms = 0;
+  Crossings rest = {};  // what crosses at rest
+  AnswerSummary summary = {};
+  std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
+};
+
+// Returns the answer of which no interval is known yet. The arguments must outlive it.
+ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,
+                           const ElementaryTest& elementary, const AnswerOptions& options,
+                           const Answerer& answerer);
+
+}  // namespace cscd::bench
