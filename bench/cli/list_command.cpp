@@ -72,8 +72,8 @@ json parameters_json(std::span<const scenes::ParameterRow> parameters) {
                                        {"unit", parameter.unit},
                                        {"meaning", parameter.meaning},
                                        {"required", parameter.required}});
-    if (parameter.least != std::numeric_limits<double>::lowest())
-      row.update({{"least", parameter.least}, {"most", parameter.most}});
+    if (parameter.range.least != std::numeric_limits<double>::lowest())
+      row.update({{"least", parameter.range.least}, {"most", parameter.range.most}});
     if (parameter.columns > 0) row["columns"] = parameter.columns;
     if (!parameter.otherwise.empty()) row["default"] = parameter.otherwise;
     if (!parameter.items.empty()) row["items"] = parameters_json(parameter.items);

@@ -40,9 +40,9 @@ std::string default_text(const ParameterRow& row) {
 
 // Empty where every value goes.
 std::string range(const ParameterRow& row) {
-  if (row.least <= -1e9) return "";
-  if (row.most >= 1e9) return "from " + number(row.least);
-  return number(row.least) + " to " + number(row.most);
+  if (row.range.least <= -1e9) return "";
+  if (row.range.most >= 1e9) return "from " + number(row.range.least);
+  return number(row.range.least) + " to " + number(row.range.most);
 }
 
 std::string range(const scenes::SceneField& field) {

@@ -80,18 +80,9 @@ Shape ball(const BallParameters& p) {
 
 ShapeRow ball_row() {
   static const ParameterRow rows[] = {
-      {.name = "parts",
-       .kind = ParameterKind::integer,
-       .meaning = "parts of each edge of the icosahedron",
-       .least = 1,
-       .most = 2000},
-      {.name = "radius",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "radius of the ball",
-       .least = 1e-9,
-       .most = 1e9},
-      {.name = "centre", .kind = ParameterKind::vector, .unit = "length", .meaning = "centre of the ball"},
+      integer_row("parts", "", "parts of each edge of the icosahedron", {1, 2000}),
+      number_row("radius", "length", "radius of the ball", {1e-9, 1e9}),
+      vector_row("centre", "length", "centre of the ball"),
   };
   return {
       "ball", "geodesic ball, closed and without bones", rows,

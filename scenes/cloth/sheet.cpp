@@ -51,21 +51,12 @@ Shape sheet(const SheetParameters& p) {
 
 ShapeRow sheet_row() {
   static const ParameterRow rows[] = {
-      {.name = "cells", .kind = ParameterKind::integer, .meaning = "edges of a row", .least = 1, .most = 1e5},
-      {.name = "strips",
-       .kind = ParameterKind::integer,
-       .meaning = "strips of triangles, an even number",
-       .least = 2,
-       .most = 1e5},
-      {.name = "edge",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "length of an edge",
-       .least = 1e-9,
-       .most = 1e9},
-      {.name = "centre", .kind = ParameterKind::vector, .unit = "length", .meaning = "middle of the sheet"},
-      {.name = "u", .kind = ParameterKind::vector, .meaning = "direction of the rows"},
-      {.name = "v", .kind = ParameterKind::vector, .meaning = "side to which the rows follow each other"},
+      integer_row("cells", "", "edges of a row", {1, 1e5}),
+      integer_row("strips", "", "strips of triangles, an even number", {2, 1e5}),
+      number_row("edge", "length", "length of an edge", {1e-9, 1e9}),
+      vector_row("centre", "length", "middle of the sheet"),
+      vector_row("u", "", "direction of the rows"),
+      vector_row("v", "", "side to which the rows follow each other"),
   };
   return {
       "sheet", "flat sheet of equilateral triangles, open and without bones", rows,

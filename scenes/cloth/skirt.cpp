@@ -145,46 +145,18 @@ void add_skirt(const SkirtParameters& p, Shape& body, const std::string& where) 
 
 ShapeRow skirted_limbed_sphere_row() {
   static const ParameterRow skirt_rows[] = {
-      {.name = "points",
-       .kind = ParameterKind::integer,
-       .meaning = "points of the hem; the cone unrolls into so many sixths of a disc",
-       .least = 1,
-       .most = 5},
-      {.name = "aspect",
-       .kind = ParameterKind::number,
-       .meaning = "extent along y as a share of that along x",
-       .least = 1e-3,
-       .most = 1e3},
-      {.name = "edge",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "length of an edge",
-       .least = 1e-9,
-       .most = 1e9},
-      {.name = "first_row",
-       .kind = ParameterKind::integer,
-       .meaning = "row at the waist, counted from the apex",
-       .least = 2,
-       .most = 3000},
-      {.name = "last_row",
-       .kind = ParameterKind::integer,
-       .meaning = "row at the hem",
-       .least = 3,
-       .most = 3000},
-      {.name = "band_rows",
-       .kind = ParameterKind::integer,
-       .meaning = "rows at the waist that the body's bones carry",
-       .least = 1,
-       .most = 3000},
-      {.name = "apex", .kind = ParameterKind::vector, .unit = "length", .meaning = "apex of the cone"},
+      integer_row("points", "", "points of the hem; the cone unrolls into so many sixths of a disc", {1, 5}),
+      number_row("aspect", "", "extent along y as a share of that along x", {1e-3, 1e3}),
+      number_row("edge", "length", "length of an edge", {1e-9, 1e9}),
+      integer_row("first_row", "", "row at the waist, counted from the apex", {2, 3000}),
+      integer_row("last_row", "", "row at the hem", {3, 3000}),
+      integer_row("band_rows", "", "rows at the waist that the body's bones carry", {1, 3000}),
+      vector_row("apex", "length", "apex of the cone"),
   };
   static const std::vector<ParameterRow> rows = [] {
     const std::span<const ParameterRow> body = limbed_sphere_row().parameters;
     std::vector<ParameterRow> all(body.begin(), body.end());
-    all.push_back({.name = "skirts",
-                   .kind = ParameterKind::objects,
-                   .meaning = "one object for each skirt",
-                   .items = skirt_rows});
+    all.push_back(objects_row("skirts", "one object for each skirt", skirt_rows));
     return all;
   }();
   ShapeRow row = limbed_sphere_row();

@@ -130,38 +130,14 @@ class ChainContact final : public Effect {
 
 EffectRow chain_contact_row() {
   static const ParameterRow rows[] = {
-      {.name = "radius",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "radius of the capsules round the bones",
-       .least = 1e-9,
-       .most = 1e9},
-      {.name = "clearance",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "gap that is kept between two capsules",
-       .least = 0,
-       .most = 1e9},
-      {.name = "friction",
-       .kind = ParameterKind::number,
-       .meaning = "Coulomb's coefficient of friction",
-       .required = false,
-       .least = 0,
-       .most = 1e3,
-       .otherwise = {0}},
-      {.name = "floor",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning =
-           "height of a floor, on which the chain lies half the clearance high; without it there is no floor",
-       .required = false},
-      {.name = "iterations",
-       .kind = ParameterKind::integer,
-       .meaning = "sweeps over the contacts in each substep",
-       .required = false,
-       .least = 1,
-       .most = 1000,
-       .otherwise = {8}},
+      number_row("radius", "length", "radius of the capsules round the bones", {1e-9, 1e9}),
+      number_row("clearance", "length", "gap that is kept between two capsules", {0, 1e9}),
+      number_row("friction", "", "Coulomb's coefficient of friction", {0, 1e3}).or_else({0}),
+      number_row(
+          "floor", "length",
+          "height of a floor, on which the chain lies half the clearance high; without it there is no floor")
+          .optional(),
+      integer_row("iterations", "", "sweeps over the contacts in each substep", {1, 1000}).or_else({8}),
   };
   return {"chain_contact", "capsule contact of a chain of bones with itself and a floor", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

@@ -79,43 +79,17 @@ class ContactResponse final : public Effect {
 };
 
 const ParameterRow kRows[] = {
-    {.name = "pull",
-     .kind = ParameterKind::number,
-     .meaning = "share of the way back to the animation that a step tries to make up for",
-     .required = false,
-     .least = 0,
-     .most = 1,
-     .otherwise = {0.3}},
-    {.name = "push",
-     .kind = ParameterKind::number,
-     .unit = "mean edge",
-     .meaning = "gap that is left at a contact",
-     .required = false,
-     .least = 0,
-     .most = 1e3,
-     .otherwise = {ContactStepOptions{}.push}},
-    {.name = "spread",
-     .kind = ParameterKind::number,
-     .unit = "mean edge",
-     .meaning = "how far along the surface a contact is felt",
-     .required = false,
-     .least = 1e-3,
-     .most = 1e6,
-     .otherwise = {ContactStepOptions{}.spread}},
-    {.name = "back_off",
-     .kind = ParameterKind::number,
-     .meaning = "share of the time before contact that a step keeps if it is cut as a whole",
-     .required = false,
-     .least = 0.01,
-     .most = 0.99,
-     .otherwise = {ContactStepOptions{}.back_off}},
-    {.name = "rounds",
-     .kind = ParameterKind::integer,
-     .meaning = "corrections of a step before it is cut as a whole",
-     .required = false,
-     .least = 0,
-     .most = 100,
-     .otherwise = {double(ContactStepOptions{}.rounds)}},
+    number_row("pull", "", "share of the way back to the animation that a step tries to make up for", {0, 1})
+        .or_else({0.3}),
+    number_row("push", "mean edge", "gap that is left at a contact", {0, 1e3})
+        .or_else({ContactStepOptions{}.push}),
+    number_row("spread", "mean edge", "how far along the surface a contact is felt", {1e-3, 1e6})
+        .or_else({ContactStepOptions{}.spread}),
+    number_row("back_off", "", "share of the time before contact that a step keeps if it is cut as a whole",
+               {0.01, 0.99})
+        .or_else({ContactStepOptions{}.back_off}),
+    integer_row("rounds", "", "corrections of a step before it is cut as a whole", {0, 100})
+        .or_else({double(ContactStepOptions{}.rounds)}),
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace cscd::scenes {
 namespace {
 
-// Poses bones by keys, as an animator does. Every parameter other than those in kKeyframeRows names bones. If
-// several parameters name a bone, their rotation vectors add up.
+// Poses bones by keys, as an animator does. Every parameter other than those of keyframe_rows() names bones.
+// If several parameters name a bone, their rotation vectors add up.
 class Keyframes final : public Effect {
  public:
   Keyframes(const Parameters& p, const Shape& shape, std::span<const ParameterRow> rows)
@@ -58,60 +58,28 @@ class Keyframes final : public Effect {
   std::size_t root_ = SIZE_MAX;                    // the curve of the translation
 };
 
-const ParameterRow kKeyframeRows[] = {
-    {.name = "root",
-     .kind = ParameterKind::table,
-     .unit = "frame, length",
-     .meaning = "keys of frame, x, y, z: the translation of the whole skeleton",
-     .required = false,
-     .columns = 4},
-    {.name = "period",
-     .kind = ParameterKind::number,
-     .unit = "frame",
-     .meaning = "after so many frames the keys repeat; without it they do not",
-     .required = false,
-     .least = 1e-9,
-     .most = 1e9},
-    {.name = "start",
-     .kind = ParameterKind::number,
-     .unit = "frame",
-     .meaning = "frame before which the effect does nothing",
-     .required = false,
-     .otherwise = {0}},
-    {.name = "end",
-     .kind = ParameterKind::number,
-     .unit = "frame",
-     .meaning = "frame after which the effect does nothing; without it the effect goes on",
-     .required = false},
-    {.name = "fade",
-     .kind = ParameterKind::number,
-     .unit = "frame",
-     .meaning = "frames in which the effect comes, and in which it goes",
-     .required = false,
-     .least = 0,
-     .most = 1e9,
-     .otherwise = {0}},
-    {.name = "weight",
-     .kind = ParameterKind::number,
-     .meaning = "factor on the whole effect",
-     .required = false,
-     .otherwise = {1}},
-    {.name = "*",
-     .kind = ParameterKind::table,
-     .unit = "frame, turn",
-     .meaning = "names of bones, with blanks between and * for any text: keys of frame, x, y, z, the bones' "
-                "rotation vector relative to their parents in the axes of the rest pose",
-     .required = false,
-     .columns = 4},
-};
+std::vector<ParameterRow> keyframe_rows() {
+  std::vector<ParameterRow> rows = with_envelope(
+      {table_row("root", "frame, length", 4, "keys of frame, x, y, z: the translation of the whole skeleton")
+           .optional(),
+       number_row("period", "frame", "after so many frames the keys repeat; without it they do not",
+                  {1e-9, 1e9})
+           .optional()});
+  rows.push_back(
+      table_row("*", "frame, turn", 4,
+                "names of bones, with blanks between and * for any text: keys of frame, x, y, z, the bones' "
+                "rotation vector relative to their parents in the axes of the rest pose")
+          .optional());
+  return rows;
+}
 
 }  // namespace
 
 EffectRow keyframes_row() {
-  return {"keyframes", "poses bones by keys of rotation, interpolated smoothly", Pace::substep, kKeyframeRows,
+  static const std::vector<ParameterRow> rows = keyframe_rows();
+  return {"keyframes", "poses bones by keys of rotation, interpolated smoothly", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<Keyframes>(parameters, shape,
-                                               std::span(kKeyframeRows).first(std::size(kKeyframeRows) - 1));
+            return std::make_unique<Keyframes>(parameters, shape, std::span(rows).first(rows.size() - 1));
           }};
 }
 

@@ -27,4 +27,17 @@ double Envelope::at(double frame) const {
   return weight * faded(frame - start) * faded(end - frame);
 }
 
+std::vector<ParameterRow> with_envelope(std::vector<ParameterRow> rows) {
+  for (ParameterRow& row : std::vector<ParameterRow>{
+           number_row("start", "frame", "frame before which the effect does nothing").or_else({0}),
+           number_row("end", "frame",
+                      "frame after which the effect does nothing; without it the effect goes on")
+               .optional(),
+           number_row("fade", "frame", "frames in which the effect comes, and in which it goes", {0, 1e9})
+               .or_else({0}),
+           number_row("weight", "", "factor on the whole effect").or_else({1})})
+    rows.push_back(std::move(row));
+  return rows;
+}
+
 }  // namespace cscd::scenes

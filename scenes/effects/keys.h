@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "scenes/shape/key_curve.h"
 #include "scenes/shape/parameters.h"
@@ -19,5 +20,8 @@ struct Envelope {
   static Envelope from(const Parameters& parameters);
   double at(double frame) const;
 };
+
+// Returns the rows of an effect's parameters with those of an envelope after them.
+std::vector<ParameterRow> with_envelope(std::vector<ParameterRow> rows);
 
 }  // namespace cscd::scenes

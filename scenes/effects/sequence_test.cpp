@@ -31,12 +31,7 @@ std::unique_ptr<Effect> make_instrumented(const Parameters&, const Shape&) {
   return std::make_unique<Instrumented>(std::string(1, Name));
 }
 
-const ParameterRow kSpeed[] = {{.name = "speed",
-                                .kind = ParameterKind::number,
-                                .unit = "length / frame",
-                                .meaning = "speed",
-                                .least = 0,
-                                .most = 1}};
+const ParameterRow kSpeed[] = {number_row("speed", "length / frame", "speed", {0, 1})};
 const EffectRow kRows[] = {
     {"a", "", Pace::substep, {}, make_instrumented<'a'>},
     {"b", "", Pace::substep, kSpeed, make_instrumented<'b'>},

@@ -59,21 +59,9 @@ class SpringFollow final : public Effect {
 
 EffectRow spring_follow_row() {
   static const ParameterRow rows[] = {
-      {.name = "bones",
-       .kind = ParameterKind::text,
-       .meaning = "names of the bones that lag, with blanks between and * for any text"},
-      {.name = "stiffness",
-       .kind = ParameterKind::number,
-       .unit = "1 / frame^2",
-       .meaning = "pull per distance from the pose",
-       .least = 0,
-       .most = 1e9},
-      {.name = "damping",
-       .kind = ParameterKind::number,
-       .unit = "1 / frame",
-       .meaning = "share of the velocity that is lost",
-       .least = 0,
-       .most = 1e9},
+      text_row("bones", "names of the bones that lag, with blanks between and * for any text"),
+      number_row("stiffness", "1 / frame^2", "pull per distance from the pose", {0, 1e9}),
+      number_row("damping", "1 / frame", "share of the velocity that is lost", {0, 1e9}),
   };
   return {"spring_follow", "lets bones lag behind their pose on damped springs", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

@@ -47,14 +47,9 @@ class Twist final : public Effect {
 
 EffectRow twist_row() {
   static const ParameterRow rows[] = {
-      {.name = "bones",
-       .kind = ParameterKind::text,
-       .meaning = "names of the chains' bones, with blanks between and * for any text"},
-      {.name = "turns",
-       .kind = ParameterKind::table,
-       .unit = "frame, turn",
-       .meaning = "keys of frame and turns of a chain's last bone against its first",
-       .columns = 2},
+      text_row("bones", "names of the chains' bones, with blanks between and * for any text"),
+      table_row("turns", "frame, turn", 2,
+                "keys of frame and turns of a chain's last bone against its first"),
   };
   return {"twist", "turns the bones of a chain about the chain's own axis", Pace::substep, rows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

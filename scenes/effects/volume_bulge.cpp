@@ -89,19 +89,8 @@ class VolumeBulge final : public Effect {
 
 EffectRow volume_bulge_row() {
   static const ParameterRow rows[] = {
-      {.name = "most",
-       .kind = ParameterKind::number,
-       .unit = "length",
-       .meaning = "largest displacement of a vertex",
-       .least = 0,
-       .most = 1e9},
-      {.name = "share",
-       .kind = ParameterKind::number,
-       .meaning = "share of the lost volume that is given back",
-       .required = false,
-       .least = 0,
-       .most = 1,
-       .otherwise = {1}},
+      number_row("most", "length", "largest displacement of a vertex", {0, 1e9}),
+      number_row("share", "", "share of the lost volume that is given back", {0, 1}).or_else({1}),
   };
   return {"volume_bulge", "gives back the volume that skinning loses, by bulging where bones bend",
           Pace::frame, rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

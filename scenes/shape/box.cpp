@@ -35,27 +35,11 @@ Shape box(const BoxParameters& p) {
 
 ShapeRow box_row() {
   static const ParameterRow rows[] = {
-      {.name = "cells_x",
-       .kind = ParameterKind::integer,
-       .meaning = "cells along x",
-       .least = 1,
-       .most = 1e5},
-      {.name = "cells_y",
-       .kind = ParameterKind::integer,
-       .meaning = "cells along y",
-       .least = 1,
-       .most = 1e5},
-      {.name = "cells_z",
-       .kind = ParameterKind::integer,
-       .meaning = "cells along z, the axis of the bones",
-       .least = 1,
-       .most = 1e5},
-      {.name = "size", .kind = ParameterKind::vector, .unit = "length", .meaning = "lengths along x, y, z"},
-      {.name = "bones",
-       .kind = ParameterKind::integer,
-       .meaning = "bones of the chain on the axis",
-       .least = 1,
-       .most = 1e5},
+      integer_row("cells_x", "", "cells along x", {1, 1e5}),
+      integer_row("cells_y", "", "cells along y", {1, 1e5}),
+      integer_row("cells_z", "", "cells along z, the axis of the bones", {1, 1e5}),
+      vector_row("size", "length", "lengths along x, y, z"),
+      integer_row("bones", "", "bones of the chain on the axis", {1, 1e5}),
   };
   return {"box", "sharp-edged box on a chain of bones along z, gridded on all faces", rows,
           [](const Parameters& parameters) {

@@ -39,9 +39,10 @@ void check_value(const Parameters& parameters, std::string_view name, const Para
       [[fallthrough]];
     case ParameterKind::number: {
       const double value = parameters.number(name);
-      if (value < row.least || value > row.most)
+      if (value < row.range.least || value > row.range.most)
         refuse(parameters, name,
-               "is " + shown(value) + "; it must be in [" + shown(row.least) + ", " + shown(row.most) + "]");
+               "is " + shown(value) + "; it must be in [" + shown(row.range.least) + ", " +
+                   shown(row.range.most) + "]");
       break;
     }
     case ParameterKind::vector:
@@ -164,6 +165,46 @@ Parameters checked(const Parameters& parameters, std::span<const ParameterRow> r
       filled = filled.with(std::string(row.name), row.otherwise);
   }
   return filled;
+}
+
+ParameterRow ParameterRow::optional() const {
+  ParameterRow row = *this;
+  row.required = false;
+  return row;
+}
+
+ParameterRow ParameterRow::or_else(std::vector<double> value) const {
+  ParameterRow row = optional();
+  row.otherwise = std::move(value);
+  return row;
+}
+
+ParameterRow number_row(std::string_view name, std::string_view unit, std::string_view meaning,
+                        ParameterRange range) {
+  return {.name = name, .kind = ParameterKind::number, .unit = unit, .meaning = meaning, .range = range};
+}
+
+ParameterRow integer_row(std::string_view name, std::string_view unit, std::string_view meaning,
+                         ParameterRange range) {
+  return {.name = name, .kind = ParameterKind::integer, .unit = unit, .meaning = meaning, .range = range};
+}
+
+ParameterRow vector_row(std::string_view name, std::string_view unit, std::string_view meaning) {
+  return {.name = name, .kind = ParameterKind::vector, .unit = unit, .meaning = meaning};
+}
+
+ParameterRow table_row(std::string_view name, std::string_view unit, std::size_t columns,
+                       std::string_view meaning) {
+  return {.name = name, .kind = ParameterKind::table, .unit = unit, .meaning = meaning, .columns = columns};
+}
+
+ParameterRow text_row(std::string_view name, std::string_view meaning) {
+  return {.name = name, .kind = ParameterKind::text, .meaning = meaning};
+}
+
+ParameterRow objects_row(std::string_view name, std::string_view meaning,
+                         std::span<const ParameterRow> items) {
+  return {.name = name, .kind = ParameterKind::objects, .meaning = meaning, .items = items};
 }
 
 }  // namespace cscd::scenes

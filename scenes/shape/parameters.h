@@ -15,6 +15,10 @@ namespace cscd::scenes {
 // The kinds of value that a parameter of a shape or an effect may have.
 enum class ParameterKind { number, integer, vector, table, text, objects };
 
+struct ParameterRange {
+  double least = std::numeric_limits<double>::lowest(), most = std::numeric_limits<double>::max();
+};
+
 // One parameter that a shape or an effect takes.
 struct ParameterRow {
   std::string_view name;  // "*" stands for any name that no other row has, such as the name of a bone
@@ -24,12 +28,24 @@ struct ParameterRow {
   std::string_view unit = "";
   std::string_view meaning;  // in one line, with what happens without a parameter that has no default
   bool required = true;
-  double least = std::numeric_limits<double>::lowest();  // range of a number or an integer
-  double most = std::numeric_limits<double>::max();
+  ParameterRange range = {};                 // of a number or an integer
   std::size_t columns = 0;                   // columns of a table
   std::vector<double> otherwise = {};        // default: one number, or three for a vector; empty for none
   std::span<const ParameterRow> items = {};  // the parameters of each object of a list
+
+  ParameterRow optional() const;                          // the same parameter, not required
+  ParameterRow or_else(std::vector<double> value) const;  // the same parameter with a default
 };
+ParameterRow number_row(std::string_view name, std::string_view unit, std::string_view meaning,
+                        ParameterRange range = {});
+ParameterRow integer_row(std::string_view name, std::string_view unit, std::string_view meaning,
+                         ParameterRange range = {});
+ParameterRow vector_row(std::string_view name, std::string_view unit, std::string_view meaning);
+ParameterRow table_row(std::string_view name, std::string_view unit, std::size_t columns,
+                       std::string_view meaning);
+ParameterRow text_row(std::string_view name, std::string_view meaning);
+ParameterRow objects_row(std::string_view name, std::string_view meaning,
+                         std::span<const ParameterRow> items);
 std::string_view to_string(ParameterKind kind);
 
 // Named values from a scene file, independent of the file's format. `where` ("scene rope, effect

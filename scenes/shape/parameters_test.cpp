@@ -8,37 +8,14 @@
 namespace cscd::scenes {
 namespace {
 
-const ParameterRow kPartRows[] = {{.name = "weight",
-                                   .kind = ParameterKind::number,
-                                   .meaning = "how heavy",
-                                   .required = false,
-                                   .otherwise = {7}}};
+const ParameterRow kPartRows[] = {number_row("weight", "", "how heavy").or_else({7})};
 const ParameterRow kRows[] = {
-    {.name = "count", .kind = ParameterKind::integer, .meaning = "how many", .least = 1, .most = 10},
-    {.name = "size",
-     .kind = ParameterKind::number,
-     .unit = "length",
-     .meaning = "how large",
-     .required = false,
-     .least = 0,
-     .most = 5,
-     .otherwise = {0.5}},
-    {.name = "place",
-     .kind = ParameterKind::vector,
-     .meaning = "where",
-     .required = false,
-     .otherwise = {1, 2, 3}},
-    {.name = "label", .kind = ParameterKind::text, .meaning = "what", .required = false},
-    {.name = "path",
-     .kind = ParameterKind::table,
-     .meaning = "time, height",
-     .required = false,
-     .columns = 2},
-    {.name = "parts",
-     .kind = ParameterKind::objects,
-     .meaning = "parts",
-     .required = false,
-     .items = kPartRows},
+    integer_row("count", "", "how many", {1, 10}),
+    number_row("size", "length", "how large", {0, 5}).or_else({0.5}),
+    vector_row("place", "", "where").or_else({1, 2, 3}),
+    text_row("label", "what").optional(),
+    table_row("path", "", 2, "time, height").optional(),
+    objects_row("parts", "parts", kPartRows).optional(),
 };
 
 using Values = std::map<std::string, Parameters::Value, std::less<>>;
@@ -105,9 +82,8 @@ TEST(Parameters, NameWhatIsWrong) {
 }
 
 TEST(Parameters, MayHaveAnyNameWhereARowSaysSo) {
-  const ParameterRow rows[] = {
-      {.name = "*", .kind = ParameterKind::vector, .meaning = "of a thing of that name", .required = false},
-      {.name = "count", .kind = ParameterKind::integer, .meaning = "how many"}};
+  const ParameterRow rows[] = {vector_row("*", "", "of a thing of that name").optional(),
+                               integer_row("count", "", "how many")};
   const auto refused = [&](std::map<std::string, Parameters::Value, std::less<>> values) -> std::string {
     try {
       (void)checked(Parameters("scene s, effect e", std::move(values)), rows);
