@@ -153,11 +153,11 @@ TEST(ContactRatios, AreMediansOfRepetitionsWithOverWithout) {
 class ScaleProgram : public testing::Test {
  protected:
   static nlohmann::ordered_json record(std::vector<std::string> arguments, const std::string& name,
-                                       const Limits& limits = {}) {
+                                       const std::vector<std::string>& environment = {}) {
     const std::string out = scratch_->operator/(name);
     arguments.insert(arguments.begin(), "scale");
     arguments.insert(arguments.end(), {"--json", out});
-    const Outcome outcome = cscd(arguments, limits);
+    const Outcome outcome = cscd(arguments, {}, environment);
     EXPECT_EQ(outcome.code, 0) << outcome.errors;
     return nlohmann::ordered_json::parse(read(out));
   }
@@ -231,13 +231,9 @@ TEST_F(ScaleProgram, LeavesOutRowsThatClothDoesNotAllowAndSaysWhy) {
   write(folder / "sheet_contact.json", R"({
     "base": "sheet", "story": "The same sheet falls. It is shown for a shorter time.", "frames": 9,
     "patch": [{"op": "add", "path": "/effects/-", "value": {"name": "contact_response", "pull": 1}}]})");
-  setenv("CSCD_SCENES", folder.c_str(), 1);
-  setenv("CSCD_CACHE", folder.c_str(), 1);
   const auto out =
       record({"--study", "contacts", "--scene", "sheet", "--intervals", "3", "--repetitions", "2"},
-             "cloth.json", {.keeps_environment = true});
-  unsetenv("CSCD_SCENES");
-  unsetenv("CSCD_CACHE");
+             "cloth.json", {"CSCD_SCENES=" + folder.string(), "CSCD_CACHE=" + folder.string()});
   EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
   const auto& subject = out.at("subjects").at(0);
   EXPECT_EQ(subject.at("bones"), 0);

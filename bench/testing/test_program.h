@@ -44,10 +44,14 @@ inline bool is_progress(const std::string& line) {
   return at != std::string::npos && std::sscanf(line.c_str() + at, ": %lu of %lu", &done, &total) == 2;
 }
 
-// Lines of progress, which only a slow machine sees, are left out of the errors.
-inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& limits = {}) {
-  Outcome outcome =
-      scenes::run_limited(fs::read_symlink("/proc/self/exe").parent_path() / "cscd", arguments, limits);
+// `environment` is all that the program gets of it, such as "CSCD_CACHE=/tmp". Lines of progress, which only
+// a slow machine sees, are left out of the errors.
+inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& limits = {},
+                    const std::vector<std::string>& environment = {}) {
+  std::vector<std::string> words = environment;
+  words.push_back(fs::read_symlink("/proc/self/exe").parent_path() / "cscd");
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  Outcome outcome = scenes::run_limited("/usr/bin/env", words, limits);
   std::istringstream lines(std::exchange(outcome.errors, {}));
   for (std::string line; std::getline(lines, line);)
     if (!is_progress(line)) outcome.errors += line + (lines.eof() ? "" : "\n");

@@ -77,7 +77,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
   dup2(errors, STDERR_FILENO);
   close_range(STDERR_FILENO + 1, ~0u, 0);
   char* const no_environment[] = {nullptr};
-  execve(program, arguments, limits.keeps_environment ? environ : no_environment);
+  execve(program, arguments, no_environment);
   _exit(kNotStarted);
 }
 

@@ -13,7 +13,6 @@ struct Limits {
   double seconds = 60;  // wall-clock time, and processor time rounded up to whole seconds
   std::size_t file_bytes = std::size_t{9} << 30;  // size of each file that the program writes
   unsigned open_files = 64;
-  bool keeps_environment = false;  // hands this process's environment to the program
 };
 
 // How a program ended, and what it used.
@@ -27,9 +26,9 @@ struct Outcome {
 };
 
 // Runs a program with these limits and waits for its end; kills the program when its time is up. The
-// program gets an empty environment unless the limits say otherwise, no standard input, no other open files
-// and no core dumps, and cannot gain privileges. Its standard output is dropped. If this process ends first,
-// the program is killed. Throws InputError if the program cannot be started.
+// program gets an empty environment, no standard input, no other open files and no core dumps, and cannot
+// gain privileges. Its standard output is dropped. If this process ends first, the program is killed. Throws
+// InputError if the program cannot be started.
 Outcome run_limited(const std::filesystem::path& program, std::span<const std::string> arguments,
                     const Limits& limits);
 
