@@ -4,9 +4,9 @@
 
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
+#include "core/radial/bone_observer.h"
 #include "core/radial/cluster_hierarchy.h"
 #include "core/radial/distance_field.h"
-#include "core/radial/observer.h"
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
 
@@ -27,8 +27,7 @@ class RvbcCuller : public Culler {
       : clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
         hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test, radial::SignTest::certain,
-               setup.pipeline),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
         unmerged_(clusters_.clusters.size()) {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }

@@ -112,7 +112,8 @@ TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
   const auto make = [](const StrategyInput& setup) {
     return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
   };
-  const Strategy complete{"drvbc_fast_complete", "", Guarantee::complete, {}, make};
+  const Strategy complete{"drvbc_fast_complete", "",  Guarantee::complete, Needs::any_mesh,
+                          StrategyKind::fixed,   make};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const SceneStep step(seed);
     const StrategyInput setup{step.mesh, step.all_start, nullptr, exact};

@@ -6,7 +6,7 @@
 #include "baselines/mcd/discs.h"
 #include "baselines/mcd/normal_cones.h"
 #include "core/detect/compose.h"
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 
 // Idea: let a patch face one direction throughout the interval, and let its contour, seen from there, never
 // cross itself. Then the patch does not touch itself, and no pair inside it has to be tested (Volino and

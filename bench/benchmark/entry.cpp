@@ -22,7 +22,7 @@ class Asked {
       : posed_(posed), row_(row), mesh_(posed.triangles, posed.reference.positions.size()) {
     if (!posed.bone_parent.empty()) rig_.emplace(Rig{posed.bone_parent, posed.reference.bones});
     // One reason for all surfaces that are not closed; why_not() names the defect of each.
-    if (row.strategy->needs.closed_mesh && !mesh_.closed_and_oriented())
+    if (row.strategy->needs != Needs::any_mesh && !mesh_.closed_and_oriented())
       throw InputError("needs a closed, consistently oriented surface");
     if (const auto reason = why_not(*row.strategy, mesh_, rig_.has_value())) throw InputError(*reason);
     const StrategyInput setup{mesh_,    posed.reference.positions, rig_ ? &*rig_ : nullptr, elementary, 1,

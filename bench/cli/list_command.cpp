@@ -43,8 +43,8 @@ json strategies_json() {
     rows.push_back({{"name", strategy.name},
                     {"source", strategy.source},
                     {"guarantee", to_string(strategy.guarantee)},
-                    {"needs_rig", strategy.needs.bones},
-                    {"needs_closed_mesh", strategy.needs.closed_mesh}});
+                    {"needs_rig", strategy.needs == Needs::closed_mesh_with_bones},
+                    {"needs_closed_mesh", strategy.needs != Needs::any_mesh}});
     if (!strategy.group.empty()) rows.back()["group"] = strategy.group;
   }
   return rows;

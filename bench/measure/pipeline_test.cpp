@@ -54,7 +54,7 @@ TEST(Pipeline, ChangesNothingThatTheMethodCounts) {
     const std::optional<Rig> rig = scenes::rig_of(random.clip);
     const scenes::ClipInterval interval = random.clip.interval(0);
     for (const Strategy& strategy : strategies()) {
-      if (!strategy.published) continue;
+      if (strategy.kind != StrategyKind::published) continue;
       StrategyInput setup{mesh, random.clip.frame(0).positions, &*rig, exact};
       const Answered today = answered(strategy, setup, interval);
       setup.pipeline = Pipeline::published;

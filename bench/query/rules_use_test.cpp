@@ -100,7 +100,7 @@ TEST(Rules, ClosedMeshSurfacesWithoutAnInsideAreRefusedByThoseThatNeedOne) {
         EXPECT_EQ(digest(scene.ask(strategy)), digest(truth)) << strategy.name;
         continue;
       }
-      if (!strategy.needs.closed_mesh) continue;
+      if (strategy.needs == Needs::any_mesh) continue;
       try {
         strategy.make(scene.setup());
         ADD_FAILURE() << strategy.name << " took it";
@@ -120,7 +120,7 @@ TEST(Rules, ClosedMeshMissingBonesAreRefusedByThoseThatNeedThem) {
   for (const Strategy& strategy : strategies())
     for (const Rig* rig : {static_cast<const Rig*>(nullptr), &none}) {
       const StrategyInput setup{mesh, ball.positions, rig, exact()};
-      if (!strategy.needs.bones) {
+      if (strategy.needs != Needs::closed_mesh_with_bones) {
         EXPECT_NO_THROW(strategy.make(setup));
         continue;
       }
@@ -183,7 +183,8 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
     };
     for (const Strategy& strategy : strategies()) {
       // A promise holds with a test that is right.
-      const StrategyInput setup{mesh, first.positions, &rig, strategy.follows ? exact : newton};
+      const StrategyInput setup{mesh, first.positions, &rig,
+                                strategy.kind == StrategyKind::adaptive ? exact : newton};
       const auto ask = [&](Detector& detector, std::size_t from, std::size_t to) {
         const Rig::Interval pose{bones[from], bones[to]};
         ContactSet found;
@@ -197,7 +198,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
         const std::size_t from = order() % 4, to = order() % 4;
         // What follows the surface is like a new detector once it has forgotten, and without that keeps its
         // promise.
-        if (strategy.follows && visit % 2 == 0) {
+        if (strategy.kind == StrategyKind::adaptive && visit % 2 == 0) {
           const auto [embedded, truth] = judged(from, to);
           ContactSet found;
           const Rig::Interval pose{bones[from], bones[to]};
@@ -208,7 +209,7 @@ TEST(Rules, FreshDetectorAnyOrderOfIntervalsGivesTheAnswersOfFreshDetectors) {
               << strategy.name << ", seed " << seed << ", visit " << visit;
           used->forget();
         }
-        if (strategy.follows && visit % 2 != 0) used->forget();
+        if (strategy.kind == StrategyKind::adaptive && visit % 2 != 0) used->forget();
         EXPECT_EQ(ask(*used, from, to), ask(*strategy.make(setup).detector, from, to))
             << strategy.name << ", seed " << seed << ", visit " << visit;
       }

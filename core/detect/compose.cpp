@@ -53,9 +53,8 @@ class PairTester : public TrianglePairSink {
         exclusions_(setup.exclusions),
         options_(std::move(options)),
         team_(options_.threads),
-        clock_(clock) {
-    if (setup.pipeline == Pipeline::published) options_.filter = PairFilter::plain_sign;
-  }
+        clock_(clock),
+        plain_sign_(setup.pipeline == Pipeline::published) {}
 
   void start_interval(const Step& step, ContactSet& out) {
     restart();
@@ -172,11 +171,12 @@ class PairTester : public TrianglePairSink {
   void test_assigned(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
-    if (options_.filter == PairFilter::certain_sign)
-      filter(mesh_, *motion_, pairs, left_);
-    else
+    if (plain_sign_) {
       left_.assign(pairs.begin(), pairs.end());
-    if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
+      drop_by_plain_sign(mesh_, *motion_, left_);
+    } else {
+      filter(mesh_, *motion_, pairs, left_);
+    }
     test_left();
   }
 
@@ -184,12 +184,13 @@ class PairTester : public TrianglePairSink {
     for (const CarriedPairs& carried : carried_)
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
-    if (options_.filter == PairFilter::certain_sign)
-      filter_carried();
-    else
+    if (plain_sign_) {
       for (const CarriedPairs& carried : carried_)
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
-    if (options_.filter == PairFilter::plain_sign) drop_by_plain_sign(mesh_, *motion_, left_);
+      drop_by_plain_sign(mesh_, *motion_, left_);
+    } else {
+      filter_carried();
+    }
     test_left();
   }
 
@@ -259,6 +260,7 @@ class PairTester : public TrianglePairSink {
   PairOptions options_;
   Team team_;
   StageClock& clock_;
+  const bool plain_sign_;  // the published filter
   const Motion* motion_ = nullptr;
   ContactSet* out_ = nullptr;
   Crossings* start_ = nullptr;

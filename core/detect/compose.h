@@ -8,14 +8,8 @@
 
 namespace cscd {
 
-// Which feature pairs the coplanarity cubic drops. `certain_sign` drops those whose sign is certain. The
-// others are there to measure what that certainty costs and saves: a plain sign, without its error bound,
-// is the published filter and may lose contacts.
-enum class PairFilter { certain_sign, plain_sign, none };
-
 struct PairOptions {
   bool relative_boxes = false;  // drop non-adjacent triangle pairs by their relative boxes first
-  PairFilter filter = PairFilter::certain_sign;
   // Which feature pairs a triangle pair is tested for; null means all that it carries. An assignment is used
   // without relative boxes.
   std::unique_ptr<const FeatureAssignment> assignment = nullptr;
@@ -31,7 +25,8 @@ struct PairOptions {
 // which is tested once, the certified non-penetration filter, and the elementary test. The detector owns the
 // clock of the interval. Where a culler has looked for the first contact alone, and anything passed on
 // touches or is undecided, it is asked for the rest, unless the caller wants the first contact alone. In the
-// pipeline `published`, the filter is the plain sign, whatever the options say. What `setup` refers to must
+// pipeline `published`, the filter is the published one: the plain sign of the coplanarity cubic, which may
+// lose contacts because it has no error bound. What `setup` refers to must
 // outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const StrategyInput& setup,
                                   PairOptions options = {});

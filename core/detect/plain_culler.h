@@ -2,7 +2,7 @@
 
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd {

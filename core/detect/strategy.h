@@ -54,7 +54,7 @@ struct StrategyInput {
   // `all_from_embedded` then holds from any start. A
   // strategy that brings its own elementary test throws InputError.
   const Exclusions* exclusions = nullptr;
-  // A strategy whose row is not `published` below knows the pipeline `today` alone and takes no notice.
+  // A strategy whose kind is not `published` knows the pipeline `vectorised` alone and takes no notice.
   Pipeline pipeline = Pipeline::vectorised;
   // What a detector of the same strategy and surface has said by Detector::saved_preparation(); empty to
   // prepare from nothing. The surface may have changed in places since, and only those are then prepared
@@ -83,8 +83,18 @@ struct Prepared {
 };
 
 // What an input must have for a strategy to be made. A closed mesh is consistently oriented too.
-struct Needs {
-  bool bones = false, closed_mesh = false;
+enum class Needs { any_mesh, closed_mesh, closed_mesh_with_bones };
+
+// What the detectors of a strategy do with memory and with earlier intervals.
+enum class StrategyKind {
+  fixed,      // once it has seen its largest interval, a detector allocates no memory
+  published,  // `fixed`, and made in the pipeline `published` too: the paper's method and those that the
+              // paper compares it with
+  // A detector cuts its clusters anew as the surface moves, and allocates memory then. What it promises does
+  // not depend on the intervals that it has answered before; its counters do, and so do contacts later than
+  // the first where no more than that is promised (rule fresh-detector, core/soundness.md).
+  adaptive,
+  package,  // a library does the work, and allocates memory as it pleases
 };
 
 // One row of the catalogue of strategies.
@@ -93,19 +103,13 @@ struct Strategy {
   std::string_view source;  // paper or package, in one line
   Guarantee guarantee;
   Needs needs;
-  Prepared (*make)(
-      const StrategyInput& setup);  // throws InputError when the setup lacks what the strategy needs
+  StrategyKind kind;
+  // Throws InputError when the setup lacks what the strategy needs.
+  Prepared (*make)(const StrategyInput& setup);
   // A row with a group is run only where the row or its group is named; rows without one are run wherever the
   // input allows it.
   std::string_view group = "";
   bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
-  // Whether a detector allocates no memory once it has seen its largest interval. Strategies that hand the
-  // work to a library do not promise it. One that follows the surface allocates while it cuts clusters anew.
-  bool settles = true;
-  // Whether its detectors cut their clusters anew as the surface moves. What such a strategy promises does
-  // not depend on the intervals that a detector has answered before; its counters do, and so do contacts
-  // later than the first where no more than that is promised (rule fresh-detector, core/soundness.md).
-  bool follows = false;
   // Whether its detectors say which triangles cross at the start (Step::crossings). For that,
   // a pair of triangles may be dropped only by a proof that, at any time of the interval, the two meet
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
@@ -114,9 +118,6 @@ struct Strategy {
   // Whether its detectors, told that a start of a closed mesh is embedded, drop pairs by the orientation of
   // triangles alone (Step::starts_embedded), which takes less than half the time.
   bool looks_by_signs = false;
-  // Whether the strategy can be made in the pipeline `published`: the paper's method and those that the paper
-  // compares it with.
-  bool published = false;
 };
 
 }  // namespace cscd

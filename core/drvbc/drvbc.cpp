@@ -3,7 +3,7 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/compose.h"
 #include "core/drvbc/mega_clusters.h"
-#include "core/radial/observer.h"
+#include "core/radial/bone_observer.h"
 #include "core/radial/setup.h"
 
 // Dynamic Radial View Based Culling for Continuous Self-Collision Detection (Wong, Lin, Wang, Hung, Huang,
@@ -32,8 +32,7 @@ class DrvbcCuller : public Culler {
               std::vector<radial::ObserverKind> kinds, const DrvbcOptions& options)
       : clusters_(std::move(clusters)),
         hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test, options.orientation_sign,
-               setup.pipeline),
+        table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
   void refit(const Motion& motion) override { hierarchy_.refit(motion); }
@@ -88,8 +87,7 @@ Prepared make_drvbc(const StrategyInput& setup, const DrvbcOptions& options) {
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
   auto culler = std::make_unique<DrvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
-  PairOptions pairs{options.relative_boxes, options.filter};
-  return {compose(std::move(culler), setup, std::move(pairs)), preparation};
+  return {compose(std::move(culler), setup, {options.relative_boxes}), preparation};
 }
 
 }  // namespace cscd

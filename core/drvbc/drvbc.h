@@ -21,8 +21,6 @@ struct DrvbcOptions {
   std::string_view name = "drvbc";  // begins error texts
   bool cache = true;                // keep a cache of triangles that were not positive (section 5)
   radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
-  radial::SignTest orientation_sign = radial::SignTest::certain;
-  PairFilter filter = PairFilter::certain_sign;
 };
 
 // Prepares the strategy `drvbc`: Dynamic Radial View Based Culling (Wong, Lin, Wang, Hung, Huang, I3D 2014).

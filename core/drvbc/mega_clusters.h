@@ -7,8 +7,8 @@
 
 #include "core/mesh/rig.h"
 #include "core/radial/atomic_clusters.h"
+#include "core/radial/bone_observer.h"
 #include "core/radial/cluster_hierarchy.h"
-#include "core/radial/observer.h"
 #include "core/radial/orientation.h"
 
 namespace cscd {

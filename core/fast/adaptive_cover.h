@@ -6,8 +6,8 @@
 
 #include "core/fast/certify/certificates.h"
 #include "core/fast/contour/caps.h"
+#include "core/fast/prepare/cluster_observer.h"
 #include "core/fast/prepare/cut_surface.h"
-#include "core/fast/prepare/observer.h"
 
 namespace cscd::fast {
 

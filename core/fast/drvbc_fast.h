@@ -22,20 +22,20 @@ inline constexpr Strategy kDrvbcFast{
     .name = "drvbc_fast",
     .source = "radial view based culling with overlapping covers",
     .guarantee = Guarantee::first_contact,
-    .needs = {.closed_mesh = true},
+    .needs = Needs::closed_mesh,
+    .kind = StrategyKind::adaptive,
     .make = [](const StrategyInput& setup) { return make_drvbc_fast(setup); },
-    .follows = true,
 };
 inline constexpr Strategy kDrvbcFastComplete{
     .name = "drvbc_fast_complete",
     .source = "drvbc_fast with a contour test of capped clusters",
     .guarantee = Guarantee::complete,
-    .needs = {},
+    .needs = Needs::any_mesh,
+    .kind = StrategyKind::adaptive,
     .make =
         [](const StrategyInput& setup) {
           return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
         },
-    .follows = true,
     .sees_start = true,
     .looks_by_signs = true,
 };

@@ -11,8 +11,8 @@
 #include "core/fast/certify/certificates.h"
 #include "core/fast/certify/stars.h"
 #include "core/fast/classify/grid_bounds.h"
-#include "core/fast/descent.h"
 #include "core/fast/options.h"
+#include "core/fast/patch_descent.h"
 #include "core/fast/prepare/cut_surface.h"
 #include "core/fast/prepare/saved_cut.h"
 

@@ -1,8 +1,8 @@
+#include "core/fast/patch_descent.h"
+
 #include <algorithm>
 #include <bit>
 #include <utility>
-
-#include "core/fast/descent.h"
 
 namespace cscd::fast {
 

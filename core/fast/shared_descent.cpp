@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/base/warm_cache.h"
-#include "core/fast/descent.h"
+#include "core/fast/patch_descent.h"
 
 namespace cscd::fast {
 namespace {

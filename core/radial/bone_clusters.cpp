@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/radial/bone_observer.h"
 #include "core/radial/distance_field.h"
-#include "core/radial/observer.h"
 #include "core/radial/refinement.h"
 #include "core/radial/segmentation.h"
 

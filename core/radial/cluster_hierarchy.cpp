@@ -1,6 +1,6 @@
 #include "core/radial/cluster_hierarchy.h"
 
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 
 namespace cscd::radial {
 

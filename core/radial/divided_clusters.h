@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/radial/atomic_clusters.h"
-#include "core/radial/observer.h"
+#include "core/radial/bone_observer.h"
 
 namespace cscd::radial {
 

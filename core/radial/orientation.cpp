@@ -70,10 +70,10 @@ VectorLanes viewing_positions(const MovingSegment& segment, Lane8 u) {
 }
 
 Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corner)[3],
-                            const MovingSegment& segment, SegmentTest test, SignTest sign) {
+                            const MovingSegment& segment, SegmentTest test) {
   const RangeLanes range = viewing_range(looked_at(corner, test), segment);
   const auto signs = [&](Lane8 u) {
-    return signs_of(triple_products(normal, corner[0] - viewing_positions(segment, u), segment.slack), sign);
+    return certain_sign(triple_products(normal, corner[0] - viewing_positions(segment, u), segment.slack));
   };
   const Sign8 first = signs(range.low), last = signs(range.high);
   return select(first == last, first, Sign8{});
@@ -82,8 +82,8 @@ Sign8 signs_towards_segment(const NormalLanes& normal, const VectorLanes (&corne
 }  // namespace
 
 OrientationTable::OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                                   SegmentTest test, SignTest sign, Pipeline pipeline)
-    : mesh_(mesh), test_(test), sign_(sign), pipeline_(pipeline) {
+                                   SegmentTest test, Pipeline pipeline)
+    : mesh_(mesh), test_(test), pipeline_(pipeline) {
   for (const std::vector<TriangleId>& group : groups) {
     first_triangle_.push_back(triangles_.size());
     triangles_.insert(triangles_.end(), group.begin(), group.end());
@@ -120,12 +120,12 @@ void OrientationTable::with_signs(const Observer& observer, Use use) const {
     use([&](std::size_t b) {
       const auto& [first, second, third] = lanes_[b].corner;
       const VectorLanes corner[3] = {blocks_[b].corner, gather(*motion_, second), gather(*motion_, third)};
-      return signs_towards_segment(blocks_[b].normal, corner, segment, test_, sign_);
+      return signs_towards_segment(blocks_[b].normal, corner, segment, test_);
     });
   } else {
     const VectorLanes viewed_from = in_all_lanes(observer.head.start, observer.head.end);
     use([&](std::size_t b) {
-      return signs_of(triple_products(blocks_[b].normal, blocks_[b].corner - viewed_from), sign_);
+      return certain_sign(triple_products(blocks_[b].normal, blocks_[b].corner - viewed_from));
     });
   }
 }

@@ -37,15 +37,10 @@ struct Observer {
 // proves nothing (rule three-vertices, core/soundness.md); it is here to count what that costs and loses.
 enum class SegmentTest { all_corners, first_corner };
 
-// How the sign of the cubic behind a class is told. `certain` is the proof; the others are there to measure
-// what certainty costs and what it leaves undecided. A plain sign, without its error bound, proves nothing
-// (rule error-bound, core/soundness.md). `halved` cuts [0, 1] once where the whole is not certain.
-enum class SignTest { certain, plain, halved };
-
 // Classifies one triangle in double precision, straight from its vertices. This is the scalar twin of
 // OrientationTable.
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer,
-                        SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain);
+                        SegmentTest test = SegmentTest::all_corners);
 
 // Everything that the orientation of a triangle needs, gathered once an interval: the control vectors of its
 // normal, one corner, and a bound on the rounding of the normal. Triangles are grouped by cluster in blocks
@@ -55,8 +50,7 @@ class OrientationTable {
   // `groups` are the triangles of each cluster. In the pipeline `published`, one triangle is classified after
   // the other by the scalar twin. The classes are the same. The mesh must outlive the table.
   OrientationTable(const TriangleMesh& mesh, std::span<const std::vector<TriangleId>> groups,
-                   SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain,
-                   Pipeline pipeline = Pipeline::vectorised);
+                   SegmentTest test = SegmentTest::all_corners, Pipeline pipeline = Pipeline::vectorised);
 
   // Begins an interval. The positions of `motion` must stay in place until the last classification of the
   // interval.
@@ -83,7 +77,6 @@ class OrientationTable {
 
   const TriangleMesh& mesh_;
   SegmentTest test_;
-  SignTest sign_;
   Pipeline pipeline_;
   std::vector<TriangleId> triangles_;        // of all groups
   std::vector<MovingNormal> normals_;        // [triangles], in the pipeline `published`
@@ -102,27 +95,6 @@ inline Orientation from_sign(int sign) {
 
 inline MovingVector between(const MovingPoint& from, const MovingPoint& to) {
   return {to.start - from.start, to.end - from.end};
-}
-
-// Returns the sign of one cubic, or the signs of eight.
-//
-// Error bound of a half: each half sum rounds once, and a control point of a half is up to three half sums
-// deep. That puts it off by at most 3 u times the coefficients. The factor 4 also pays for the roundings of
-// the bound.
-template <class Cubic>
-auto signs_of(Cubic f, SignTest test) {
-  if (test == SignTest::plain) f.error -= f.error;  // NaN, thus no sign, where the error is infinite
-  const auto whole = certain_sign(f);
-  if (test != SignTest::halved) return whole;
-  const auto error =
-      f.error +
-      4 * kUnitRoundoff * (absolute(f.c[0]) + absolute(f.c[1]) + absolute(f.c[2]) + absolute(f.c[3]));
-  const auto a = 0.5 * (f.c[0] + f.c[1]), b = 0.5 * (f.c[1] + f.c[2]), c = 0.5 * (f.c[2] + f.c[3]);
-  const auto d = 0.5 * (a + b), e = 0.5 * (b + c), middle = 0.5 * (d + e);
-  const auto first = certain_sign(Cubic{{f.c[0], a, d, middle}, error}),
-             last = certain_sign(Cubic{{middle, e, c, f.c[3]}, error});
-  const decltype(whole + 0) none{};
-  return select(whole != 0, whole, select(first == last, first, none));
 }
 
 // A segment as an observer, with the numbers that are the same for all triangles.

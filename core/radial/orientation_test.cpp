@@ -99,27 +99,6 @@ TEST(PointObserver, CoefficientsOfOneSignWellAboveTheBoundAreCertain) {
   EXPECT_GT(certain, 1000);
 }
 
-// Mutation: in signs_of, the last half lacks its first control point.
-TEST(PointObserver, HalvesProveMoreAndNothingWrong) {
-  Dice dice(13);
-  int by_halves = 0;
-  for (int i = 0; i < 12000; ++i) {
-    const Place& place = kPlaces[i % 6];
-    const Corners corner = {place(dice.moving(1, 1)), place(dice.moving(1, 1)), place(dice.moving(1, 1))};
-    const MovingPoint q = i % 2 ? place(dice.moving(1, 1)) : near_plane(corner, dice);
-    const Observer observer = Observer::point(q);
-    const Orientation whole = orientation(corner, observer),
-                      halves = orientation(corner, observer, SegmentTest::all_corners, SignTest::halved);
-    if (whole != Orientation::uncertain) {
-      EXPECT_EQ(halves, whole);
-    } else if (halves != Orientation::uncertain) {
-      ++by_halves;
-      EXPECT_EQ(halves, test::exact_class(corner, q)) << "case " << i;
-    }
-  }
-  EXPECT_GT(by_halves, 100);
-}
-
 // Rule error-bound. Mutation: kTripleProductError is zero.
 TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
   Dice dice(3);
@@ -332,10 +311,10 @@ struct Soup {
 // Expects the table and its scalar twin to say the same about every triangle. Returns how many triangles have
 // a sign.
 int expect_twins(const Soup& soup, const std::function<Observer(std::size_t group)>& observer_of,
-                 SegmentTest test = SegmentTest::all_corners, SignTest sign = SignTest::certain) {
+                 SegmentTest test = SegmentTest::all_corners) {
   const TriangleMesh mesh(soup.triangles, soup.start.size());
-  OrientationTable table(mesh, soup.groups, test, sign);
-  OrientationTable one_by_one(mesh, soup.groups, test, sign, Pipeline::published);
+  OrientationTable table(mesh, soup.groups, test);
+  OrientationTable one_by_one(mesh, soup.groups, test, Pipeline::published);
   const Motion motion(soup.start, soup.end);
   table.update(motion), one_by_one.update(motion);
   int differences = 0, certain = 0;
@@ -348,7 +327,7 @@ int expect_twins(const Soup& soup, const std::function<Observer(std::size_t grou
     EXPECT_EQ(again, classes);
     for (std::size_t member = 0; member < classes.size(); ++member) {
       const Triangle& c = mesh.corners(soup.groups[g][member]);
-      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test, sign);
+      const Orientation twin = orientation({motion[c[0]], motion[c[1]], motion[c[2]]}, observer, test);
       differences += classes[member] != twin;
       certain += twin != Orientation::uncertain;
       EXPECT_EQ(table.classify(g, member, observer), twin);
@@ -374,8 +353,7 @@ TEST(OrientationTable, EqualsItsScalarTwinForEveryTriangleAndLaneCount) {
           return Observer::segment(place(head),
                                    place({head.start + dice.in_box(length), head.end + dice.in_box(length)}));
         };
-        for (const SignTest sign : {SignTest::certain, SignTest::plain, SignTest::halved})
-          expect_twins(soup, observer, test, sign);
+        expect_twins(soup, observer, test);
       }
   }
 }

@@ -14,8 +14,8 @@ MovingNormal normal_of(const MovingPoint (&corner)[3]) {
 
 // The class of a triangle towards the moving point q, each coordinate of which is known up to `slack`.
 Orientation towards_point(const MovingNormal& normal, const MovingPoint& corner, const MovingPoint& q,
-                          double slack, SignTest sign) {
-  return from_sign(signs_of(triple_product(normal, between(q, corner), slack), sign));
+                          double slack) {
+  return from_sign(certain_sign(triple_product(normal, between(q, corner), slack)));
 }
 
 struct Range {
@@ -43,21 +43,20 @@ Range viewing_range(std::span<const MovingPoint> corners, const MovingSegment& s
 }
 
 Orientation towards_segment(const MovingNormal& normal, const MovingPoint (&corner)[3],
-                            const MovingSegment& segment, SegmentTest test, SignTest sign) {
+                            const MovingSegment& segment, SegmentTest test) {
   const Range range = viewing_range(looked_at(corner, test), segment);
-  const Orientation first = towards_point(normal, corner[0], segment.at(range.low), segment.slack, sign);
+  const Orientation first = towards_point(normal, corner[0], segment.at(range.low), segment.slack);
   if (first == Orientation::uncertain || range.low == range.high) return first;
-  const Orientation last = towards_point(normal, corner[0], segment.at(range.high), segment.slack, sign);
+  const Orientation last = towards_point(normal, corner[0], segment.at(range.high), segment.slack);
   return last == first ? first : Orientation::uncertain;
 }
 
 }  // namespace
 
-Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test,
-                        SignTest sign) {
+Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer, SegmentTest test) {
   const MovingNormal normal = normal_of(corner);
-  if (observer.is_segment) return towards_segment(normal, corner, MovingSegment(observer), test, sign);
-  return towards_point(normal, corner[0], observer.head, 0, sign);
+  if (observer.is_segment) return towards_segment(normal, corner, MovingSegment(observer), test);
+  return towards_point(normal, corner[0], observer.head, 0);
 }
 
 void OrientationTable::update_one_by_one() {
@@ -74,13 +73,13 @@ void OrientationTable::classify_one_by_one(std::size_t first, const Observer& ob
     const MovingSegment segment(observer);
     for (std::size_t i = 0; i < out.size(); ++i) {
       const auto [p, q, r] = mesh_.corners(triangles_[first + i]);
-      out[i] = towards_segment(normals_[first + i], {(*motion_)[p], (*motion_)[q], (*motion_)[r]}, segment,
-                               test_, sign_);
+      out[i] =
+          towards_segment(normals_[first + i], {(*motion_)[p], (*motion_)[q], (*motion_)[r]}, segment, test_);
     }
   } else {
     for (std::size_t i = 0; i < out.size(); ++i)
       out[i] = towards_point(normals_[first + i], (*motion_)[mesh_.corners(triangles_[first + i])[0]],
-                             observer.head, 0, sign_);
+                             observer.head, 0);
   }
 }
 

@@ -6,7 +6,7 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
 #include "core/fast/trial.h"
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 
 namespace cscd {
 namespace {

@@ -23,7 +23,8 @@ Prepared make_plain(const StrategyInput& setup) {
 const Strategy kPlain{.name = "plain",
                       .source = "",
                       .guarantee = Guarantee::complete,
-                      .needs = {},
+                      .needs = Needs::any_mesh,
+                      .kind = StrategyKind::fixed,
                       .make = make_plain,
                       .sees_start = true};
 

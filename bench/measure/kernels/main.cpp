@@ -6,7 +6,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
 #include "core/hierarchy/bounds.h"
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 #include "core/radial/orientation.h"
 
 // The inner loops of one interval by themselves, on a middle frame of the rope:

@@ -1,4 +1,4 @@
-// What a strategy promises by `Strategy::settles`: once a detector has seen its largest interval, answering
+// What a strategy promises by `Strategy::kind`: once a detector has seen its largest interval, answering
 // another interval allocates no memory, except while it cuts clusters anew. The test counts every allocation
 // of its program.
 
@@ -27,7 +27,7 @@ TEST(Allocation, ADetectorThatSettlesAllocatesNothingOnceItIsWarm) {
     const std::optional<Rig> rig = scenes::rig_of(random.clip);
     const scenes::ClipInterval interval = random.clip.interval(0);
     for (const Strategy& strategy : strategies()) {
-      if (!strategy.settles) continue;
+      if (strategy.kind == StrategyKind::package) continue;
       const auto detector =
           strategy.make({mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test}).detector;
       ContactSet found;
@@ -39,7 +39,7 @@ TEST(Allocation, ADetectorThatSettlesAllocatesNothingOnceItIsWarm) {
       first_allocations += allocations();
       allocations();
       std::size_t last = allocations();
-      if (strategy.follows)
+      if (strategy.kind == StrategyKind::adaptive)
         for (int asked = 3; asked < kMostAskings && last > 0; ++asked) last = allocations();
       EXPECT_EQ(last, 0u) << strategy.name << ", seed " << seed;
       contacts += found.contacts.size();

@@ -61,7 +61,7 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
 std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names,
                                                Pipeline pipeline) {
   const auto has = [&](const Strategy& strategy) {
-    return pipeline == Pipeline::vectorised || strategy.published;
+    return pipeline == Pipeline::vectorised || strategy.kind == StrategyKind::published;
   };
   std::vector<const Strategy*> chosen;
   const auto add = [&](const Strategy* strategy) {

@@ -48,7 +48,8 @@ TEST(Footprint, SeesPeakAndHeldMemory) {
   clip->append({corners, {}});
   Input input{"tetrahedron", std::move(clip), TriangleMesh(triangles, 4), corners, std::nullopt};
 
-  const Strategy hoarder{"hoarder", "a test", Guarantee::heuristic, {}, make_hoarder};
+  const Strategy hoarder{"hoarder",           "a test",    Guarantee::heuristic, Needs::any_mesh,
+                         StrategyKind::fixed, make_hoarder};
   const std::array<std::size_t, 1> intervals{0};
   const Footprint footprint =
       measure_footprint(input, {&hoarder}, elementary_test_named("newton"), intervals);

@@ -46,7 +46,9 @@ Found hold_to_promises(const Shape& shape, const std::vector<Vec3>& end, const V
   all_pairs().make(judged).detector->detect({motion, &bones}, truth);
   truth.sort();
   for (const Strategy& strategy : strategies()) {
-    if (strategy.guarantee == Guarantee::heuristic || (strategy.needs.bones && !with_bones)) continue;
+    if (strategy.guarantee == Guarantee::heuristic ||
+        (strategy.needs == Needs::closed_mesh_with_bones && !with_bones))
+      continue;
     ContactSet answer;
     strategy.make(with_bones ? asked : boneless).detector->detect({motion, &bones}, answer);
     answer.sort();

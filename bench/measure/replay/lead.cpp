@@ -5,7 +5,7 @@
 namespace cscd::bench {
 
 void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval) {
-  if (!strategy.follows) return;
+  if (strategy.kind != StrategyKind::adaptive) return;
   detector.forget();
   ContactSet ignored;
   for (std::size_t i = interval - std::min(interval, kLead); i < interval; ++i) {

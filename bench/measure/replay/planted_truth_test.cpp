@@ -47,7 +47,8 @@ Prepared make_late(const StrategyInput& setup) {
 Record record_of(std::uint64_t seed, Prepared (*make)(const StrategyInput&), bool is_verified) {
   Input input = planted_input(seed);
   const ElementaryTest& exact = elementary_test_named("exact");
-  const Strategy strategy{"row", "for tests", Guarantee::complete, {}, make};
+  const Strategy strategy{"row",           "for tests",         Guarantee::complete,
+                          Needs::any_mesh, StrategyKind::fixed, make};
   const std::array rows = {&strategy};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact, exact);
   Verifier verifier(input, contestants, exact, exact);

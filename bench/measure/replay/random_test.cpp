@@ -69,10 +69,8 @@ TEST(RandomVerification, EveryStrategyHoldsOnThreeHundredIntervals) {
 
 TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
   const Strategy saboteur[] = {
-      {"uncertain_is_positive",
-       "for tests",
-       Guarantee::first_contact,
-       {.bones = true, .closed_mesh = true},
+      {"uncertain_is_positive", "for tests", Guarantee::first_contact, Needs::closed_mesh_with_bones,
+       StrategyKind::fixed,
        test::make_radial<test::Flaw::uncertain_called_positive, radial::ObserverKind::bone_centre>}};
   const RandomSummary summary = verify_random({60, 7, 10}, rows_of(saboteur));
   ASSERT_FALSE(summary.failures.empty());

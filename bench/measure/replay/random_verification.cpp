@@ -74,7 +74,7 @@ struct Subject {
     const Rig::Interval* const bones = interval.bones ? &*interval.bones : nullptr;
     // What follows the surface has to be right whatever it was asked before: here, after it has cut its
     // clusters for this interval, for the start at rest, or for both.
-    if (row.strategy->follows)
+    if (row.strategy->kind == StrategyKind::adaptive)
       for (std::uint64_t k = 0; k < seed % 5; ++k)
         detector->detect(
             {k % 2 == 1 ? Motion(interval.motion.start(), interval.motion.start()) : interval.motion, bones},

@@ -97,7 +97,7 @@ StrategyRecord describe(const Contestant& contestant) {
   record.source = contestant.strategy->source;
   record.guarantee = to_string(contestant.strategy->guarantee);
   record.threads = contestant.threads;
-  if (contestant.strategy->follows) record.lead = kLead;
+  if (contestant.strategy->kind == StrategyKind::adaptive) record.lead = kLead;
   record.preparation = contestant.preparation;
   return record;
 }

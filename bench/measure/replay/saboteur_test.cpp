@@ -14,10 +14,11 @@ namespace {
 using test::Flaw;
 
 Strategy plain(const char* name, Prepared (*make)(const StrategyInput&)) {
-  return {name, "for tests", Guarantee::complete, {}, make};
+  return {name, "for tests", Guarantee::complete, Needs::any_mesh, StrategyKind::fixed, make};
 }
 Strategy first_contact(const char* name, Prepared (*make)(const StrategyInput&)) {
-  return {name, "for tests", Guarantee::first_contact, {.bones = true, .closed_mesh = true}, make};
+  return {name, "for tests", Guarantee::first_contact, Needs::closed_mesh_with_bones, StrategyKind::fixed,
+          make};
 }
 
 // Verifies on `intervals` random intervals and returns how many failed.

@@ -199,8 +199,8 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   EmbeddingTest start_test = make_embedding_test(input.setup(elementary_test_named("exact")));
   ContactSet found;
   std::mt19937_64 random(plan.seed);
-  const bool leads =
-      std::ranges::any_of(contestants, [](const Contestant& c) { return c.strategy->follows; });
+  const bool leads = std::ranges::any_of(
+      contestants, [](const Contestant& c) { return c.strategy->kind == StrategyKind::adaptive; });
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition) {

@@ -114,7 +114,7 @@ Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
 }
 
 std::vector<std::string> failures(Prepared (*make)(const StrategyInput&), Guarantee guarantee) {
-  const Outcome outcome = judge({"saboteur", "test", guarantee, {}, make});
+  const Outcome outcome = judge({"saboteur", "test", guarantee, Needs::any_mesh, StrategyKind::fixed, make});
   EXPECT_TRUE(outcome.verified.strategies[0].failures.empty());
   EXPECT_EQ(outcome.verified.ok(), outcome.verified.strategies[1].failures.empty());
   return outcome.verified.strategies[1].failures;
@@ -127,8 +127,8 @@ void lose_first_and_invent(const StrategyInput& setup, int call, Report& report,
 
 // A strategy with an elementary test of its own does not fail; what it gets wrong is listed.
 TEST(Verification, OwnTestsAreComparedAndTimed) {
-  const Outcome outcome =
-      judge({"checker", "test", Guarantee::heuristic, {}, sabotage<lose_first_and_invent>, "checker", true});
+  const Outcome outcome = judge({"checker", "test", Guarantee::heuristic, Needs::any_mesh,
+                                 StrategyKind::fixed, sabotage<lose_first_and_invent>, "checker", true});
   EXPECT_TRUE(outcome.verified.ok());
   EXPECT_FALSE(outcome.void_times);
   ASSERT_EQ(outcome.verified.own_tests.size(), 1u);
@@ -182,19 +182,21 @@ TEST(Verification, ContactsThatTheReferenceLacksFail) {
 }
 
 TEST(Timing, CullingOtherwiseThanVerifiedVoidsTheTimes) {
-  const Outcome outcome =
-      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<cull_more_when_timed>});
+  const Outcome outcome = judge({"saboteur", "test", Guarantee::complete, Needs::any_mesh,
+                                 StrategyKind::fixed, sabotage<cull_more_when_timed>});
   EXPECT_TRUE(outcome.verified.ok());
   ASSERT_TRUE(outcome.void_times);
   EXPECT_EQ(outcome.void_times->contestant, 1u);
 }
 
 TEST(Timing, AnswersThatDifferBetweenRepetitionsVoidTheTimes) {
-  const Outcome contacts = judge({"saboteur", "test", Guarantee::complete, {}, sabotage<forget_once>});
+  const Outcome contacts = judge(
+      {"saboteur", "test", Guarantee::complete, Needs::any_mesh, StrategyKind::fixed, sabotage<forget_once>});
   ASSERT_TRUE(contacts.void_times);
   EXPECT_EQ(contacts.void_times->contestant, 1u);
-  EXPECT_TRUE(
-      judge({"saboteur", "test", Guarantee::complete, {}, sabotage<count_otherwise_once>}).void_times);
+  EXPECT_TRUE(judge({"saboteur", "test", Guarantee::complete, Needs::any_mesh, StrategyKind::fixed,
+                     sabotage<count_otherwise_once>})
+                  .void_times);
 }
 
 // Mutation: rows are not compared, so only intervals that were chosen for it are verified.
@@ -204,7 +206,8 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
     const Strategy saboteur{"saboteur",
                             "test",
                             loses_first ? Guarantee::first_contact : Guarantee::complete,
-                            {},
+                            Needs::any_mesh,
+                            StrategyKind::fixed,
                             loses_first ? sabotage<lose_first> : sabotage<lose_last>};
     const std::array rows = {&complete_reference(), &saboteur};
     std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
@@ -222,7 +225,9 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
 // Contacts that a row is free to leave out are no disagreement.
 TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
   Input input = colliding_input();
-  const Strategy saboteur{"saboteur", "test", Guarantee::first_contact, {}, sabotage<lose_last>};
+  const Strategy saboteur{
+      "saboteur",         "test", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
+      sabotage<lose_last>};
   const std::array rows = {&complete_reference(), &saboteur};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
   Verifier verifier(input, contestants, exact_test(), exact_test());

@@ -13,8 +13,8 @@ constexpr std::size_t kIntervalsThatRepayBones = 1000;
 }  // namespace
 
 std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones) {
-  if (strategy.needs.bones && !has_bones) return "needs bones, and there are none";
-  if (!strategy.needs.closed_mesh) return std::nullopt;
+  if (strategy.needs == Needs::closed_mesh_with_bones && !has_bones) return "needs bones, and there are none";
+  if (strategy.needs == Needs::any_mesh) return std::nullopt;
   try {
     require_closed_and_oriented(mesh, "it");
   } catch (const InputError& error) {
@@ -24,7 +24,7 @@ std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh&
 }
 
 bool gets_bones(const Strategy& strategy, std::size_t intervals) {
-  return strategy.needs.bones || intervals >= kIntervalsThatRepayBones;
+  return strategy.needs == Needs::closed_mesh_with_bones || intervals >= kIntervalsThatRepayBones;
 }
 
 StrategyInput setup_for(const Strategy& strategy, StrategyInput setup, std::size_t intervals) {

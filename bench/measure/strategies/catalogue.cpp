@@ -21,64 +21,60 @@ namespace {
 
 constexpr std::string_view kAblation = "ablation";
 
-constexpr Needs kAnySurface = {}, kClosedMesh = {.closed_mesh = true},
-                kBones = {.bones = true, .closed_mesh = true};
-
-// A row names what it says of its strategy; what it leaves out has the default of core/detect/strategy.h. A
-// row of a library has `.settles = false`, because the library allocates memory as it pleases.
+// A row names what it says of its strategy; what it leaves out has the default of core/detect/strategy.h.
 constexpr std::array kStrategies = {
     Strategy{
         .name = "base",
         .source = "16-DOP hierarchy (Klosowski et al. 1998)",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::published,
         .make = make_base,
         .sees_start = true,
-        .published = true,
     },
     Strategy{
         .name = "brute",
         .source = "all pairs of triangles",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::published,
         .make = make_brute,
         .group = "oracle",
         .sees_start = true,
-        .published = true,
     },
     Strategy{
         .name = "aabb",
         .source = "AABB hierarchy (van den Bergen 1999)",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::published,
         .make = make_aabb,
         .sees_start = true,
-        .published = true,
     },
     Strategy{
         .name = "mcd",
         .source = "continuous normal cones and contour tests (Tang et al. 2009)",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::published,
         .make = make_mcd,
-        .published = true,
     },
     Strategy{
         .name = "selfccd",
         .source = "representative triangles and orphan sets (Curtis et al. 2008, Tang et al. 2009)",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::published,
         .make = make_selfccd,
-        .published = true,
     },
 #ifdef CSCD_BASELINES_EMBREE
     Strategy{
         .name = "embree",
         .source = kEmbreeTitle,
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::package,
         .make = make_embree,
-        .settles = false,
     },
 #endif
 #ifdef CSCD_BASELINES_CGAL_BOXES
@@ -86,26 +82,26 @@ constexpr std::array kStrategies = {
         .name = "cgal_boxes",
         .source = "CGAL, box_self_intersection_d",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::package,
         .make = make_cgal_boxes,
-        .settles = false,
     },
 #endif
     Strategy{
         .name = "rvbc",
         .source = "radial view based culling (Wong et al. 2013)",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make = [](const StrategyInput& setup) { return make_rvbc(setup); },
-        .published = true,
     },
     Strategy{
         .name = "drvbc",
         .source = "dynamic radial view based culling (Wong et al. 2014)",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make = [](const StrategyInput& setup) { return make_drvbc(setup); },
-        .published = true,
     },
     kDrvbcFast,
     kDrvbcFastComplete,
@@ -113,24 +109,24 @@ constexpr std::array kStrategies = {
         .name = "drvbc_fast_all",
         .source = "drvbc_fast_complete from starts that are known to be embedded",
         .guarantee = Guarantee::all_from_embedded,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup,
                                      {.name = "drvbc_fast_all", .complete = true, .starts_embedded = true});
             },
-        .follows = true,
     },
 #ifdef CSCD_BASELINES_FCL
     Strategy{
         .name = "fcl",
         .source = "FCL 0.7, continuous traversal of a model with itself (Pan et al. 2012)",
         .guarantee = Guarantee::heuristic,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::package,
         .make = make_fcl,
         .group = "checker",
         .own_test = true,
-        .settles = false,
     },
 #endif
     // One thing at a time left out, or added.
@@ -138,164 +134,165 @@ constexpr std::array kStrategies = {
         .name = "rvbc_relative",
         .source = "rvbc with relative boxes",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_unrefined",
         .source = "drvbc without refinement of its atomic clusters",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_bones",
         .source = "drvbc with one atomic cluster for each bone",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_pieces",
         .source = "drvbc with one atomic cluster for each connected piece of a bone's surface",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_unmerged",
         .source = "drvbc without mega clusters",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_unrelative",
         .source = "drvbc without relative boxes",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_uncached",
         .source = "drvbc without its cache of triangles that were not positive",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false});
             },
         .group = kAblation,
-        .published = true,
     },
     Strategy{
         .name = "drvbc_fast_one_cover",
         .source = "drvbc_fast with the first of its covers alone",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_two_covers",
         .source = "drvbc_fast with at most two covers",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_swept_bounds",
         .source = "drvbc_fast with bounds of whole paths",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_no_stars",
         .source = "drvbc_fast without stars of vertices",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_no_planes",
         .source = "drvbc_fast without planes of triangles",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_whole_steps",
         .source = "drvbc_fast without parts of long steps",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_whole_steps", .long_descent = DrvbcFastOptions::kNever});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_fixed_covers",
         .source = "drvbc_fast with covers that stay as preparation cut them",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::fixed,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(setup, {.name = "drvbc_fast_fixed_covers", .follows = false});
@@ -306,7 +303,8 @@ constexpr std::array kStrategies = {
         .name = "drvbc_fast_fixed_covers_complete",
         .source = "drvbc_fast_complete with covers that stay as preparation cut them",
         .guarantee = Guarantee::complete,
-        .needs = kAnySurface,
+        .needs = Needs::any_mesh,
+        .kind = StrategyKind::fixed,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(
@@ -320,7 +318,8 @@ constexpr std::array kStrategies = {
         .name = "drvbc_fast_bones",
         .source = "drvbc_fast, all covers of bones without a trial",
         .guarantee = Guarantee::first_contact,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               radial::require_radial_setup(setup, "drvbc_fast_bones");
@@ -328,33 +327,32 @@ constexpr std::array kStrategies = {
                   setup, {.name = "drvbc_fast_bones", .clusters = DrvbcFastOptions::Clusters::of_bones});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_fast_no_bones",
         .source = "drvbc_fast, all covers of the surface without a trial",
         .guarantee = Guarantee::first_contact,
-        .needs = kClosedMesh,
+        .needs = Needs::closed_mesh,
+        .kind = StrategyKind::adaptive,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc_fast(
                   setup, {.name = "drvbc_fast_no_bones", .clusters = DrvbcFastOptions::Clusters::of_surface});
             },
         .group = kAblation,
-        .follows = true,
     },
     Strategy{
         .name = "drvbc_one_vertex",
         .source = "drvbc with the paper's test of one vertex for segments",
         .guarantee = Guarantee::heuristic,
-        .needs = kBones,
+        .needs = Needs::closed_mesh_with_bones,
+        .kind = StrategyKind::published,
         .make =
             [](const StrategyInput& setup) {
               return make_drvbc(
                   setup, {.name = "drvbc_one_vertex", .segment_test = radial::SegmentTest::first_corner});
             },
         .group = kAblation,
-        .published = true,
     },
 };
 

@@ -93,14 +93,16 @@ void expect_starts_right(const Strategy& strategy, const ElementaryTest& element
 }
 
 TEST(KnownStarts, NeedARowThatPromisesSomething) {
-  expect_starts_right({"silent", "", Guarantee::heuristic, {}, make_silent<Reports::nothing>},
+  expect_starts_right({"silent", "", Guarantee::heuristic, Needs::any_mesh, StrategyKind::fixed,
+                       make_silent<Reports::nothing>},
                       elementary_test_named("exact"));
 }
 
 TEST(KnownStarts, NeedAnElementaryTestOfTheCallers) {
   for (const Guarantee guarantee : {Guarantee::first_contact, Guarantee::complete})
-    expect_starts_right({"own", "", guarantee, {}, make_silent<Reports::nothing>, "", true},
-                        elementary_test_named("exact"));
+    expect_starts_right(
+        {"own", "", guarantee, Needs::any_mesh, StrategyKind::fixed, make_silent<Reports::nothing>, "", true},
+        elementary_test_named("exact"));
 }
 
 TEST(KnownStarts, NeedAnElementaryTestWhoseApartIsAProof) {
@@ -108,14 +110,15 @@ TEST(KnownStarts, NeedAnElementaryTestWhoseApartIsAProof) {
 }
 
 TEST(KnownStarts, NeedAnEmbeddedStartWhereTheFirstContactIsPromised) {
-  expect_starts_right(
-      {"first", "", Guarantee::first_contact, {}, make_silent<Reports::nothing_from_a_start_that_crosses>},
-      elementary_test_named("exact"), true);
+  expect_starts_right({"first", "", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
+                       make_silent<Reports::nothing_from_a_start_that_crosses>},
+                      elementary_test_named("exact"), true);
 }
 
 // A row that promises the first contact reports one that nobody could decide, and not those after it.
 TEST(KnownStarts, NeedAnswersWithoutAnythingUndecided) {
-  expect_starts_right({"one", "", Guarantee::first_contact, {}, make_silent<Reports::one_contact>},
+  expect_starts_right({"one", "", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
+                       make_silent<Reports::one_contact>},
                       kUndecided);
 }
 
@@ -140,10 +143,12 @@ Prepared make_trusting(const StrategyInput& setup) {
 // Mutations: every known start is taken for embedded; none is.
 TEST(KnownStarts, AreNotTakenForEmbeddedWhereSomethingCrosses) {
   Trusting::told = 0;
-  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make_trusting},
-                      elementary_test_named("exact"));
-  expect_starts_right({"trusting", "", Guarantee::all_from_embedded, {}, make_trusting},
-                      elementary_test_named("exact"), true);
+  expect_starts_right(
+      {"trusting", "", Guarantee::all_from_embedded, Needs::any_mesh, StrategyKind::fixed, make_trusting},
+      elementary_test_named("exact"));
+  expect_starts_right(
+      {"trusting", "", Guarantee::all_from_embedded, Needs::any_mesh, StrategyKind::fixed, make_trusting},
+      elementary_test_named("exact"), true);
   EXPECT_GT(Trusting::told, 10);
 }
 
@@ -151,7 +156,8 @@ TEST(KnownStarts, AreNotTakenForEmbeddedWhereSomethingCrosses) {
 TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
   // The second ball flies through the first, and on.
   Input input = two_balls({0.0, -0.1, -6.0, -6.1, -6.2, -6.3});
-  const Strategy strategy{"trusting", "", Guarantee::complete, {}, make_trusting};
+  const Strategy strategy{"trusting",          "",           Guarantee::complete, Needs::any_mesh,
+                          StrategyKind::fixed, make_trusting};
   Answerer answerer(input, strategy, elementary_test_named("exact"), {});
   std::vector<bool> told;
   for (std::size_t i = 0; i < 5; ++i) {
@@ -190,7 +196,8 @@ TEST(KnownStarts, AreFollowedToWhereSignsPay) {
     const Strategy strategy{.name = "looking",
                             .source = "",
                             .guarantee = Guarantee::complete,
-                            .needs = {},
+                            .needs = Needs::any_mesh,
+                            .kind = StrategyKind::fixed,
                             .make = make_looking,
                             .sees_start = true,
                             .looks_by_signs = by_signs};

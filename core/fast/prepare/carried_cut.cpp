@@ -11,7 +11,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/fast/clusters/surface_clusters.h"
-#include "core/fast/prepare/observer.h"
+#include "core/fast/prepare/cluster_observer.h"
 #include "core/fast/prepare/patch_cutter.h"
 #include "core/mesh/adjacency.h"
 

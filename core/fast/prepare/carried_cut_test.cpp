@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "core/fast/prepare/observer.h"
+#include "core/fast/prepare/cluster_observer.h"
 #include "core/fast/prepare/saved_cut.h"
 #include "core/fast/prepare/test_body.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/fast/clusters/seams.h"
-#include "core/fast/prepare/observer.h"
+#include "core/fast/prepare/cluster_observer.h"
 #include "core/fast/prepare/rings.h"
 #include "core/mesh/adjacency.h"
 

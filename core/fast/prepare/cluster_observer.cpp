@@ -1,4 +1,4 @@
-#include "core/fast/prepare/observer.h"
+#include "core/fast/prepare/cluster_observer.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "core/fast/descent.h"
+#include "core/fast/patch_descent.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/hierarchy/descent.h"
+#include "core/hierarchy/overlap_descent.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "core/radial/observer.h"
+#include "core/radial/bone_observer.h"
 
 #include <Eigen/Geometry>
 #include <array>
