@@ -4,7 +4,7 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/markdown.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {

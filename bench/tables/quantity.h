@@ -25,7 +25,7 @@ bool is_marked(const Record& record, const std::string& strategy);
 inline constexpr char kMarkNote[] =
     "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts";
 
-// What a definition (a column of paper_tables.json, a claim of claims.json) asks for:
+// What a definition (a column of table_definitions.json, a claim of claims.json) asks for:
 //   quantity   scene.triangles, scene.vertices, scene.bones
 //              preparation.distance_and_heat_ms, .decomposition_ms, .atomic_clusters
 //              counts.A+B...      a statistic over all intervals of the sum of counters

@@ -36,7 +36,7 @@ std::string with_range(const std::vector<Figure>& figures, std::string Figure::*
   return first + " [" + figures[1].*text + ", " + figures[2].*text + "]";
 }
 
-const Cell* find_cell(const PaperTable& table, const Row& row, const std::string& key, Pipeline pipeline) {
+const Cell* find_cell(const FilledTable& table, const Row& row, const std::string& key, Pipeline pipeline) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const Column& column = table.columns[i];
     if (column.key == key && column.pipeline.value_or(pipeline) == pipeline) return &row.cells[i];
@@ -69,7 +69,7 @@ void add_lines(const std::string& name, const std::vector<std::vector<Figure>>& 
   if (was_published) table.lines.push_back(std::move(published));
 }
 
-ShapedTable shaped(const PaperTable& table, std::span<const Record> records, bool intervals) {
+ShapedTable shaped(const FilledTable& table, std::span<const Record> records, bool intervals) {
   ShapedTable out{table.id, table.title, table.legend, {}, {}, {}};
   for (const ordered_json& group : table.shape) {
     out.groups.push_back({group.at("title"), group.at("columns").size()});
@@ -125,10 +125,10 @@ bool ShapedTable::has_marks() const {
   });
 }
 
-std::vector<ShapedTable> shaped_tables(std::span<const PaperTable> tables, std::span<const Record> records,
+std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std::span<const Record> records,
                                        bool intervals) {
   std::vector<ShapedTable> out;
-  for (const PaperTable& table : tables) {
+  for (const FilledTable& table : tables) {
     if (table.shape.is_null()) continue;
     ShapedTable one = shaped(table, records, intervals);
     if (has_measured(one)) out.push_back(std::move(one));

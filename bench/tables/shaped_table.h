@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/measure/record/record.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 
 // Tables as people read them: every figure is a text already, and what draws them (terminal, Markdown, LaTeX,
 // the report's page) knows nothing of what they say.
@@ -42,7 +42,7 @@ inline constexpr char kTodayNote[] = "the same with this project's code around e
 // figures. A scene with a record of the pipeline `published` is shown in that one; other scenes stand below,
 // in the pipeline `today`. With `intervals`, the ends of the 95 % intervals stand in lines of their own. A
 // table in which no strategy was measured is left out.
-std::vector<ShapedTable> shaped_tables(std::span<const PaperTable> tables, std::span<const Record> records,
+std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std::span<const Record> records,
                                        bool intervals = false);
 
 // What one query takes with every strategy of the pipeline `today`: strategies down, scenes across, the

@@ -10,7 +10,7 @@ namespace cscd::bench {
 namespace {
 
 std::vector<ShapedTable> shaped_of(const std::vector<Record>& records, bool intervals = false) {
-  return shaped_tables(paper_tables(records), records, intervals);
+  return shaped_tables(filled_tables(records), records, intervals);
 }
 
 std::string text_of(const std::vector<Record>& records) {

@@ -66,11 +66,11 @@ std::string quoted(const std::string& field) {
 
 }  // namespace
 
-ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+ordered_json tables_json(std::span<const FilledTable> tables, std::span<const ClaimResult> claims,
                          std::span<const Record> records) {
   ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
   for (const Record& record : records) sources.push_back(source_json(record));
-  for (const PaperTable& table : tables) {
+  for (const FilledTable& table : tables) {
     ordered_json rows = ordered_json::array();
     for (const Row& row : table.rows) {
       ordered_json cells = ordered_json::array();
@@ -88,9 +88,9 @@ ordered_json tables_json(std::span<const PaperTable> tables, std::span<const Cla
           {"claims", claims_json(claims)}};
 }
 
-std::string tables_csv(std::span<const PaperTable> tables) {
+std::string tables_csv(std::span<const FilledTable> tables) {
   std::string out = "table,scene,key,title,unit,published,measured,low,high,reason,pipeline,marked\n";
-  for (const PaperTable& table : tables)
+  for (const FilledTable& table : tables)
     for (const Row& row : table.rows)
       for (std::size_t i = 0; i < row.cells.size(); ++i) {
         const Cell& cell = row.cells[i];

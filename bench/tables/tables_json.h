@@ -7,16 +7,16 @@
 
 #include "bench/measure/record/record.h"
 #include "bench/tables/claims.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 
 namespace cscd::bench {
 
 inline constexpr std::string_view kTablesSchema = "cscd.tables/1";
 
 // Everything, for machines: one object a cell, one a claim. Valid under bench/tables/tables.schema.json.
-nlohmann::ordered_json tables_json(std::span<const PaperTable> tables, std::span<const ClaimResult> claims,
+nlohmann::ordered_json tables_json(std::span<const FilledTable> tables, std::span<const ClaimResult> claims,
                                    std::span<const Record> records);
 // The same cells for spreadsheets, one line a cell.
-std::string tables_csv(std::span<const PaperTable> tables);
+std::string tables_csv(std::span<const FilledTable> tables);
 
 }  // namespace cscd::bench

@@ -23,7 +23,7 @@ struct Scratch {
 };
 
 std::vector<ShapedTable> tables_of(const std::vector<Record>& records, bool intervals) {
-  std::vector<ShapedTable> tables = shaped_tables(paper_tables(records), records, intervals);
+  std::vector<ShapedTable> tables = shaped_tables(filled_tables(records), records, intervals);
   tables.push_back(times_of_strategies(records, intervals));
   return tables;
 }

@@ -17,7 +17,7 @@
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"
 #include "bench/tables/claims.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 #include "bench/tables/record_inputs.h"
 #include "bench/tables/report/report_figures.h"
 #include "bench/tables/run_times.h"
@@ -147,7 +147,7 @@ void report(const ReportOptions& options) {
     history["folder"] = link(options.history);
   }
   if (options.views) command += " --view";
-  const std::vector<PaperTable> made = paper_tables(records);
+  const std::vector<FilledTable> made = filled_tables(records);
   std::vector<ShapedTable> shaped = shaped_tables(made, records);
   shaped.push_back(times_of_strategies(records));
   std::string caution;  // the first that any record gives

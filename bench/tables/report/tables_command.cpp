@@ -8,7 +8,7 @@
 #include "bench/cli/output/json_text.h"
 #include "bench/cli/output/output.h"
 #include "bench/tables/claims.h"
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 #include "bench/tables/record_inputs.h"
 #include "bench/tables/shaped_table.h"
 #include "bench/tables/tables_json.h"
@@ -39,7 +39,7 @@ void tables(const TableOptions& options) {
   constexpr std::array<std::string_view, 1> wanted = {kRunSchema};
   std::vector<fs::path> files = record_files(options.records, wanted).at(std::string(kRunSchema));
   const std::vector<Record> records = read_records(files);
-  const std::vector<PaperTable> made = paper_tables(records);
+  const std::vector<FilledTable> made = filled_tables(records);
   const std::vector<ShapedTable> shaped = shaped_tables(made, records, options.intervals);
   const std::vector<ClaimResult> claims = judge_claims(records);
   if (options.folder.empty()) {

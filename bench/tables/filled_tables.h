@@ -11,8 +11,8 @@
 #include "bench/tables/quantity.h"
 
 // Every figure that tables have, published figures beside measured ones. What a column is,
-// bench/tables/paper_tables.json says; what was published, bench/tables/published.json. No strategy is known
-// by name here. How people read the paper's tables: bench/tables/shaped_table.h.
+// bench/tables/table_definitions.json says; what was published, bench/tables/published.json. No strategy is
+// known by name here. How people read the paper's tables: bench/tables/shaped_table.h.
 namespace cscd::bench {
 
 struct Cell {
@@ -35,7 +35,7 @@ struct Row {
   std::vector<Cell> cells;  // one a column
 };
 
-struct PaperTable {
+struct FilledTable {
   std::string id, title;
   std::vector<Column> columns;
   std::vector<Row> rows;
@@ -60,10 +60,10 @@ const Record* find_record(std::span<const Record> records, const std::string& sc
 // `each_strategy` stands for one a strategy of the records, whose name replaces {strategy}. Where there are
 // records of both pipelines, a column stands once for each, unless the figures are the same, and a pipeline
 // in which none was measured has no column.
-std::vector<PaperTable> paper_tables(std::span<const Record> records);
+std::vector<FilledTable> filled_tables(std::span<const Record> records);
 // The same from other definitions and figures.
-std::vector<PaperTable> paper_tables(const nlohmann::ordered_json& definitions,
-                                     const nlohmann::ordered_json& published,
-                                     std::span<const Record> records);
+std::vector<FilledTable> filled_tables(const nlohmann::ordered_json& definitions,
+                                       const nlohmann::ordered_json& published,
+                                       std::span<const Record> records);
 
 }  // namespace cscd::bench

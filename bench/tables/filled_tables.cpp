@@ -1,4 +1,4 @@
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 
 #include <algorithm>
 
@@ -141,18 +141,18 @@ const Record* find_record(std::span<const Record> records, const std::string& sc
   return record == records.end() ? nullptr : &*record;
 }
 
-std::vector<PaperTable> paper_tables(const ordered_json& definitions, const ordered_json& published,
-                                     std::span<const Record> records) {
+std::vector<FilledTable> filled_tables(const ordered_json& definitions, const ordered_json& published,
+                                       std::span<const Record> records) {
   std::vector<std::string> scenes;
   for (const Record& record : records) add_new(scenes, record.scene.name);
-  std::vector<PaperTable> tables;
+  std::vector<FilledTable> tables;
   for (const ordered_json& definition : definitions.at("tables")) {
-    PaperTable table{definition.at("id"),
-                     definition.at("title"),
-                     {},
-                     {},
-                     definition.value("legend", ""),
-                     definition.value("shape", ordered_json())};
+    FilledTable table{definition.at("id"),
+                      definition.at("title"),
+                      {},
+                      {},
+                      definition.value("legend", ""),
+                      definition.value("shape", ordered_json())};
     for (const std::string& scene : scenes) table.rows.push_back({scene, {}});
     for (const ordered_json& column : expanded_columns(definition, records))
       for (Filled& filled : by_pipeline(column, published, scenes, records)) {
@@ -165,8 +165,8 @@ std::vector<PaperTable> paper_tables(const ordered_json& definitions, const orde
   return tables;
 }
 
-std::vector<PaperTable> paper_tables(std::span<const Record> records) {
-  return paper_tables(data_json("paper_tables.json"), data_json("published.json"), records);
+std::vector<FilledTable> filled_tables(std::span<const Record> records) {
+  return filled_tables(data_json("table_definitions.json"), data_json("published.json"), records);
 }
 
 }  // namespace cscd::bench

@@ -1,4 +1,4 @@
-#include "bench/tables/paper_tables.h"
+#include "bench/tables/filled_tables.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -54,10 +54,10 @@ Cell cell(nlohmann::ordered_json column) {
   column["key"] = column["title"] = "k";
   const nlohmann::ordered_json published = {{"t", {{"rope", {{"k", 2.5}}}}}};
   const std::vector<Record> records = {sample_record()};
-  return paper_tables(one_column(column), published, records).at(0).rows.at(0).cells.at(0);
+  return filled_tables(one_column(column), published, records).at(0).rows.at(0).cells.at(0);
 }
 
-TEST(PaperTables, CountsAreExact) {
+TEST(FilledTables, CountsAreExact) {
   const Cell mean = cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"scale", 0.001}});
   EXPECT_DOUBLE_EQ(mean.measured.value.value(), 0.2);
   EXPECT_FALSE(mean.measured.interval);
@@ -72,7 +72,7 @@ TEST(PaperTables, CountsAreExact) {
   EXPECT_EQ(value({{"quantity", "verification.recall"}, {"strategy", "swift"}}), 0.5);
 }
 
-TEST(PaperTables, TimesAreMediansOfRepetitions) {
+TEST(FilledTables, TimesAreMediansOfRepetitions) {
   const Cell time = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}});
   EXPECT_EQ(time.measured.value, 9);  // of 9, 45 and 6; `slow` has no rv_update
   EXPECT_EQ(time.measured.interval.value().low, 6);
@@ -80,14 +80,14 @@ TEST(PaperTables, TimesAreMediansOfRepetitions) {
   EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured.value, 10);
 }
 
-TEST(PaperTables, RatiosArePairedWithinARepetition) {
+TEST(FilledTables, RatiosArePairedWithinARepetition) {
   const Cell ratio = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}, {"over", "swift"}});
   EXPECT_DOUBLE_EQ(ratio.measured.value.value(), 3);
   EXPECT_DOUBLE_EQ(ratio.measured.interval.value().low, 3);
   EXPECT_DOUBLE_EQ(ratio.measured.interval.value().high, 3);
 }
 
-TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
+TEST(FilledTables, PublishedFiguresStandBesideMeasuredOnes) {
   using Paths = std::vector<std::string>;
   const auto published = [](const Paths& paths) {
     return cell({{"quantity", "scene.triangles"}, {"published", paths}}).published;
@@ -98,7 +98,7 @@ TEST(PaperTables, PublishedFiguresStandBesideMeasuredOnes) {
   EXPECT_FALSE(cell({{"quantity", "scene.triangles"}}).published);
 }
 
-TEST(PaperTables, EmptyCellsSayWhy) {
+TEST(FilledTables, EmptyCellsSayWhy) {
   EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).measured.reason,
             "nowhere: not in this build");
   EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).measured.reason,
@@ -111,7 +111,7 @@ TEST(PaperTables, EmptyCellsSayWhy) {
             "slow: has no such preparation");
 }
 
-TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
+TEST(FilledTables, AColumnForEachStrategyOfTheRecords) {
   const std::vector<Record> records = {sample_record()};
   nlohmann::ordered_json definitions = one_column({{"key", "{strategy}.k"},
                                                    {"title", "{strategy} / swift"},
@@ -119,7 +119,7 @@ TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
                                                    {"quantity", "counts.bvot"},
                                                    {"strategy", "{strategy}"},
                                                    {"over", "swift"}});
-  const PaperTable table = paper_tables(definitions, {}, records).at(0);
+  const FilledTable table = filled_tables(definitions, {}, records).at(0);
   ASSERT_EQ(table.columns.size(), 1u);  // none for a strategy beside itself
   EXPECT_EQ(table.columns[0].key, "slow.k");
   EXPECT_EQ(table.columns[0].title, "slow / swift");
@@ -128,7 +128,7 @@ TEST(PaperTables, AColumnForEachStrategyOfTheRecords) {
 
 // Times stand once for each pipeline, counters once. Mutation: figures of one pipeline under the other's
 // name.
-TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
+TEST(FilledTables, ShowBothPipelinesWhereTheyDiffer) {
   std::vector<Record> records = {sample_record(), sample_record()};
   records[1].pipeline = Pipeline::published;
   for (StrategyRecord& row : records[1].strategies)
@@ -141,7 +141,7 @@ TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
   auto& columns = definitions["tables"][0]["columns"];
   columns.push_back({{"key", "bvot"}, {"title", "bvot"}, {"quantity", "counts.bvot"}, {"strategy", "slow"}});
   columns.push_back({{"key", "own"}, {"title", "own"}, {"quantity", "counts.bvot"}, {"strategy", "own"}});
-  const PaperTable table = paper_tables(definitions, {}, records).at(0);
+  const FilledTable table = filled_tables(definitions, {}, records).at(0);
   ASSERT_EQ(table.columns.size(), 4u);
   const std::vector<Cell>& cells = table.rows.at(0).cells;
   EXPECT_EQ(table.columns[0].pipeline, Pipeline::published);
@@ -154,15 +154,15 @@ TEST(PaperTables, ShowBothPipelinesWhereTheyDiffer) {
 
   records.push_back(sample_record());
   records.back().scene.name = "hand";
-  const PaperTable uneven = paper_tables(definitions, {}, records).at(0);
+  const FilledTable uneven = filled_tables(definitions, {}, records).at(0);
   EXPECT_EQ(uneven.rows.at(1).cells.at(0).measured.reason,
             "no record of hand in the pipeline published was given");
 }
 
 // The definitions that ship: every published figure has its column, and every column that names a published
 // figure finds it.
-TEST(PaperTables, ShippedDefinitionsCoverThePublishedFigures) {
-  const nlohmann::ordered_json definitions = data_json("paper_tables.json"),
+TEST(FilledTables, ShippedDefinitionsCoverThePublishedFigures) {
+  const nlohmann::ordered_json definitions = data_json("table_definitions.json"),
                                published = data_json("published.json");
   std::vector<std::string> named;
   for (const auto& table : definitions["tables"])
@@ -186,7 +186,7 @@ TEST(PaperTables, ShippedDefinitionsCoverThePublishedFigures) {
   std::vector<Record> records;
   for (const auto& [scene, sizes] : published["scenes"].items()) records.emplace_back().scene.name = scene;
   std::size_t shown = 0;
-  for (const PaperTable& table : paper_tables(definitions, published, records))
+  for (const FilledTable& table : filled_tables(definitions, published, records))
     for (const Row& row : table.rows) {
       for (std::size_t i = 0; i < row.cells.size(); ++i)
         shown += row.cells[i].published && !table.columns[i].key.starts_with("triangles") &&
@@ -218,12 +218,12 @@ TEST(Record, CallsAFileByAPlainNameBesideItsPath) {
   }
 }
 
-TEST(PaperTables, ShowAnOwnSceneInPlaceOfThePapers) {
+TEST(FilledTables, ShowAnOwnSceneInPlaceOfThePapers) {
   Record record = sample_record();
   record.scene.path = "my/rope.json";  // has the name of one of the paper's
   const std::vector<Record> own = {record};
   std::size_t rows = 0;
-  for (const PaperTable& table : paper_tables(own))
+  for (const FilledTable& table : filled_tables(own))
     for (const Row& row : table.rows) {
       ++rows;
       EXPECT_EQ(row.scene, "rope");
@@ -232,13 +232,13 @@ TEST(PaperTables, ShowAnOwnSceneInPlaceOfThePapers) {
   EXPECT_GT(rows, 4u);
   for (const ClaimResult& claim : judge_claims(own)) EXPECT_TRUE(claim.evidence.empty()) << claim.id;
   const std::vector<Record> papers = {sample_record()};
-  EXPECT_TRUE(paper_tables(papers).front().rows.front().cells.front().published);
+  EXPECT_TRUE(filled_tables(papers).front().rows.front().cells.front().published);
 }
 
 TEST(Schema, HoldsForWhatIsWritten) {
   const std::vector<Record> records = {sample_record()};
   EXPECT_EQ(schema_violation(to_json(records[0]), "run.schema.json"), "");
-  nlohmann::ordered_json document = tables_json(paper_tables(records), judge_claims(records), records);
+  nlohmann::ordered_json document = tables_json(filled_tables(records), judge_claims(records), records);
   EXPECT_EQ(schema_violation(document, "tables.schema.json"), "");
   EXPECT_NE(document.dump().find("\"marked\":true"), std::string::npos);
   document["tables"][0]["rows"][0]["cells"][1]["measured"] = "many";
@@ -273,7 +273,7 @@ TEST(TablesJson, CsvHasOneLineACellAndQuotesCommas) {
   const nlohmann::ordered_json column = {
       {"key", "k"}, {"title", "swift, slow"}, {"quantity", "ms.traversal"}, {"strategy", "slow"}};
   nlohmann::ordered_json definitions = one_column(column);
-  const auto tables = paper_tables(definitions, {}, records);
+  const auto tables = filled_tables(definitions, {}, records);
   EXPECT_EQ(tables_csv(tables),
             "table,scene,key,title,unit,published,measured,low,high,reason,pipeline,marked\n"
             "t,rope,k,\"swift, slow\",,,9,6,45,,today,\n");
