@@ -7,6 +7,7 @@
 #include "core/radial/bone_observer.h"
 #include "core/radial/cluster_hierarchy.h"
 #include "core/radial/distance_field.h"
+#include "core/radial/orientation.h"
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
 
@@ -23,11 +24,11 @@ namespace {
 class RvbcCuller : public Culler {
  public:
   RvbcCuller(const StrategyInput& setup, radial::AtomicClusters clusters,
-             std::vector<radial::ObserverKind> kinds, const RvbcOptions& options)
+             std::vector<radial::ObserverKind> kinds)
       : clusters_(std::move(clusters)),
         kinds_(std::move(kinds)),
         hierarchy_(setup.mesh, setup.reference, clusters_, setup.pipeline),
-        table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
+        table_(setup.mesh, hierarchy_.groups(), radial::SegmentTest::all_corners, setup.pipeline),
         unmerged_(clusters_.clusters.size()) {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }
@@ -84,7 +85,7 @@ Prepared make_rvbc(const StrategyInput& setup, const RvbcOptions& options) {
   Preparation preparation{clock.milliseconds(Stage::distance_and_heat),
                           clock.milliseconds(Stage::decomposition), clusters.of_triangle,
                           static_cast<int>(clusters.clusters.size())};
-  auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds), options);
+  auto culler = std::make_unique<RvbcCuller>(setup, std::move(clusters), std::move(kinds));
   return {compose(std::move(culler), setup, {options.relative_boxes}), preparation};
 }
 

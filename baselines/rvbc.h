@@ -3,16 +3,12 @@
 #include <string_view>
 
 #include "core/detect/strategy.h"
-#include "core/radial/orientation.h"
 
 namespace cscd {
 
 struct RvbcOptions {
   std::string_view name = "rvbc";  // begins error texts
   bool relative_boxes = false;     // the 2014 paper's addition
-  // The corners that decide a triangle's sign towards a segment observer (rule
-  // three-vertices, core/soundness.md).
-  radial::SegmentTest segment_test = radial::SegmentTest::all_corners;
 };
 
 // Radial view based culling with fixed clusters (Wong, Lin, Hung, Huang and Lii, ACM TOG 32(4), 2013). Throws

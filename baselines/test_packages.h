@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "baselines/aabb.h"
+#include "baselines/plain.h"
 #include "core/elementary/catalogue.h"
 #include "scenes/random/random_interval.h"
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/brute.h"
+#include "baselines/plain.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"

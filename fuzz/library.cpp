@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "baselines/brute.h"
+#include "baselines/plain.h"
 #include "core/elementary/catalogue.h"
 #include "fuzz/numbers.h"
 

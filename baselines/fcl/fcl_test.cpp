@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "baselines/base.h"
+#include "baselines/plain.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"

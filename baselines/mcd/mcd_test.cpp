@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "baselines/brute.h"
 #include "baselines/mcd/contour.h"
 #include "baselines/mcd/discs.h"
 #include "baselines/mcd/normal_cones.h"
+#include "baselines/plain.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "baselines/brute.h"
+#include "baselines/plain.h"
 #include "bench/testing/random_step.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"

@@ -2,13 +2,11 @@
 
 #include <array>
 
-#include "baselines/aabb.h"
-#include "baselines/base.h"
-#include "baselines/brute.h"
 #include "baselines/cgal_boxes/cgal_boxes.h"
 #include "baselines/embree/embree.h"
 #include "baselines/fcl/fcl.h"
 #include "baselines/mcd/mcd.h"
+#include "baselines/plain.h"
 #include "baselines/rvbc.h"
 #include "baselines/selfccd.h"
 #include "bench/measure/strategies/unknown_name.h"
@@ -20,6 +18,18 @@ namespace cscd::bench {
 namespace {
 
 constexpr std::string_view kAblation = "ablation";
+
+using Make = Prepared (*)(const StrategyInput&);
+
+// Rows of the ablation that promise what the published methods, or the engine, promise.
+constexpr Strategy of_published(std::string_view name, std::string_view source, Make make) {
+  return {name, source,   Guarantee::first_contact, Needs::closed_mesh_with_bones, StrategyKind::published,
+          make, kAblation};
+}
+constexpr Strategy of_engine(std::string_view name, std::string_view source, Make make) {
+  return {name, source,   Guarantee::first_contact, Needs::closed_mesh, StrategyKind::adaptive,
+          make, kAblation};
+}
 
 // A row names what it says of its strategy; what it leaves out has the default of core/detect/strategy.h.
 constexpr std::array kStrategies = {
@@ -130,163 +140,58 @@ constexpr std::array kStrategies = {
     },
 #endif
     // One thing at a time left out, or added.
-    Strategy{
-        .name = "rvbc_relative",
-        .source = "rvbc with relative boxes",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_unrefined",
-        .source = "drvbc without refinement of its atomic clusters",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_bones",
-        .source = "drvbc with one atomic cluster for each bone",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_pieces",
-        .source = "drvbc with one atomic cluster for each connected piece of a bone's surface",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_unmerged",
-        .source = "drvbc without mega clusters",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_unrelative",
-        .source = "drvbc without relative boxes",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_uncached",
-        .source = "drvbc without its cache of triangles that were not positive",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh_with_bones,
-        .kind = StrategyKind::published,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_one_cover",
-        .source = "drvbc_fast with the first of its covers alone",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_two_covers",
-        .source = "drvbc_fast with at most two covers",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_swept_bounds",
-        .source = "drvbc_fast with bounds of whole paths",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_no_stars",
-        .source = "drvbc_fast without stars of vertices",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_no_planes",
-        .source = "drvbc_fast without planes of triangles",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
-            },
-        .group = kAblation,
-    },
-    Strategy{
-        .name = "drvbc_fast_whole_steps",
-        .source = "drvbc_fast without parts of long steps",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(
-                  setup, {.name = "drvbc_fast_whole_steps", .long_descent = DrvbcFastOptions::kNever});
-            },
-        .group = kAblation,
-    },
+    of_published("rvbc_relative", "rvbc with relative boxes",
+                 [](const StrategyInput& setup) {
+                   return make_rvbc(setup, {.name = "rvbc_relative", .relative_boxes = true});
+                 }),
+    of_published("drvbc_unrefined", "drvbc without refinement of its atomic clusters",
+                 [](const StrategyInput& setup) {
+                   return make_drvbc(setup, {.bones = {.refinement = false}, .name = "drvbc_unrefined"});
+                 }),
+    of_published("drvbc_bones", "drvbc with one atomic cluster for each bone",
+                 [](const StrategyInput& setup) {
+                   return make_drvbc(setup, {.division = radial::Division::none, .name = "drvbc_bones"});
+                 }),
+    of_published("drvbc_pieces", "drvbc with one atomic cluster for each connected piece of a bone's surface",
+                 [](const StrategyInput& setup) {
+                   return make_drvbc(setup, {.division = radial::Division::pieces, .name = "drvbc_pieces"});
+                 }),
+    of_published(
+        "drvbc_unmerged", "drvbc without mega clusters",
+        [](const StrategyInput& setup) { return make_drvbc(setup, {.gamma = 0, .name = "drvbc_unmerged"}); }),
+    of_published("drvbc_unrelative", "drvbc without relative boxes",
+                 [](const StrategyInput& setup) {
+                   return make_drvbc(setup, {.relative_boxes = false, .name = "drvbc_unrelative"});
+                 }),
+    of_published("drvbc_uncached", "drvbc without its cache of triangles that were not positive",
+                 [](const StrategyInput& setup) {
+                   return make_drvbc(setup, {.name = "drvbc_uncached", .cache = false});
+                 }),
+    of_engine("drvbc_fast_one_cover", "drvbc_fast with the first of its covers alone",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_one_cover", .covers = 1});
+              }),
+    of_engine("drvbc_fast_two_covers", "drvbc_fast with at most two covers",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_two_covers", .covers = 2});
+              }),
+    of_engine("drvbc_fast_swept_bounds", "drvbc_fast with bounds of whole paths",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
+              }),
+    of_engine("drvbc_fast_no_stars", "drvbc_fast without stars of vertices",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
+              }),
+    of_engine("drvbc_fast_no_planes", "drvbc_fast without planes of triangles",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_planes", .planes = false});
+              }),
+    of_engine("drvbc_fast_whole_steps", "drvbc_fast without parts of long steps",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(
+                    setup, {.name = "drvbc_fast_whole_steps", .long_descent = DrvbcFastOptions::kNever});
+              }),
     Strategy{
         .name = "drvbc_fast_fixed_covers",
         .source = "drvbc_fast with covers that stay as preparation cut them",
@@ -328,19 +233,11 @@ constexpr std::array kStrategies = {
             },
         .group = kAblation,
     },
-    Strategy{
-        .name = "drvbc_fast_no_bones",
-        .source = "drvbc_fast, all covers of the surface without a trial",
-        .guarantee = Guarantee::first_contact,
-        .needs = Needs::closed_mesh,
-        .kind = StrategyKind::adaptive,
-        .make =
-            [](const StrategyInput& setup) {
-              return make_drvbc_fast(
-                  setup, {.name = "drvbc_fast_no_bones", .clusters = DrvbcFastOptions::Clusters::of_surface});
-            },
-        .group = kAblation,
-    },
+    of_engine("drvbc_fast_no_bones", "drvbc_fast, all covers of the surface without a trial",
+              [](const StrategyInput& setup) {
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_bones",
+                                               .clusters = DrvbcFastOptions::Clusters::of_surface});
+              }),
     Strategy{
         .name = "drvbc_one_vertex",
         .source = "drvbc with the paper's test of one vertex for segments",

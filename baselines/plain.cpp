@@ -1,7 +1,31 @@
-#include "baselines/aabb.h"
+#include "baselines/plain.h"
 
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
+
+namespace cscd {
+namespace {
+
+class BruteCuller : public Culler {
+ public:
+  explicit BruteCuller(std::int32_t triangles) : triangles_(triangles) {}
+
+  void refit(const Motion&) override {}
+  CullCounts cull(TrianglePairSink& sink) override {
+    for (std::int32_t a = 0; a < triangles_; ++a)
+      for (std::int32_t b = a + 1; b < triangles_; ++b) sink.add(TriangleId{a}, TriangleId{b});
+    return {};
+  }
+
+ private:
+  std::int32_t triangles_;
+};
+
+}  // namespace
+
+Prepared make_base(const StrategyInput& setup) {
+  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
+}
 
 // Idea: a box has three pairs of planes. It takes half the memory of a 16-DOP and is quicker to refit and to
 // compare, but lets more triangle pairs through.
@@ -16,10 +40,13 @@
 // half a cache line each, are in vector code.
 //
 // A dropped pair is proven apart, because its swept boxes are disjoint.
-namespace cscd {
-
 Prepared make_aabb(const StrategyInput& setup) {
   return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup), {}};
+}
+
+Prepared make_brute(const StrategyInput& setup) {
+  auto culler = std::make_unique<BruteCuller>(static_cast<std::int32_t>(setup.mesh.triangle_count()));
+  return {compose(std::move(culler), setup), {}};
 }
 
 }  // namespace cscd
