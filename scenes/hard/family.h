@@ -7,8 +7,8 @@
 #include "scenes/queries/query_file.h"
 #include "scenes/random/surface.h"
 
-// Families of elementary queries that are hard on purpose. Each family has its own file and a story that
-// tells why its queries are hard.
+// Families of elementary queries that are hard on purpose. Each family has a story that tells why its
+// queries are hard.
 //
 // Every query is made on a lattice: its coordinates are integers times a power of two. So the query is
 // degenerate exactly, and its answer can be proved. `disturbance.h` then moves the query off the lattice by
@@ -23,7 +23,7 @@ struct Family {
   Query (*make)(Kind kind, Random& random);
 };
 
-// All families. A new family is a file and a row in families.cpp.
+// All families. A new family is a function and a row in families.cpp.
 std::span<const Family> families();
 
 // The referee's answer: true if the features of the query touch at some t in [0, 1].
