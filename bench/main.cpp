@@ -10,8 +10,6 @@
 #include <unistd.h>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/command_line/help_format.h"
-#include "bench/cli/command_line/plain_numbers.h"
 #include "bench/cli/command_line/standard_streams.h"
 #include "bench/cli/command_line/usage.h"
 #include "bench/cli/command_line/version.h"

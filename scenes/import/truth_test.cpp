@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/character/pose.h"
-#include "scenes/clip/test_truth.h"
+#include "scenes/clip/hdf5_handle.h"
 #include "scenes/import/read_model.h"
 
 // Compares model files with one unusual feature each against positions that an independent program computed
@@ -17,6 +17,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kFramesPerSecond = 30;
+
+// Reads the dataset /positions [frames,
+// vertices, 3] of an HDF5 file that need not be a point cache. Returns [frames][vertices], empty if there
+// is no such dataset.
+std::vector<std::vector<Vec3>> read_truth(const std::filesystem::path& path) {
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle positions(H5Dopen2(file.get(), "/positions", H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Dget_space(positions.get()), H5Sclose);
+  hsize_t shape[3] = {0, 0, 0};
+  if (H5Sget_simple_extent_ndims(space.get()) != 3) return {};
+  H5Sget_simple_extent_dims(space.get(), shape, nullptr);
+  std::vector<double> numbers(shape[0] * shape[1] * 3);
+  H5Dread(positions.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
+  std::vector<std::vector<Vec3>> frames(shape[0]);
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+    frames[i / 3 / shape[1]].emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return frames;
+}
 
 fs::path import_folder() {
   if (const char* named = std::getenv("CSCD_IMPORT")) return named;

@@ -6,17 +6,31 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "bench/query/input/ignored.h"
 #include "bench/query/input/import.h"
-#include "bench/query/input/up.h"
+#include "core/detect/exclusions.h"
 #include "core/detect/strategy.h"
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/clip/clip.h"
 
 namespace cscd::bench {
+
+// What the user ignores in the answers about an input.
+struct Ignored {
+  std::vector<std::pair<std::string, std::string>>
+      names;                      // of places that ignore each other, with * for any letters
+  std::optional<int> neighbours;  // bones that are at most so many joints apart ignore each other
+  Exclusions triangles;           // the pairs of triangles that these two come to
+};
+
+// Which axis of an input points up, for whoever looks at it. No answer depends on it.
+struct Up {
+  std::string axis = "y";    // one of scenes::kUpAxes
+  std::string because = {};  // who says so, as in "z, because the file says so"; empty where nothing does
+};
 
 // The input of a command: a scene, given by its name, or a point cache or model file, given by its path.
 struct Input {
