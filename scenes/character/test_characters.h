@@ -19,8 +19,8 @@ inline Transform quarter_turn(const Vec3& move = Vec3::Zero()) {
 // A tube along x from 0 to 4 on two joints: `lower` at x = 0 and `upper` at x = 2, under a root that stands
 // at (0, 0, 5). Vertices below x = 1.5 follow the lower joint, vertices beyond 2.5 the upper joint, and both
 // joints share the vertices between. The clip 'bend' turns the upper joint by a quarter turn in one second.
-inline Character bending_tube() {
-  const test::Shape tube = test::capped_tube(8, 16, 0.5, 4);
+inline Character bending_tube(int sides = 8, int rings = 16) {
+  const test::Shape tube = test::capped_tube(sides, rings, 0.5, 4);
   Character character;
   character.nodes = {{"root", -1, moved_by({0, 0, 5})},
                      {"tube", 0, Transform()},

@@ -31,12 +31,13 @@ MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
     "core/base/bring_near": "core/base/warm_cache", "core/detect/carried_filter": "core/detect/double_filter",
     "core/detect/carried_look": "core/detect/single_filter", "core/fast/cut/decided_cut": "core/fast/prepare/carried_cut",
-    "core/fast/cut/": "core/fast/prepare/", "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
+    "core/fast/cut/observer": "core/fast/prepare/cluster_observer", "core/fast/cut/": "core/fast/prepare/",
+    "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
     "core/fast/follow/following_cover": "core/fast/adaptive_cover", "core/fast/keep_all/": "core/fast/contour/",
     "core/fast/look/": "core/fast/classify/", "core/fast/prove/": "core/fast/certify/", "core/geometry/halves": "core/geometry/simd_halves",
     "core/geometry/lanes_of": "core/geometry/simd_register", "core/geometry/lanes16": "core/geometry/simd_floats",
     "core/geometry/lanes.": "core/geometry/simd_doubles.", "core/geometry/shorts32": "core/geometry/simd_shorts",
-    "core/geometry/triangle_distance": "scenes/catalog/triangle_distance",
+    "core/hierarchy/descent": "core/hierarchy/overlap_descent", "core/radial/observer": "core/radial/bone_observer",
 }
 # What the page adds to every record of a kind.
 NOTES = {
