@@ -1,4 +1,4 @@
-#include "bench/query/exchange/export_files.h"
+#include "bench/query/export_files.h"
 
 #include <algorithm>
 #include <cstdio>
