@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/cli/output/schema.h"
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::bench {
 namespace {
@@ -19,15 +19,9 @@ std::string document(const std::string& answer, const std::string& guarantee = "
 }
 
 void expect_refused(const std::string& text, const std::string& reason) {
-  try {
-    parse_answers(text, "answers a.json");
-    FAIL() << "takes " << text;
-  } catch (const InputError& error) {
-    const std::string line = error.what();
-    EXPECT_NE(line.find(reason), std::string::npos) << line;
-    EXPECT_EQ(line.find("answers a.json"), 0u) << line;
-    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-  }
+  const std::string line = test::refusal([&] { parse_answers(text, "answers a.json"); });
+  EXPECT_NE(line.find(reason), std::string::npos) << text << ": " << line;
+  EXPECT_EQ(line.find("answers a.json"), 0u) << line;
 }
 
 TEST(BenchmarkAnswers, KeepToTheirSchemaAndComeBack) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <set>
 #include <unistd.h>
 
@@ -11,7 +10,8 @@
 #include "bench/benchmark/judge.h"
 #include "bench/cli/output/schema.h"
 #include "bench/measure/strategies/catalogue.h"
-#include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/exact/triangles_meet.h"
 #include "scenes/hard/disturbance.h"
@@ -22,14 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 namespace hard = scenes::hard;
 using nlohmann::ordered_json;
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-void write(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 // The folder of a small benchmark without scenes, made once for all tests of this program.
 class PublicBenchmark : public testing::Test {
@@ -52,12 +44,7 @@ class PublicBenchmark : public testing::Test {
   void TearDown() override { fs::remove_all(copy); }
 
   static void expect_refused(const std::function<void()>& act, const std::string& reason) {
-    try {
-      act();
-      FAIL() << reason;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-    }
+    EXPECT_NE(test::refusal([&] { act(); }).find(reason), std::string::npos);
   }
 
   // What a program that knows the truth would answer.
@@ -174,7 +161,8 @@ TEST(Subjects, AreClosedWhereTheySaySoAndDependOnTheirNumberAlone) {
 }
 
 TEST_F(PublicBenchmark, KeepsToItsSchemas) {
-  EXPECT_EQ(schema_violation(ordered_json::parse(read(copy / kManifestName)), "benchmark.schema.json"), "");
+  EXPECT_EQ(schema_violation(ordered_json::parse(test::read(copy / kManifestName)), "benchmark.schema.json"),
+            "");
   std::ifstream lines(copy / kTruthName);
   std::size_t count = 0;
   for (std::string line; std::getline(lines, line); ++count)
@@ -196,7 +184,8 @@ TEST_F(PublicBenchmark, IsTheSameToTheByteWhenMadeAgain) {
   make(folder / "again");
   std::size_t files = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder / "made")) {
-    EXPECT_EQ(read(entry.path()), read(folder / "again" / entry.path().filename())) << entry.path();
+    EXPECT_EQ(test::read(entry.path()), test::read(folder / "again" / entry.path().filename()))
+        << entry.path();
     ++files;
   }
   EXPECT_EQ(files, 7u);
@@ -208,10 +197,10 @@ TEST_F(PublicBenchmark, IsTheSameToTheByteWhenMadeAgain) {
 TEST_F(PublicBenchmark, IsRefusedWhereItIsDamaged) {
   const auto damage = [&](const char* name, const std::function<std::string(std::string)>& change,
                           const std::string& reason) {
-    const std::string whole = read(copy / name);
-    write(copy / name, change(whole));
+    const std::string whole = test::read(copy / name);
+    test::write(copy / name, change(whole));
     expect_refused([&] { read_benchmark(copy); }, reason);
-    write(copy / name, whole);
+    test::write(copy / name, whole);
     read_benchmark(copy);
   };
   const auto flipped = [](std::string bytes) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "bench/cli/output/json_text.h"
 #include "bench/cli/output/schema.h"
 #include "bench/compare/test_records.h"
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
@@ -313,15 +312,11 @@ TEST(Comparison, PutsTruthBeforeTimes) {
 }
 
 TEST(Sides, AreReadFromFilesAndFolders) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("cscd-compare-test-" + std::to_string(getpid()));
-  fs::create_directories(folder / "many");
-  const auto put = [&](const std::string& name, const std::string& text) {
-    std::ofstream(folder / name) << text;
-  };
-  put("one.json", json_text(to_json(small_record())));
-  put("many/a.json", json_text(to_json(small_record("aaaaaaaaaaaaaaaa", 1))));
-  put("many/tables.json", R"({"schema": "cscd.tables/1"})");
+  const cscd::test::Folder folder;
+  std::filesystem::create_directories(folder / "many");
+  cscd::test::write(folder / "one.json", json_text(to_json(small_record())));
+  cscd::test::write(folder / "many/a.json", json_text(to_json(small_record("aaaaaaaaaaaaaaaa", 1))));
+  cscd::test::write(folder / "many/tables.json", R"({"schema": "cscd.tables/1"})");
   EXPECT_EQ(read_side((folder / "one.json").string()).scenes.at("hand").size(), 1u);
   const Side both = read_side((folder / "one.json").string() + "," + (folder / "many").string());
   EXPECT_EQ(both.scenes.at("hand").size(), 2u);
@@ -329,9 +324,8 @@ TEST(Sides, AreReadFromFilesAndFolders) {
   EXPECT_THROW(read_side((folder / "none.json").string()), InputError);
   EXPECT_THROW(read_side((folder / "many/tables.json").string()), InputError);
   EXPECT_THROW(read_side(""), InputError);
-  fs::create_directories(folder / "empty");
+  std::filesystem::create_directories(folder / "empty");
   EXPECT_THROW(read_side((folder / "empty").string()), InputError);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "bench/cli/output/json_text.h"
 #include "bench/cli/output/schema.h"
 #include "bench/compare/test_records.h"
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
@@ -50,7 +50,8 @@ TEST(History, RefusesRecordsOfNoCommit) {
 }
 
 TEST(History, FindsTheCommitThatChangedARow) {
-  const fs::path folder = fs::temp_directory_path() / ("cscd-history-test-" + std::to_string(getpid()));
+  const cscd::test::Folder scratch;
+  const fs::path& folder = scratch.path;
   fs::create_directories(folder / "m");
   EXPECT_THROW(read_courses(folder, {}), InputError);
   for (int i = 0; i < 8; ++i) {
@@ -78,7 +79,6 @@ TEST(History, FindsTheCommitThatChangedARow) {
   EXPECT_EQ(both[1].commits.size(), 1u);
   std::ofstream(folder / "m" / "other.json") << "{}";
   EXPECT_THROW(read_courses(folder, {}), InputError);
-  fs::remove_all(folder);
 }
 
 }  // namespace

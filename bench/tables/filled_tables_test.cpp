@@ -8,7 +8,7 @@
 #include "bench/cli/output/schema.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/tables_json.h"
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::bench {
 namespace {
@@ -249,12 +249,7 @@ TEST(Schema, HoldsForWhatIsWritten) {
 TEST(Record, RefusesWhatIsNotWhole) {
   const nlohmann::ordered_json whole = to_json(sample_record());
   const auto refusal = [](const nlohmann::ordered_json& document) -> std::string {
-    try {
-      parse_record(document.dump(), "r.json");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusal([&] { parse_record(document.dump(), "r.json"); });
   };
   EXPECT_EQ(refusal(whole), "");
   nlohmann::ordered_json other = whole, short_counts = whole, short_times = whole, keyless = whole;

@@ -5,22 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <unistd.h>
 
 #include "bench/tables/wide_records.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A folder that is gone after the test.
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / ("cscd-latex-test-" + std::to_string(getpid()));
-  Scratch() { fs::create_directories(path); }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 std::vector<ShapedTable> tables_of(const std::vector<Record>& records, bool intervals) {
   std::vector<ShapedTable> tables = shaped_tables(filled_tables(records), records, intervals);
@@ -47,7 +40,7 @@ TEST(LatexTables, HaveThePapersShape) {
 TEST(LatexTables, CompileAndFitArticles) {
   if (std::system("kpsewhich booktabs.sty graphicx.sty article.cls >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "no LaTeX here; install texlive-latex-recommended";
-  const Scratch scratch;
+  const test::Folder scratch;
   std::vector<Record> records = wide_records({"rope", "hand", "octopus", "man", "box", "urchin"});
   records.push_back(wide_record("octopus_contact", Pipeline::vectorised));
   for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
@@ -64,8 +57,7 @@ TEST(LatexTables, CompileAndFitArticles) {
         "cd '" + scratch.path.string() +
         "' && pdflatex -interaction=nonstopmode -halt-on-error article.tex >out.txt 2>&1";
     const int status = std::system(command.c_str());
-    std::ifstream file(scratch.path / "article.log");
-    const std::string log{std::istreambuf_iterator<char>(file), {}};
+    const std::string log = test::read(scratch / "article.log");
     ASSERT_EQ(status, 0) << log;
     for (const char* complaint : {"Overfull", "Float too large", "LaTeX Error"})
       EXPECT_EQ(count(log, complaint), 0u) << log.substr(std::min(log.find(complaint), log.size()), 300);

@@ -3,14 +3,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
+#include "core/base/test_folder.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/sandbox/run_limited.h"
 
@@ -58,23 +56,11 @@ inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& lim
   return outcome;
 }
 
-// A folder that is gone after the test.
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / ("cscd-model-test-" + std::to_string(getpid()));
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
+// A folder whose files are named by texts.
+struct Scratch : test::Folder {
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
-
-inline void write(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-inline std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::read;
+using test::write;
 
 }  // namespace cscd::bench

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <set>
 #include <string>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/base/test_folder.h"
 #include "scenes/catalog/test_scenes.h"
 
 // The program as a user of a shell has it, with scenes and a cache of its own in a folder whose name has a
@@ -38,10 +38,7 @@ class Program : public testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   void put(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
-  std::string text(const std::string& name) const {
-    std::ifstream file(folder / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string text(const std::string& name) const { return test::read(folder / name); }
   // Names of what lies in the folder, in order, beside scenes and cache.
   std::string files() const {
     std::set<std::string> names;

@@ -4,19 +4,14 @@
 #include <limits>
 #include <string>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
 namespace {
 
 std::string error_of(const Rig& rig) {
-  try {
-    validate(rig);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { validate(rig); });
 }
 
 Rig chain() {

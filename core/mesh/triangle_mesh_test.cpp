@@ -1,14 +1,13 @@
 #include "core/mesh/triangle_mesh.h"
 
 #include <algorithm>
-#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <map>
 #include <random>
 #include <set>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
@@ -16,15 +15,6 @@ namespace {
 
 using test::corners;
 using test::Shape;
-
-std::string error_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 bool mentions(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -179,7 +169,7 @@ TEST(TriangleMesh, ComponentsAreNumberedByTheirFirstTriangle) {
 
 TEST(TriangleMesh, RefusesWhatIsNotATriangleList) {
   const auto make = [](std::vector<Triangle> triangles, std::size_t vertices) {
-    return error_of([&] { TriangleMesh(std::move(triangles), vertices, "hand.obj"); });
+    return test::refusal([&] { TriangleMesh(std::move(triangles), vertices, "hand.obj"); });
   };
   EXPECT_EQ(make({corners(0, 1, 2), corners(0, 1, 3)}, 3),
             "hand.obj: triangle 1 names vertex 3, outside [0, 3); indices count from 0");
@@ -196,7 +186,7 @@ TEST(TriangleMesh, RequireClosedTellsWhoWhatAndHowToMend) {
   shape.triangles.pop_back();
   std::swap(shape.triangles[1][0], shape.triangles[1][1]);
   const TriangleMesh mesh = shape.mesh();
-  const std::string text = error_of([&] { require_closed_and_oriented(mesh, "strategy drvbc"); });
+  const std::string text = test::refusal([&] { require_closed_and_oriented(mesh, "strategy drvbc"); });
   EXPECT_TRUE(
       mentions(text, "strategy drvbc needs a closed, manifold, consistently oriented surface: edge (0, 3)"));
   EXPECT_TRUE(mentions(text, "boundary edges: 3, inconsistently oriented edges: 3"));
@@ -208,7 +198,7 @@ TEST(TriangleMesh, RequireFiniteNamesTheFirstBadVertex) {
   EXPECT_NO_THROW(require_finite(positions, "frame 3"));
   positions[2].y() = std::numeric_limits<double>::infinity();
   positions[3].x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(error_of([&] { require_finite(positions, "frame 3"); }),
+  EXPECT_EQ(test::refusal([&] { require_finite(positions, "frame 3"); }),
             "frame 3: vertex 2 is at (0, inf, 0); every coordinate must be finite");
 }
 

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
 #include <iterator>
@@ -15,6 +14,8 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd {
 namespace {
@@ -23,34 +24,20 @@ namespace fs = std::filesystem;
 
 class Output : public testing::Test {
  protected:
-  fs::path folder = fs::temp_directory_path() / ("cscd-output-target-" + std::to_string(getpid()));
-  void SetUp() override {
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
+  const test::Folder scratch;
+  const fs::path folder = scratch.path;
   std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
 };
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-void put(const fs::path& path, const std::string& text) {
-  std::ofstream(path) << text;
-}
 std::string refusal(const fs::path& path, bool force = false) {
-  try {
+  return test::refusal([&] {
     const OutputTarget target = find_output_target(path, force);
     UnfinishedFile file(target.path, force);
     file.write("new");
     file.finish();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST_F(Output, AppearsWholeOrNotAtAll) {
@@ -62,25 +49,25 @@ TEST_F(Output, AppearsWholeOrNotAtAll) {
   }
   EXPECT_EQ(files(), 0u);
   EXPECT_EQ(refusal(folder / "a"), "");
-  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(test::read(folder / "a"), "new");
   EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(Output, ReplacesOnlyWhenForcedAndKeepsPermissions) {
-  put(folder / "a", "old");
+  test::write(folder / "a", "old");
   fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_NE(refusal(folder / "a").find("--force"), std::string::npos);
-  EXPECT_EQ(text_of(folder / "a"), "old");
+  EXPECT_EQ(test::read(folder / "a"), "old");
   EXPECT_EQ(refusal(folder / "a", true), "");
-  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(test::read(folder / "a"), "new");
   EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
 TEST_F(Output, DoesNotReplaceWhatCameInBetween) {
   UnfinishedFile file(folder / "a", false);
-  put(folder / "a", "came first");
+  test::write(folder / "a", "came first");
   EXPECT_THROW(file.finish(), InputError);
-  EXPECT_EQ(text_of(folder / "a"), "came first");
+  EXPECT_EQ(test::read(folder / "a"), "came first");
 }
 
 TEST_F(Output, TellsWhyTheSystemRefuses) {
@@ -119,12 +106,12 @@ TEST_F(Output, RemovesWhatKilledProcessesLeftLongAgo) {
 }
 
 TEST_F(Output, FollowsLinksAndLeavesThem) {
-  put(folder / "a", "old");
+  test::write(folder / "a", "old");
   fs::create_symlink("a", folder / "link");
   fs::create_symlink("link", folder / "link2");
   EXPECT_NE(refusal(folder / "link2"), "");
   EXPECT_EQ(refusal(folder / "link2", true), "");
-  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(test::read(folder / "a"), "new");
   EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link2"));
 }
 
@@ -133,7 +120,7 @@ TEST_F(Output, MakesTheTargetOfADanglingLink) {
   EXPECT_EQ(refusal(folder / "link"), "");
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_FALSE(fs::is_symlink(folder / "there"));
-  EXPECT_EQ(text_of(folder / "there"), "new");
+  EXPECT_EQ(test::read(folder / "there"), "new");
 }
 
 TEST_F(Output, RefusesLinksInACircleFoldersAndSockets) {
@@ -201,7 +188,7 @@ TEST_F(Output, VanishesAtSignalsThatEndTheProcess) {
       for (int i = 0; i < 3; ++i) several[i].emplace(folder / std::to_string(i), false);
       several[1].reset();
       fs::create_directory(folder / "work");
-      put(folder / "work" / "frames", "some");
+      test::write(folder / "work" / "frames", "some");
       static const Temporary work(folder / "work");
       if (files() != 3) _exit(1);
     });
@@ -219,7 +206,7 @@ TEST_F(Output, EndsTheHelperThatWritesIntoAFolder) {
     const pid_t process = fork();
     if (process == 0) {  // writes as long as it lives
       close(ends[0]);
-      for (int i = 0;; ++i) put(folder / "work" / std::to_string(i), "frame");
+      for (int i = 0;; ++i) test::write(folder / "work" / std::to_string(i), "frame");
     }
     static const TemporaryHelper helper(process);
     usleep(20'000);
@@ -241,7 +228,7 @@ TEST_F(Output, LeavesFinishedFilesAndThoseOfTheParentAlone) {
                            file.finish();
                          }),
             SIGINT);
-  EXPECT_EQ(text_of(folder / "child"), "whole");
+  EXPECT_EQ(test::read(folder / "child"), "whole");
   EXPECT_NO_THROW(of_parent.finish());
 }
 

@@ -6,7 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/catalog/test_scenes.h"
@@ -17,22 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string message(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
-    return error.what();
-  }
-  return "";
-}
-
 std::string refusal(const std::string& from, const std::string& to) {
   std::string text = kSmallScene;
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
-  return message([&] { generate(parse_scene("small", text, "small.json")); });
+  return test::refusal([&] { generate(parse_scene("small", text, "small.json")); });
 }
 
 TEST(SceneFile, SaysWhatTheSceneIs) {
@@ -109,7 +100,7 @@ TEST(Scene, WithContactResponseHasPredictionsInItsFramesAndItsDigest) {
 }
 
 TEST(SceneFile, PromisesADigest) {
-  const std::string text = message([] { generate(parse_scene("small", kSmallScene, "small.json")); });
+  const std::string text = test::refusal([] { generate(parse_scene("small", kSmallScene, "small.json")); });
   EXPECT_EQ(text.find("scene small: the frames have digest "), 0u) << text;
   EXPECT_NE(text.find("the scene file expects 0000000000000000"), std::string::npos) << text;
 }
@@ -132,8 +123,6 @@ TEST(Scene, RunsTheEffectsThatItNamesAndNoOther) {
 class Catalogue : public testing::Test {
  protected:
   Catalogue() {
-    std::string pattern = (fs::temp_directory_path() / "cscd-scenes-XXXXXX").string();
-    root = mkdtemp(pattern.data());
     fs::create_directory(root / "scenes");
     put("small", small_scene_with_digest());
     setenv("CSCD_SCENES", (root / "scenes").c_str(), 1);
@@ -142,10 +131,9 @@ class Catalogue : public testing::Test {
   ~Catalogue() override {
     unsetenv("CSCD_SCENES");
     unsetenv("CSCD_CACHE");
-    fs::remove_all(root);
   }
   void put(const std::string& name, const std::string& text) {
-    std::ofstream(root / "scenes" / (name + ".json")) << text;
+    test::write(root / "scenes" / (name + ".json"), text);
   }
   static std::string digest_of(ClipSource& source) {
     DigestSink sink;
@@ -159,7 +147,8 @@ class Catalogue : public testing::Test {
     EXPECT_EQ(digest_of(*source), scene.expected.digest.value_or(digest_of(*source)));
     return frames;
   }
-  fs::path root;
+  const test::Folder scratch;
+  const fs::path root = scratch.path;
 };
 
 TEST_F(Catalogue, ListsItsScenesInOrder) {
@@ -170,8 +159,8 @@ TEST_F(Catalogue, ListsItsScenesInOrder) {
   EXPECT_EQ(scenes[1].name, "small");
   EXPECT_EQ(scenes[1].story, "A chain falls. It is led by one end.");
   EXPECT_EQ(scenes[1].effects, (std::vector<std::string>{"chain_dynamics", "skinning_linear"}));
-  EXPECT_EQ(message([] { load_scene("nosuch"); }), "unknown scene nosuch; known are: another, small");
-  EXPECT_EQ(message([] { load_scene("../scenes/small"); }).substr(0, 13), "unknown scene");
+  EXPECT_EQ(test::refusal([] { load_scene("nosuch"); }), "unknown scene nosuch; known are: another, small");
+  EXPECT_EQ(test::refusal([] { load_scene("../scenes/small"); }).substr(0, 13), "unknown scene");
 }
 
 TEST_F(Catalogue, ListsAFaultySceneWithItsFault) {
@@ -188,7 +177,7 @@ TEST_F(Catalogue, ListsAFaultySceneWithItsFault) {
   EXPECT_NE(scenes[3].fault.find("odd.json: story must be a text"), std::string::npos) << scenes[3].fault;
   EXPECT_NE(scenes[4].fault.find("scalar.json: must be an object"), std::string::npos) << scenes[4].fault;
   EXPECT_EQ(scenes[5].fault, "");
-  EXPECT_EQ(message([] { load_scene("small"); }), "");
+  EXPECT_EQ(test::refusal([] { load_scene("small"); }), "");
 }
 
 TEST_F(Catalogue, TakesASceneFileFromAnyPath) {
@@ -213,11 +202,12 @@ TEST_F(Catalogue, TakesASceneFileFromAnyPath) {
       << "beside the file first";
   EXPECT_EQ(load_scene("small").shape_parameters.number("radius"), 1);
 
-  EXPECT_NE(message([&] { load_scene((folder / "no.json").string()); }).find("no such file"),
+  EXPECT_NE(test::refusal([&] { load_scene((folder / "no.json").string()); }).find("no such file"),
             std::string::npos);
   fs::create_directory(folder / "folder.json");
-  EXPECT_NE(message([&] { load_scene((folder / "folder.json").string()); }).find("not an ordinary file"),
-            std::string::npos);
+  EXPECT_NE(
+      test::refusal([&] { load_scene((folder / "folder.json").string()); }).find("not an ordinary file"),
+      std::string::npos);
 }
 
 TEST_F(Catalogue, DoesWithoutCountsAndDigestUntilTheyAreAccepted) {
@@ -254,7 +244,8 @@ TEST_F(Catalogue, DoesWithoutCountsAndDigestUntilTheyAreAccepted) {
 
 TEST_F(Catalogue, AcceptsInPlaceOfWrongExpectations) {
   put("small", kSmallScene);
-  EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("cscd scene accept"), std::string::npos);
+  EXPECT_NE(test::refusal([] { open_scene(load_scene("small")); }).find("cscd scene accept"),
+            std::string::npos);
   accept_scene(root / "scenes" / "small.json");
   EXPECT_NO_THROW(open_scene(load_scene("small")));
 }
@@ -291,19 +282,20 @@ TEST_F(Catalogue, TakesFromItsBaseWhatASceneDoesNotSay) {
 
   const auto file = (root / "scenes" / "variant.json").string();
   put("variant", R"({"patch": []})");
-  EXPECT_NE(message([] { load_scene("variant"); }).find("changes a base, and none is named"),
+  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("changes a base, and none is named"),
             std::string::npos);
   put("variant", R"({"base": "small", "patch": [{"op": "replace", "path": "/effects/9/drag", "value": 1}]})");
-  EXPECT_NE(message([] { load_scene("variant"); }).find("its patch (RFC 6902) does not fit"),
+  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("its patch (RFC 6902) does not fit"),
             std::string::npos);
   put("variant", R"({"base": "small", "expected": {"digest": "00"}})");
-  EXPECT_EQ(message([] { load_scene("variant"); }), file + ": story is missing; add it");
+  EXPECT_EQ(test::refusal([] { load_scene("variant"); }), file + ": story is missing; add it");
   put("variant", R"({"base": "small", "story": "A. B."})");
-  EXPECT_EQ(message([] { load_scene("variant"); }), "") << "a digest may come later";
+  EXPECT_EQ(test::refusal([] { load_scene("variant"); }), "") << "a digest may come later";
   put("variant", R"({"base": "nosuch"})");
-  EXPECT_NE(message([] { load_scene("variant"); }).find("nosuch.json: no such file"), std::string::npos);
+  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("nosuch.json: no such file"),
+            std::string::npos);
   put("second", R"({"base": "variant"})");
-  EXPECT_NE(message([] { load_scene("second"); }).find("has a base itself"), std::string::npos);
+  EXPECT_NE(test::refusal([] { load_scene("second"); }).find("has a base itself"), std::string::npos);
 }
 
 TEST_F(Catalogue, FindsItsFolder) {
@@ -317,7 +309,7 @@ TEST_F(Catalogue, FindsItsFolder) {
   EXPECT_EQ(cache_folder(), scenes_folder().parent_path() / ".cache");
   fs::current_path(before);
   setenv("CSCD_SCENES", (root / "a").c_str(), 1);
-  EXPECT_NE(message([] { scenes_folder(); }).find("holds no scene file"), std::string::npos);
+  EXPECT_NE(test::refusal([] { scenes_folder(); }).find("holds no scene file"), std::string::npos);
 }
 
 TEST_F(Catalogue, GeneratesOnceAndAgainWhenTheCacheIsDamaged) {
@@ -367,7 +359,7 @@ TEST_F(Catalogue, KeepsWhatEachEffectTook) {
 
   const fs::path file = cache_file(scene).replace_extension(".json");
   std::ofstream(file) << "{";
-  EXPECT_NE(message([&] { effect_costs(scene); }).find("remove it, and the scene is generated anew"),
+  EXPECT_NE(test::refusal([&] { effect_costs(scene); }).find("remove it, and the scene is generated anew"),
             std::string::npos);
   fs::remove(file);
   EXPECT_EQ(generated(scene), 6u) << "a cache that does not tell is none";
@@ -393,7 +385,7 @@ TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
   text.replace(text.find("\"drag\": 0.5"), 11, "\"drag\": 0.6");
   put("small", text);
   EXPECT_NE(cache_file(load_scene("small")), file);
-  EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("the frames have digest"),
+  EXPECT_NE(test::refusal([] { open_scene(load_scene("small")); }).find("the frames have digest"),
             std::string::npos);
   EXPECT_FALSE(fs::exists(cache_file(load_scene("small")))) << "unverified frames are not kept";
 }
@@ -401,8 +393,9 @@ TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
 TEST_F(Catalogue, SaysWhereItCannotCache) {
   for (const char* folder : {"/proc/no/such", "/proc"}) {  // cannot be made; holds no file of ours
     setenv("CSCD_CACHE", folder, 1);
-    EXPECT_NE(message([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
-              std::string::npos)
+    EXPECT_NE(
+        test::refusal([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
+        std::string::npos)
         << folder;
   }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/pose.h"
 
 namespace cscd::scenes {
@@ -80,12 +81,7 @@ TEST(DualSkin, AMirrorThatAllBonesShareIsKept) {
 }
 
 std::string refusal(const Transform& second) {
-  try {
-    moved(three_bones({about_x(0), second, about_x(10)}));
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::refusal([&] { moved(three_bones({about_x(0), second, about_x(10)})); });
 }
 
 TEST(DualSkin, RefusesWhatHasNoMeaning) {

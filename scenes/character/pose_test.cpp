@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/skeleton.h"
 #include "scenes/character/test_characters.h"
 
@@ -234,12 +235,7 @@ template <class Spoil>
 std::string refusal(const Spoil& spoil, const CharacterLimits& limits = {}) {
   Character character = bending_tube();
   spoil(character);
-  try {
-    validate(character, limits);
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::refusal([&] { validate(character, limits); });
 }
 
 TEST(Validate, AcceptsTheTube) {

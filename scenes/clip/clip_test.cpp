@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/clip/digest.h"
 #include "scenes/clip/test_clips.h"
 
@@ -11,12 +11,7 @@ namespace cscd::scenes {
 namespace {
 
 std::string refusal(Clip& clip, const FrameView& frame, const FrameView* predicted = nullptr) {
-  try {
-    clip.append(frame, predicted);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { clip.append(frame, predicted); });
 }
 
 TEST(Clip, GivesIntervalsAsViewsOfItsFrames) {

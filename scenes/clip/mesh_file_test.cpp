@@ -2,11 +2,11 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <limits>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::scenes {
 namespace {
@@ -15,11 +15,8 @@ namespace fs = std::filesystem;
 
 class MeshFile : public testing::Test {
  protected:
-  fs::path folder = fs::temp_directory_path() / ("cscd-mesh-file-" + std::to_string(getpid()));
-  fs::path path = folder / "some.h5";
-
-  void SetUp() override { fs::create_directories(folder); }
-  void TearDown() override { fs::remove_all(folder); }
+  const test::Folder folder;
+  const fs::path path = folder / "some.h5";
 
   static PosedMesh tetrahedron(std::size_t intervals, bool with_bones) {
     PosedMesh mesh;
@@ -65,10 +62,7 @@ class MeshFile : public testing::Test {
     }
   }
 
-  std::string bytes() const {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string bytes() const { return test::read(path); }
 };
 
 // Mutation: with start and end of the bones swapped in the reader, the second comparison fails.
@@ -89,12 +83,7 @@ TEST_F(MeshFile, EqualMeshesGiveEqualBytes) {
 
 TEST_F(MeshFile, RefusesWhatIsNotThereOrCannotBeUsed) {
   const auto refused = [&](const char* mesh, const std::string& reason) {
-    try {
-      MeshFileReader(path).read(mesh);
-      FAIL() << reason;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
-    }
+    EXPECT_NE(test::refusal([&] { MeshFileReader(path).read(mesh); }).find(reason), std::string::npos);
   };
   EXPECT_THROW(MeshFileReader{path}, InputError);
   PosedMesh wrong_corner = tetrahedron(1, false), no_number = tetrahedron(1, true);
@@ -127,7 +116,7 @@ TEST_F(MeshFile, AppearsWholeOrNotAtAll) {
     MeshFileWriter writer(path, false);
     writer.add("first", tetrahedron(1, false));
   }
-  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_TRUE(fs::is_empty(folder.path));
   write(tetrahedron(1, false), tetrahedron(1, false));
   EXPECT_THROW(MeshFileWriter(path, false), InputError);
 }

@@ -1,15 +1,15 @@
 #include "scenes/clip/point_cache.h"
 
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "scenes/clip/digest.h"
 #include "scenes/clip/hdf5_handle.h"
 #include "scenes/clip/test_clips.h"
@@ -28,14 +28,8 @@ constexpr bool kAddressSanitizer = false;
 
 class PointCache : public testing::Test {
  protected:
-  PointCache() {
-    std::string pattern = (fs::temp_directory_path() / "cscd-cache-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-    file = folder / "clip.h5";
-  }
   ~PointCache() override {
     EXPECT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0) << "all that was opened is closed";
-    fs::remove_all(folder);
   }
 
   void write(const SmallClip& what) {
@@ -84,25 +78,19 @@ class PointCache : public testing::Test {
 
   // Reads the whole file. Returns the text of the InputError, without the folder, or an empty text.
   std::string refusal() {
-    try {
+    std::string text = test::refusal([&] {
       PointCacheReader reader(file);
       for (std::size_t i = 0; i < reader.interval_count(); ++i) reader.load(i);
-    } catch (const InputError& error) {
-      std::string text = error.what();
-      EXPECT_EQ(text.find('\n'), std::string::npos) << "one line";
-      const std::size_t place = text.find(folder.string() + "/");
-      if (place != std::string::npos) text.erase(place, folder.string().size() + 1);
-      return text;
-    }
-    return "";
+    });
+    const std::size_t place = text.find(folder.string() + "/");
+    if (place != std::string::npos) text.erase(place, folder.string().size() + 1);
+    return text;
   }
   std::vector<fs::path> files() const { return {fs::directory_iterator(folder), fs::directory_iterator()}; }
-  static std::string bytes(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  }
+  static std::string bytes(const fs::path& path) { return test::read(path); }
 
-  fs::path folder, file;
+  const test::Folder scratch;
+  const fs::path folder = scratch.path, file = folder / "clip.h5";
 };
 
 // All combinations of parts that a clip can have.
@@ -306,12 +294,7 @@ TEST_F(PointCache, KeepsThePoseAtRest) {
   const auto refusal = [&](const std::vector<hsize_t>& shape, const std::vector<double>& data) {
     write({.frames = 3});
     replace("/rest", H5T_IEEE_F64LE, shape, data);
-    try {
-      PointCacheReader reader(file);
-      return std::string();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
+    return test::refusal([&] { PointCacheReader reader(file); });
   };
   EXPECT_EQ(refusal({4, 3}, std::vector<double>(12, 1)), "");
   EXPECT_NE(refusal({3, 3}, std::vector<double>(9, 1)).find("/rest"), std::string::npos);
@@ -370,15 +353,12 @@ TEST_F(PointCache, KnowsItsLastInterval) {
 }
 
 std::string write_refusal(const fs::path& path, bool force) {
-  try {
+  return test::refusal([&] {
     Clip clip = small_clip({});
     PointCacheWriter writer(path, clip.header(), force);
     copy_frames(clip, writer);
     writer.finish();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 TEST_F(PointCache, OverwritesOnlyWhenAsked) {
@@ -400,13 +380,9 @@ TEST_F(PointCache, AppearsWholeOrNotAtAll) {
     EXPECT_THROW(writer.finish(), InputError) << "one frame is no interval";
     std::vector<Vec3> bad(4, Vec3::Zero());
     bad[1].x() = std::numeric_limits<double>::quiet_NaN();
-    try {
-      writer.append({bad, {}});
-      FAIL();
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.what(),
-                file.string() + ", frame 1, vertex 1: position is not finite; repair the animation");
-    }
+    const FrameView frame{bad, {}};
+    EXPECT_EQ(test::refusal([&] { writer.append(frame); }),
+              file.string() + ", frame 1, vertex 1: position is not finite; repair the animation");
   }
   EXPECT_TRUE(files().empty());
   PointCacheWriter late(file, clip.header(), false);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/shape/tube.h"
 
 namespace cscd::scenes {
@@ -56,12 +56,7 @@ class Sequence : public testing::Test {
     return {name, Parameters("scene s, effect " + name, std::move(values))};
   }
   std::string refusal(const std::vector<EffectCall>& calls) {
-    try {
-      EffectSequence(calls, shape, 1, kRows);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusal([&] { EffectSequence(calls, shape, 1, kRows); });
   }
   Shape shape;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/effects/sequence.h"
 
 namespace cscd::scenes {
@@ -27,13 +28,7 @@ inline SceneState run(const Shape& shape, const std::vector<EffectCall>& calls, 
 
 // The text of the InputError with which the effect refuses its parameters or the shape, or an empty text.
 inline std::string refusal(const Shape& shape, const EffectCall& effect) {
-  try {
-    EffectSequence({&effect, 1}, shape, 1);
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << "one line";
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { EffectSequence({&effect, 1}, shape, 1); });
 }
 
 inline void expect_near(const Vec3& found, const Vec3& expected) {

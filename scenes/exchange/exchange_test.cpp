@@ -1,10 +1,9 @@
 #include <bit>
-#include <functional>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/number_bytes.h"
 #include "scenes/exchange/surface_file.h"
@@ -16,15 +15,6 @@ namespace cscd::scenes {
 namespace {
 
 using Corners = std::array<std::int32_t, 3>;
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 const std::vector<Vec3> kPositions = {{0, 0.1, -1e-300}, {1.0 / 3, 2e10, 3}, {-1, -2, -3.5}, {7, 8, 9}};
 const std::vector<Triangle> kTriangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
@@ -44,12 +34,14 @@ TEST(SurfaceFiles, ObjIsReadAsOthersWriteIt) {
       "usemtl m\ns 1\nf 1/1/1 2//1 3/1 4\nf -4 -3 -2\nl 1 2");
   EXPECT_EQ(read.positions.size(), 4u);
   EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
-  EXPECT_NE(refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }).find("line 2: a face has fewer than three"),
+  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }).find("line 2: a face has fewer than three"),
             std::string::npos);
-  EXPECT_NE(refusal([] { read_obj("v 0 0 x\n"); }).find("line 1: 'x' is no coordinate"), std::string::npos);
-  EXPECT_NE(refusal([] { read_obj("v 0 0 nan\n"); }).find("not finite"), std::string::npos);
-  EXPECT_NE(refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("names no vertex"), std::string::npos);
-  EXPECT_NE(refusal([] { read_obj(""); }).find("no vertices"), std::string::npos);
+  EXPECT_NE(test::refusal([] { read_obj("v 0 0 x\n"); }).find("line 1: 'x' is no coordinate"),
+            std::string::npos);
+  EXPECT_NE(test::refusal([] { read_obj("v 0 0 nan\n"); }).find("not finite"), std::string::npos);
+  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("names no vertex"),
+            std::string::npos);
+  EXPECT_NE(test::refusal([] { read_obj(""); }).find("no vertices"), std::string::npos);
 }
 
 TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
@@ -77,7 +69,7 @@ TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
     EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0.5, 0}, {0, 1, -2}}));
     EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}}));
     for (std::size_t cut = 0; cut + 1 < file.size(); ++cut)
-      EXPECT_NE(refusal([&] { read_ply(file.substr(0, cut)); }), "") << "of " << cut << " bytes";
+      EXPECT_NE(test::refusal([&] { read_ply(file.substr(0, cut)); }), "") << "of " << cut << " bytes";
   }
 }
 
@@ -95,8 +87,8 @@ TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
     cache.read_frame(1, read);
     EXPECT_EQ(read, other);
     for (std::size_t cut = 0; cut < bytes.size(); ++cut)
-      EXPECT_NE(refusal([&] { MeshCache(format, std::string_view(bytes).substr(0, cut)); }), "") << cut;
-    EXPECT_NE(refusal([&] { MeshCache(format, bytes + "x"); }), "");
+      EXPECT_NE(test::refusal([&] { MeshCache(format, std::string_view(bytes).substr(0, cut)); }), "") << cut;
+    EXPECT_NE(test::refusal([&] { MeshCache(format, bytes + "x"); }), "");
   }
 }
 

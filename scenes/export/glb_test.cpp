@@ -3,7 +3,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/test_figure.h"
 #include "scenes/export/test_glb_rules.h"
 #include "scenes/export/test_round_trip.h"
@@ -137,13 +137,7 @@ TEST(Glb, RotationsGoTheShorterWay) {
 std::string refusal(const std::function<void(Character&)>& change) {
   Character tube = bending_tube();
   change(tube);
-  try {
-    to_glb(tube);
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { to_glb(tube); });
 }
 
 TEST(Glb, WhatTheFileCannotSayIsRefused) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/catalog/test_scenes.h"
 #include "scenes/catalog/test_tracked.h"
 #include "scenes/clip/digest.h"
@@ -24,13 +24,7 @@ void expect_round_trip(const Scene& scene) {
 }
 
 std::string refusal(const Scene& scene) {
-  try {
-    skinned_scene(scene);
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { skinned_scene(scene); });
 }
 
 // Sets the scene's expected digest to that of its frames.

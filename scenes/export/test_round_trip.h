@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
-#include <unistd.h>
 
+#include "core/base/test_folder.h"
 #include "scenes/character/pose.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/export/glb.h"
@@ -23,19 +22,13 @@ struct ReadBack {
 };
 
 inline ReadBack read_back(const std::string& glb, const ImportOptions& options = {}) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("cscd-export-" + std::to_string(getpid()) + ".glb");
-  const std::filesystem::path cache = std::filesystem::path(file).replace_extension(".h5"),
-                              sources = std::filesystem::path(file).replace_extension(".sources");
-  std::ofstream(file, std::ios::binary) << glb;
-  Character character = read_model(file, {});
-  ImportReport report = convert(character, options, {}, cache, sources);
-  PointCacheReader reader(cache);
+  const test::Folder folder;
+  test::write(folder / "a.glb", glb);
+  Character character = read_model(folder / "a.glb", {});
+  ImportReport report = convert(character, options, {}, folder / "a.h5", folder / "a.sources");
+  PointCacheReader reader(folder / "a.h5");
   Clip clip(reader.header());
   copy_frames(reader, clip);
-  std::filesystem::remove(file);
-  std::filesystem::remove(cache);
-  std::filesystem::remove(sources);
   return {std::move(character), std::move(report), std::move(clip)};
 }
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/clip/point_cache.h"
@@ -16,12 +17,6 @@ namespace {
 
 class Convert : public testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::remove_all(root);
-    std::filesystem::create_directories(root);
-  }
-  void TearDown() override { std::filesystem::remove_all(root); }
-
   Clip converted(const Character& character, const ImportOptions& options = {},
                  const CharacterLimits& limits = {}) {
     validate(character, limits);
@@ -35,16 +30,10 @@ class Convert : public testing::Test {
   }
   std::string refusal(const Character& character, const ImportOptions& options = {},
                       const CharacterLimits& limits = {}) {
-    try {
-      converted(character, options, limits);
-      return {};
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return test::refusal([&] { converted(character, options, limits); });
   }
 
-  const std::filesystem::path root =
-      std::filesystem::temp_directory_path() / ("cscd-convert-" + std::to_string(getpid()));
+  const test::Folder root;
   ImportReport report;
   SourceMap map;
 

@@ -1,8 +1,7 @@
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include "core/base/test_folder.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/character/test_gltf.h"
@@ -13,12 +12,9 @@ namespace cscd::scenes {
 namespace {
 
 Character read_back(const Character& character) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("cscd-gltf-" + std::to_string(getpid()) + ".gltf");
-  std::ofstream(file) << to_gltf(character);
-  Character back = read_model(file, {});
-  std::filesystem::remove(file);
-  return back;
+  const test::Folder folder;
+  test::write(folder / "a.gltf", to_gltf(character));
+  return read_model(folder / "a.gltf", {});
 }
 
 // Compares the vertices at three times of every clip, in their order.

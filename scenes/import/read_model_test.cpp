@@ -2,12 +2,11 @@
 
 #include <assimp/IOStream.hpp>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <memory>
-#include <unistd.h>
 
-#include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
@@ -26,27 +25,20 @@ namespace fs = std::filesystem;
 class Model : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(root);
-    fs::create_directories(root / "models");
-    std::ofstream(root / "secret.bin") << "outside";
-    std::ofstream(root / "models" / "near.bin") << "0123456789";
     fs::create_directories(root / "models" / "sub");
+    test::write(root / "secret.bin", "outside");
+    test::write(root / "models" / "near.bin", "0123456789");
     fs::create_symlink(root / "secret.bin", root / "models" / "link.bin");
   }
-  void TearDown() override { fs::remove_all(root); }
   std::string write(const std::string& name, const std::string& text) {
-    std::ofstream(root / "models" / name) << text;
+    test::write(root / "models" / name, text);
     return (root / "models" / name).string();
   }
   std::string refusal(const std::string& file) {
-    try {
-      read_model(file, {});
-      return {};
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return test::refusal([&] { read_model(file, {}); });
   }
-  const fs::path root = fs::temp_directory_path() / ("cscd-model-" + std::to_string(getpid()));
+  const test::Folder scratch;
+  const fs::path root = scratch.path;
 };
 
 TEST_F(Model, FilesOutsideItsFolderDoNotExist) {

@@ -1,6 +1,5 @@
 #include "scenes/queries/query_file.h"
 
-#include <fstream>
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 #include <iterator>
@@ -9,6 +8,8 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd {
 namespace {
@@ -16,18 +17,11 @@ namespace {
 // A file that exists as long as this object.
 class ScratchFile {
  public:
-  explicit ScratchFile(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("cscd-query-" + std::to_string(std::random_device()()) + ".csv")) {
-    std::ofstream(path_, std::ios::binary) << text;
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  ~ScratchFile() { std::filesystem::remove(path_); }
-  const std::filesystem::path& path() const { return path_; }
+  explicit ScratchFile(const std::string& text) { test::write(path(), text); }
+  std::filesystem::path path() const { return folder_ / "queries.csv"; }
 
  private:
-  std::filesystem::path path_;
+  test::Folder folder_;
 };
 
 std::string repeated(const std::string& row, int count) {
@@ -38,16 +32,9 @@ std::string repeated(const std::string& row, int count) {
 
 std::string error_of(const std::string& text) {
   const ScratchFile file(text);
-  try {
-    read_queries(file.path());
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    EXPECT_NE(what.find(file.path().filename().string()), std::string::npos) << what;
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    return what;
-  }
-  ADD_FAILURE() << "accepted: " << text.substr(0, 200);
-  return {};
+  const std::string what = test::refusal([&] { read_queries(file.path()); });
+  EXPECT_NE(what.find(file.path().filename().string()), std::string::npos) << text.substr(0, 200);
+  return what;
 }
 
 void expect_error(const std::string& text, const std::string& place, const std::string& reason) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/detect/start/embedding.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/shape/test_shapes.h"
@@ -136,13 +136,7 @@ std::string limb_refusal(const std::function<void(LimbedSphereParameters&)>& cha
   LimbedSphereParameters p = ball(10);
   p.limbs = {limb("arm", {0, true}, 1, 1, 3, 8, 10), limb("leg", {0, true}, 5, 5, 3, 8, 10)};
   change(p);
-  try {
-    limbed_sphere(p);
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { limbed_sphere(p); });
 }
 
 TEST(LimbedSphere, SaysWhatCannotBe) {
@@ -215,12 +209,8 @@ TEST(LimbedSphere, IsReadFromParameters) {
   EXPECT_EQ(shape("+z").bone_names, (std::vector<std::string>{"hip", "chest", "arm_1", "arm_2"}));
   EXPECT_EQ(shape("+z").rig.parent[2], BoneId{1});
   EXPECT_EQ(shape("+z").triangles.size(), 2u * (6 * 64 + 8 * 9));
-  try {
-    shape("up");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "here, limb: parameter face is up; it must be -x, +x, -y, +y, -z or +z");
-  }
+  EXPECT_EQ(test::refusal([&] { shape("up"); }),
+            "here, limb: parameter face is up; it must be -x, +x, -y, +y, -z or +z");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::scenes {
 namespace {
@@ -21,12 +21,7 @@ const ParameterRow kRows[] = {
 using Values = std::map<std::string, Parameters::Value, std::less<>>;
 
 std::string refusal(const Values& values) {
-  try {
-    (void)checked(Parameters("scene s, effect e", values), kRows);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { (void)checked(Parameters("scene s, effect e", values), kRows); });
 }
 
 TEST(Parameters, HandsOutWhatTheyHold) {
@@ -85,12 +80,7 @@ TEST(Parameters, MayHaveAnyNameWhereARowSaysSo) {
   const ParameterRow rows[] = {vector_row("*", "", "of a thing of that name").optional(),
                                integer_row("count", "", "how many")};
   const auto refused = [&](std::map<std::string, Parameters::Value, std::less<>> values) -> std::string {
-    try {
-      (void)checked(Parameters("scene s, effect e", std::move(values)), rows);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusal([&] { (void)checked(Parameters("scene s, effect e", std::move(values)), rows); });
   };
   EXPECT_EQ(refused({{"count", 3.0}, {"anything", std::vector<double>{1, 2, 3}}}), "");
   EXPECT_EQ(refused({{"count", 3.0}, {"anything", 1.0}}),

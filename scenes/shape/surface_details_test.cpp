@@ -3,7 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd::scenes {
@@ -80,13 +80,10 @@ TEST(SurfaceDetails, RefuseWhatIsNoPlace) {
         "here",
         {{"at", std::vector<double>{1, 2, 3}}, {"reach", std::vector<double>{1, 1, 2}}, {"height", 0.5}});
     p = p.with(name, std::move(value));
-    try {
+    return test::refusal([&] {
       const Parameters whole = checked(p, detail_rows());
       read_details(std::span(&whole, 1));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   EXPECT_EQ(refusal("height", 1.0), "");
   EXPECT_EQ(refusal("reach", std::vector<double>{1, 0, 1}),

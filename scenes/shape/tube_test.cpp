@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/shape/test_shapes.h"
 
@@ -102,14 +103,9 @@ TEST(Shapes, AreFoundByName) {
   const std::map<std::string, Parameters::Value, std::less<>> values = {
       {"rings", 10.0}, {"sides", 8.0}, {"bones", 4.0}, {"radius", 1.0}, {"length", 20.0}};
   EXPECT_EQ(make_shape("tube", Parameters("here", values)).positions.size(), 82u);
-  try {
-    make_shape("teapot", Parameters("here", values));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "here: unknown shape teapot; known are: tube, box, limbed_sphere, skirted_limbed_sphere, "
-                 "sheet, ball");
-  }
+  EXPECT_EQ(test::refusal([&] { make_shape("teapot", Parameters("here", values)); }),
+            "here: unknown shape teapot; known are: tube, box, limbed_sphere, skirted_limbed_sphere, "
+            "sheet, ball");
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "bench/cli/output/sha256.h"
 
-#include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
@@ -16,14 +15,12 @@ TEST(Sha256, IsThePublishedSum) {
 }
 
 TEST(Sha256, OfAFileIsThatOfItsBytes) {
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("cscd-sha256-" + std::to_string(getpid()));
+  const test::Folder folder;
   // The file is longer than the block in which it is read, and the last block is not full.
   const std::string bytes(3'000'001, 'x');
-  std::ofstream(path, std::ios::binary) << bytes;
-  EXPECT_EQ(sha256_of_file(path), sha256(bytes));
-  std::filesystem::remove(path);
-  EXPECT_THROW(sha256_of_file(path), InputError);
+  test::write(folder / "bytes", bytes);
+  EXPECT_EQ(sha256_of_file(folder / "bytes"), sha256(bytes));
+  EXPECT_THROW(sha256_of_file(folder / "none"), InputError);
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <map>
-#include <unistd.h>
 
 #include "bench/measure/replay/random_verification.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/testing/saboteurs.h"
+#include "core/base/test_folder.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
@@ -77,13 +77,11 @@ TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
   EXPECT_NE(describe(summary).find(std::to_string(summary.failures.size()) + " failures"), std::string::npos);
 
   const RandomFailure& failure = summary.failures.front();
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("cscd-random-" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
-  const std::string line = write_failure(failure, folder);
+  const test::Folder folder;
+  const std::string line = write_failure(failure, folder.path);
   EXPECT_NE(line.find("seed " + std::to_string(failure.seed)), std::string::npos) << line;
   EXPECT_NE(line.find("uncertain_is_positive"), std::string::npos) << line;
-  const auto file = std::filesystem::directory_iterator(folder)->path();
+  const auto file = std::filesystem::directory_iterator(folder.path)->path();
   EXPECT_NE(line.find(file.string()), std::string::npos) << line;
 
   // The file holds the very interval: the saboteur fails on it again.
@@ -110,7 +108,6 @@ TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
       verify(ask(complete_reference()), ask(saboteur[0]), Guarantee::first_contact, true);
   EXPECT_FALSE(replayed.ok);
   EXPECT_EQ(replayed.failure, failure.what);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

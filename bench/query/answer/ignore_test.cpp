@@ -8,7 +8,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/surface_names.h"
 #include "bench/testing/test_generated.h"
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
 #include "core/detect/start/rest_crossings.h"
@@ -29,12 +29,7 @@ IgnoreRequest named(std::vector<std::string> pairs) {
 }
 
 std::string refusal(Input& input, const IgnoreRequest& request) {
-  try {
-    ignore(input, request);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { ignore(input, request); });
 }
 
 // Which pairs of triangles are ignored, found out triangle by triangle from names and parents.

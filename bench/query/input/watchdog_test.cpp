@@ -5,14 +5,13 @@
 #include <unistd.h>
 
 #include "bench/cli/output/output.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
 
 TEST(Watchdog, EndsAStepThatTakesTooLongAndLeavesNoFile) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("cscd-watchdog-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const test::Folder folder;
   EXPECT_EXIT(
       {
         OutputFile output(folder / "out.json", false);
@@ -20,8 +19,7 @@ TEST(Watchdog, EndsAStepThatTakesTooLongAndLeavesNoFile) {
         for (;;) pause();
       },
       testing::ExitedWithCode(2), "^too slow\n$");
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 TEST(Watchdog, LetsShortStepsAndTheUnwatchedBe) {

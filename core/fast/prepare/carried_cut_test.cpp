@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/fast/prepare/cluster_observer.h"
 #include "core/fast/prepare/saved_cut.h"
 #include "core/fast/prepare/test_body.h"
@@ -206,12 +207,8 @@ TEST(CarriedCut, TheCutOfAnotherSurfaceIsRefused) {
   const Kept kept;
   test::Shape moved = kept.shape;
   for (Vec3& p : moved.positions) p.x() += 1;
-  try {
-    taken_over(moved, kept.bytes());
-    ADD_FAILURE() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "preparation: was made for another surface; prepare anew without it");
-  }
+  EXPECT_EQ(test::refusal([&] { taken_over(moved, kept.bytes()); }),
+            "preparation: was made for another surface; prepare anew without it");
   // Less than half of it.
   moved = kept.shape;
   for (std::size_t v = 0; v < moved.positions.size() * 6 / 10; ++v) moved.positions[v].x() += 1e-12;

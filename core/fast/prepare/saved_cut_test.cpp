@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "core/fast/prepare/carried_cut.h"
 #include "core/fast/prepare/test_body.h"
 
@@ -73,12 +74,7 @@ TEST(SavedCut, OneThatBreaksARuleIsRefused) {
   const auto expect_refused = [](const char* what, const std::function<void(SavableCut&)>& spoil) {
     SavableCut cut;
     spoil(cut);
-    try {
-      cut.restored(cut.saved());
-      ADD_FAILURE() << what;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
-    }
+    EXPECT_NE(test::refusal([&] { cut.restored(cut.saved()); }).find(what), std::string::npos);
   };
   expect_refused("a triangle in two patches",
                  [](SavableCut& cut) { cut.tree.triangles[0][0] = cut.tree.triangles[1][0]; });
@@ -110,12 +106,8 @@ TEST(SavedCut, AnObserverAtAVertexThatTheMeshLacksIsRefused) {
   for (const int vertex : {-1, 1 << 20}) {
     cut.covers[1].observers[0] = {};
     cut.covers[1].observers[0].add(VertexId{vertex}, 1);
-    try {
-      check(cut.mesh, {2, cut.covers, {}});
-      ADD_FAILURE() << vertex;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("a vertex that the mesh lacks"), std::string::npos);
-    }
+    const std::string text = test::refusal([&] { check(cut.mesh, {2, cut.covers, {}}); });
+    EXPECT_NE(text.find("a vertex that the mesh lacks"), std::string::npos) << vertex;
   }
 }
 

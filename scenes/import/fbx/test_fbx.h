@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/read_fbx.h"
 
@@ -118,13 +118,10 @@ inline Character read(const FbxText& file) {
 }
 
 inline std::string refusal_of(const std::string& bytes, const CharacterLimits& limits = {}) {
-  try {
+  return test::refusal([&] {
     const Character character = read_fbx(bytes, limits);
     validate(character, limits);
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  });
 }
 
 inline std::vector<Vec3> vertices_at(const Character& character, double seconds) {

@@ -1,5 +1,6 @@
 #include <ctime>
 
+#include "core/base/test_refusal.h"
 #include "scenes/import/gltf/test_files.h"
 
 // Checks containers, buffers, extensions and other members that concern the file as a whole.
@@ -7,13 +8,10 @@ namespace cscd::scenes::gltf {
 namespace {
 
 std::string told(const TestFolder& folder, const std::string& name, const std::string& contents) {
-  try {
+  return test::refusal([&] {
     Character character = read_gltf(folder.write(name, contents), {});
     validate(character, {});
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  });
 }
 
 // The tube with its buffer at another place.

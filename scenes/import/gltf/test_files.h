@@ -2,13 +2,12 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
-#include <unistd.h>
 
-#include "core/base/error.h"
+#include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/import/gltf/read_gltf.h"
@@ -82,13 +81,9 @@ struct TestFile {
 };
 
 // A folder that is removed after the test.
-struct TestFolder {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("cscd-gltf-test-" + std::to_string(getpid()));
-  TestFolder() { std::filesystem::create_directories(path); }
-  ~TestFolder() { std::filesystem::remove_all(path); }
+struct TestFolder : test::Folder {
   std::filesystem::path write(const std::string& name, const std::string& contents) const {
-    std::ofstream(path / name, std::ios::binary) << contents;
+    test::write(path / name, contents);
     return path / name;
   }
 };
@@ -105,12 +100,7 @@ inline Character read(const TestFile& file, const CharacterLimits& limits = {}) 
 
 // Returns the error that a file is refused with; empty where the file is accepted.
 inline std::string refusal(const TestFile& file, const CharacterLimits& limits = {}) {
-  try {
-    read(file, limits);
-    return {};
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return test::refusal([&] { read(file, limits); });
 }
 
 inline bool has_note(const Character& character, const std::string& words) {

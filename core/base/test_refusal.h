@@ -1,0 +1,22 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <string>
+
+#include "core/base/error.h"
+
+namespace cscd::test {
+
+// Returns the text of the InputError that `act` throws, which has to be one line; empty where it throws none.
+template <class Act>
+std::string refusal(const Act& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace cscd::test
