@@ -28,9 +28,9 @@ struct Report {
   double start_ms = 0;  // what the exact test of pairs that may cross at the start took; outside of `ms`
 };
 
-// Finds the contacts of one interval after another. A detector whose strategy promises it (Strategy::settles)
-// allocates no memory once it has seen its largest interval, unless it cuts clusters anew
-// (Strategy::follows).
+// Finds the contacts of one interval after another. The kind of a detector's strategy (StrategyKind) says
+// whether the detector allocates memory once it has seen its largest interval. A package may, and so may a
+// strategy that cuts clusters anew.
 class Detector {
  public:
   virtual ~Detector() = default;
