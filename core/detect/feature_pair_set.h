@@ -28,6 +28,10 @@ class FeaturePairSet {
     }
   }
 
+  // Fetches where the pair will be looked for. Of many pairs, most are found in no cache otherwise.
+  void fetch(const FeaturePair& pair) const {
+    __builtin_prefetch(&slots_[place(key(pair) | epoch_ << kKeyBits)], 1);
+  }
   // Adds the pair, and returns whether it was new.
   bool insert(const FeaturePair& pair) {
     if (2 * size_ >= slots_.size()) grow();
@@ -53,9 +57,11 @@ class FeaturePairSet {
     const std::uint64_t first = static_cast<std::uint64_t>(pair.a) + (vertex ? first_vertex : 0);
     return first << kIdBits | static_cast<std::uint64_t>(pair.b);
   }
+  // Where an entry's probing begins. The top bits depend on the whole key.
+  std::size_t place(std::uint64_t entry) const { return (entry * 0x9e3779b97f4a7c15u) >> shift_; }
   std::uint64_t& find(std::uint64_t entry) {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t i = (entry * 0x9e3779b97f4a7c15u) >> shift_;  // the top bits depend on the whole key
+    std::size_t i = place(entry);
     while (slots_[i] >> kKeyBits == epoch_ && slots_[i] != entry) i = (i + 1) & mask;
     return slots_[i];
   }

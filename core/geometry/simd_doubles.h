@@ -35,6 +35,17 @@ inline Lane8 absolute(Lane8 a) {
   return bits_as<Lane8>(bits_as<Sign8>(a) & 0x7fff'ffff'ffff'ffff);
 }
 
+inline Lane8 square_root(Lane8 a) {
+#ifdef __AVX512F__
+  return _mm512_maskz_sqrt_pd(0xff, a);
+#elif defined(__AVX2__)
+  return {_mm256_sqrt_pd(a.low), _mm256_sqrt_pd(a.high)};
+#else
+  for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::sqrt(a[l]);
+  return a;
+#endif
+}
+
 #ifdef __FMA__
 // Returns a b + c, rounded once.
 inline double rounded_once(double a, double b, double c) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/elementary/certified/contact_time.h"
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/geometry/triple_product_lanes.h"
 
@@ -13,10 +12,10 @@ constexpr int kSteps = 12;  // the most steps of Newton's iteration; nearly all 
 
 // Loads the queries into lanes. Lanes without a query hold the last query again.
 template <class Query>
-TriplePoints<VectorLanes> load(std::span<const Query> queries) {
+TriplePoints<VectorLanes> load(std::span<const Query* const> queries) {
   TriplePoints<VectorLanes> out;
   for (std::size_t l = 0; l < kLanes; ++l) {
-    const auto points = triple_points(queries[std::min(l, queries.size() - 1)]);
+    const auto points = triple_points(*queries[std::min(l, queries.size() - 1)]);
     const auto set = [l](VectorLanes& lanes, const MovingPoint& p) {
       for (int i = 0; i < 3; ++i) lanes.at[0][i][l] = p.start[i], lanes.at[1][i][l] = p.end[i];
     };
@@ -25,6 +24,23 @@ TriplePoints<VectorLanes> load(std::span<const Query> queries) {
   }
   return out;
 }
+
+// The vectors of eight queries and their coplanarity cubics.
+struct Lanes {
+  VectorLanes p, q, r;
+  CubicOf<Lane8> cubic;
+  Sign8 never_coplanar;
+
+  explicit Lanes(const TriplePoints<VectorLanes>& points)
+      : Lanes(points.p_to - points.from, points.q_to - points.q_from, points.r_to - points.from) {}
+  Sizes<Lane8> sizes() const { return {p.largest_component(), q.largest_component(), r.largest_component()}; }
+
+ private:
+  Lanes(const VectorLanes& p, const VectorLanes& q, const VectorLanes& r)
+      : Lanes(p, q, r, triple_products(cross(p, q), r)) {}
+  Lanes(const VectorLanes& p, const VectorLanes& q, const VectorLanes& r, const BernsteinLanes& f)
+      : p(p), q(q), r(r), cubic(f, ProvenBounds::cubic), never_coplanar(certain_sign(f)) {}
+};
 
 VectorLanes between(const VectorLanes& x, Lane8 low, Lane8 high) {
   VectorLanes out;
@@ -35,20 +51,33 @@ VectorLanes between(const VectorLanes& x, Lane8 low, Lane8 high) {
   return out;
 }
 
-// The lanes in which the cubic falls from certainly positive to certainly negative through its only root in
-// [0, 1], by Descartes' rule as in doubles_stage.h.
-Sign8 falls_once(const CubicOf<Lane8>& cubic) {
-  const Lane8(&c)[4] = cubic.f.c, e = cubic.error;
-  return (c[0] > e) & (c[3] < -e) & ((c[1] > e) | (c[2] < -e));
+// The signs of control points, as far as they are certain: 1, -1 or 0.
+Sign8 signs(Lane8 control, Lane8 error) {
+  return (control < -error) - (control > error);
 }
+// Counts roots by Descartes' rule, as count_roots() of doubles_stage.h does. In all other lanes the number is
+// unclear.
+struct RootLanes {
+  Sign8 none, one;
+
+  RootLanes(const Lane8 (&control)[4], Lane8 error) {
+    const Sign8 s0 = signs(control[0], error), s1 = signs(control[1], error), s2 = signs(control[2], error),
+                s3 = signs(control[3], error);
+    none = (s0 != 0) & (s1 == s0) & (s2 == s0) & (s3 == s0);
+    one = (s0 != 0) & (s3 == -s0) & ((s1 == s0) | (s2 == -s0));
+  }
+};
 
 struct Enclosure {
   Lane8 low, high;
   Sign8 certain;  // the root is certainly between `low` and `high`
 };
-// Encloses the only root of each falling cubic in the lanes `which`.
-Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
-  Lane8 low = {}, high = low + 1, t = cubic.f.c[0] / (cubic.f.c[0] - cubic.f.c[3]), value, slope;
+// Encloses the only root of each cubic between `low` and `high` in the lanes `which`.
+Enclosure enclosed(CubicOf<Lane8> cubic, Sign8 which, Lane8 low, Lane8 high) {
+  const Sign8 rises = cubic.at(low) < 0;
+  for (Lane8& c : cubic.f.c) c = select(rises, -c, c);
+  const Lane8 first = low, last = high, at_low = cubic.at(low), at_high = cubic.at(high);
+  Lane8 t = low + (high - low) * (at_low / (at_low - at_high)), value, slope;
   for (int step = 0;; ++step) {
     value = cubic.at(t), slope = cubic.slope(t);
     const Sign8 found = absolute(value) <= 4 * cubic.error;
@@ -60,8 +89,8 @@ Enclosure enclosed(const CubicOf<Lane8>& cubic, Sign8 which) {
     t = select(found, t, better);
   }
   const Lane8 reach = 2 * (absolute(value) + cubic.error) / absolute(slope) + 0x1p-52;
-  low = larger(t - reach, Lane8{}), high = smaller(t + reach, Lane8{} + 1);
-  return {low, high, (cubic.at(low) > cubic.error) & (cubic.at(high) < -cubic.error)};
+  low = larger(t - reach, first), high = smaller(t + reach, last);
+  return {low, high, which & (cubic.at(low) > cubic.error) & (cubic.at(high) < -cubic.error)};
 }
 
 // The axis along which each lane looks at its plane.
@@ -89,42 +118,95 @@ struct Axis {
   }
 };
 
+// Where the features are when they are in one plane, in lanes whose root is enclosed.
 template <class Query>
-LaneAnswers decide(std::span<const Query> queries) {
-  const TriplePoints<VectorLanes> points = load(queries);
-  const VectorLanes p = points.p_to - points.from, q = points.q_to - points.q_from,
-                    r = points.r_to - points.from;
-  const BernsteinLanes f = triple_products(cross(p, q), r);
-  const Sign8 never_coplanar = certain_sign(f);
-  const CubicOf<Lane8> cubic(f, ProvenBounds::cubic);
-  CubicOf<Lane8> falling = cubic;
-  for (Lane8& c : falling.f.c) c = select(f.c[0] < 0, -c, c);
-  const Sign8 once = falls_once(falling);
-  const Enclosure root = enclosed(falling, once);
-
-  const VectorLanes part_p = between(p, root.low, root.high), part_q = between(q, root.low, root.high),
-                    part_r = between(r, root.low, root.high);
-  const Sizes<Lane8> size{p.largest_component(), q.largest_component(), r.largest_component()};
-  const Axis axis(part_p, part_q);
+Place<Lane8> place_in(const Lanes& v, const Enclosure& root) {
+  const VectorLanes p = between(v.p, root.low, root.high), q = between(v.q, root.low, root.high),
+                    r = between(v.r, root.low, root.high);
+  const Axis axis(p, q);
   const Place<Lane8> place =
-      place_along<Query, ProvenBounds>(axis.seen(part_p), axis.seen(part_q), axis.seen(part_r), size);
-  const CertainTime<Lane8> time = time_in_pairs(points, size, cubic, root.low, root.high);
+      place_along<Query, ProvenBounds>(axis.seen(p), axis.seen(q), axis.seen(r), v.sizes());
+  return {place.outside & root.certain, place.inside & root.certain};
+}
 
-  const Sign8 met = once & root.certain, contact = met & place.inside & time.known;
-  LaneAnswers out;
-  out.decided = bits_of(never_coplanar | (met & place.outside) | contact);
-  for (std::size_t l = 0; l < kLanes; ++l)
-    out.answer[l] = contact[l] ? Answer{Verdict::contact, time.time[l]} : Answer{Verdict::apart, 0};
-  return out;
+// The times at which each cubic has an extreme, in ascending order. Lanes without one, or with one beyond
+// [0, 1], have 0 or 1 there. Whatever follows is right for any choice of times.
+struct Extremes {
+  Lane8 first, second;
+
+  explicit Extremes(const Lane8 (&c)[4]) {
+    // f' / 3 = a t^2 + 2 b t + d0.
+    const Lane8 d0 = c[1] - c[0], d1 = c[2] - c[1], a = d0 - 2 * d1 + (c[3] - c[2]), b = d1 - d0;
+    const Lane8 root = square_root(larger(b * b - a * d0, Lane8{})), q = -(b + select(b < 0, -root, root));
+    const auto in_interval = [](Lane8 t) { return select(t > 0, smaller(t, Lane8{} + 1), Lane8{}); };
+    const Lane8 x = in_interval(q / a), y = in_interval(d0 / q);
+    first = smaller(x, y), second = larger(x, y);
+  }
+};
+
+// The control points of each cubic between `low` and `high`.
+void control_points(const Lane8 (&c)[4], Lane8 low, Lane8 high, Lane8 (&out)[4]) {
+  const auto polar = [&](Lane8 r, Lane8 s, Lane8 t) {
+    const auto mixed = [](Lane8 x, Lane8 y, Lane8 at) { return (1 - at) * x + at * y; };
+    const Lane8 x = mixed(c[0], c[1], r), y = mixed(c[1], c[2], r), z = mixed(c[2], c[3], r);
+    return mixed(mixed(x, y, s), mixed(y, z, s), t);
+  };
+  out[0] = polar(low, low, low), out[1] = polar(low, low, high);
+  out[2] = polar(low, high, high), out[3] = polar(high, high, high);
 }
 
 }  // namespace
 
-LaneAnswers decide_in_lanes(std::span<const MovingVertexFace> queries) {
-  return decide(queries);
+template <class Query>
+LaneFindings find_once_in_lanes(std::span<const Query* const> queries) {
+  const Lanes v(load(queries));
+  const RootLanes roots(v.cubic.f.c, v.cubic.error);
+  const Enclosure root = enclosed(v.cubic, roots.one, Lane8{}, Lane8{} + 1);
+  const Place<Lane8> place = place_in<Query>(v, root);
+  return {bits_of(v.never_coplanar | place.outside), bits_of(place.inside), root.low, root.high};
 }
-LaneAnswers decide_in_lanes(std::span<const MovingEdgeEdge> queries) {
-  return decide(queries);
+
+template <class Query>
+LaneFindings find_in_parts_in_lanes(std::span<const Query* const> queries) {
+  const Lanes v(load(queries));
+  const Extremes extreme(v.cubic.f.c);
+  const Lane8 cut[] = {Lane8{}, extreme.first, extreme.second, Lane8{} + 1};
+  Sign8 open = Sign8(Lane8{} == Lane8{}), contact = {};
+  LaneFindings out;
+  for (int part = 0; part < 3 && bits_of(open) != 0; ++part) {
+    const Lane8 low = cut[part], high = cut[part + 1];
+    const Sign8 empty = low >= high;
+    Lane8 control[4];
+    control_points(v.cubic.f.c, low, high, control);
+    const RootLanes roots(control, v.cubic.error);
+    const Sign8 one = roots.one & open & ~empty;
+    Sign8 outside = {};
+    if (bits_of(one) != 0) {
+      const Enclosure root = enclosed(v.cubic, one, low, high);
+      const Place<Lane8> place = place_in<Query>(v, root);
+      outside = place.outside;
+      const Sign8 met = place.inside & one;
+      contact |= met;
+      out.low = select(met, root.low, out.low), out.high = select(met, root.high, out.high);
+    }
+    open &= empty | roots.none | (one & outside);
+  }
+  out.apart = bits_of(open), out.contact = bits_of(contact);
+  return out;
 }
+
+template <class Query>
+CertainTime<Lane8> times_in_lanes(std::span<const Query* const> queries, Lane8 low, Lane8 high) {
+  const TriplePoints<VectorLanes> points = load(queries);
+  const Lanes v(points);
+  return time_in_pairs(points, v.sizes(), v.cubic, low, high);
+}
+
+template LaneFindings find_once_in_lanes(std::span<const MovingVertexFace* const>);
+template LaneFindings find_once_in_lanes(std::span<const MovingEdgeEdge* const>);
+template LaneFindings find_in_parts_in_lanes(std::span<const MovingVertexFace* const>);
+template LaneFindings find_in_parts_in_lanes(std::span<const MovingEdgeEdge* const>);
+template CertainTime<Lane8> times_in_lanes(std::span<const MovingVertexFace* const>, Lane8, Lane8);
+template CertainTime<Lane8> times_in_lanes(std::span<const MovingEdgeEdge* const>, Lane8, Lane8);
 
 }  // namespace cscd

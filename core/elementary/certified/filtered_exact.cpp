@@ -83,15 +83,89 @@ Decision decide(const Query& query) {
 
 constexpr std::size_t kWorthLanes = 2;  // the fewest queries for which lanes are faster than scalar code
 
+// Queries that wait for one stage of the lanes until there are eight of them.
 template <class Query>
-void decide_all(std::span<const Query> queries, std::span<Answer> answers) {
-  for (std::size_t first = 0; first < queries.size(); first += kLanes) {
-    const std::span<const Query> block = queries.subspan(first, std::min(kLanes, queries.size() - first));
-    const LaneAnswers found = block.size() < kWorthLanes ? LaneAnswers{} : decide_in_lanes(block);
-    for (std::size_t l = 0; l < block.size(); ++l)
-      answers[first + l] = (found.decided >> l & 1) != 0 ? found.answer[l] : decide(block[l]).answer;
+struct Waiting {
+  const Query* query[kLanes];
+  Lane8 low = {}, high = {};  // of contacts
+  std::size_t count = 0;
+
+  std::span<const Query* const> all() const { return {query, count}; }
+  bool full() const { return count == kLanes; }
+  void add(const Query* of) { query[count++] = of; }
+  void add(const Query* of, double lowest, double highest) {
+    low[count] = lowest, high[count] = highest;
+    add(of);
   }
-}
+};
+
+// Sends queries through three stages of lanes, each of which has its lanes full: those whose cubic has one
+// root at most, those with several, and the times of contacts. What a stage leaves undecided goes on to the
+// next, and in the end to scalar code.
+template <class Query>
+class LaneStages {
+ public:
+  LaneStages(std::span<const Query> queries, std::span<Answer> answers)
+      : first_(queries.data()), answers_(answers) {}
+
+  void decide(std::span<const Query> queries) {
+    for (const Query& query : queries) {
+      once_.add(&query);
+      if (once_.full()) find_once();
+    }
+    find_once(), find_in_parts(), find_times();
+  }
+
+ private:
+  void find_once() {
+    if (once_.count < kWorthLanes) return decide_one_by_one(once_);
+    const LaneFindings found = find_once_in_lanes<Query>(once_.all());
+    take(once_, found, [&](const Query* query) {
+      several_.add(query);
+      if (several_.full()) find_in_parts();
+    });
+  }
+  void find_in_parts() {
+    if (several_.count < kWorthLanes) return decide_one_by_one(several_);
+    const LaneFindings found = find_in_parts_in_lanes<Query>(several_.all());
+    take(several_, found, [&](const Query* query) { decide_by_itself(query); });
+  }
+  void find_times() {
+    if (met_.count < kWorthLanes) return decide_one_by_one(met_);
+    const CertainTime<Lane8> time = times_in_lanes<Query>(met_.all(), met_.low, met_.high);
+    for (std::size_t l = 0; l < met_.count; ++l)
+      if (time.known[l])
+        answer(met_.query[l]) = {Verdict::contact, time.time[l]};
+      else
+        decide_by_itself(met_.query[l]);
+    met_.count = 0;
+  }
+  template <class Undecided>
+  void take(Waiting<Query>& asked, const LaneFindings& found, const Undecided& undecided) {
+    for (std::size_t l = 0; l < asked.count; ++l) {
+      const Query* const query = asked.query[l];
+      if ((found.apart >> l & 1) != 0) {
+        answer(query) = kApart;
+      } else if ((found.contact >> l & 1) != 0) {
+        met_.add(query, found.low[l], found.high[l]);
+        if (met_.full()) find_times();
+      } else {
+        undecided(query);
+      }
+    }
+    asked.count = 0;
+  }
+  void decide_one_by_one(Waiting<Query>& waiting) {
+    for (const Query* query : waiting.all()) decide_by_itself(query);
+    waiting.count = 0;
+  }
+  void decide_by_itself(const Query* query) { answer(query) = cscd::decide(*query).answer; }
+  Answer& answer(const Query* query) { return answers_[static_cast<std::size_t>(query - first_)]; }
+
+  const Query* const first_;
+  const std::span<Answer> answers_;
+  Waiting<Query> once_, several_, met_;
+};
 
 }  // namespace
 
@@ -102,10 +176,10 @@ Answer filtered_exact_edge_edge(const MovingEdgeEdge& query) {
   return decide(query).answer;
 }
 void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer> answers) {
-  decide_all(queries, answers);
+  LaneStages(queries, answers).decide(queries);
 }
 void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers) {
-  decide_all(queries, answers);
+  LaneStages(queries, answers).decide(queries);
 }
 ExactStage filtered_exact_stage(const MovingVertexFace& query) {
   return decide(query).stage;
