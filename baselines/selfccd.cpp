@@ -45,20 +45,23 @@ class Representatives : public FeatureAssignment {
     orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
   }
 
-  void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const override {
+  void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const override {
     for (const TrianglePair& pair : block) {
-      const auto take = [&](const FeaturePair& features) {
+      unsigned places = 0, place = 1;
+      const auto ask = [&](const FeaturePair& features) {
         const std::optional<TrianglePair> chosen = representative(features);
         if (chosen &&
             ((chosen->a == pair.a && chosen->b == pair.b) || (chosen->a == pair.b && chosen->b == pair.a)))
-          out.push_back(features);
+          places |= place;
+        place <<= 1;
       };
       // The two triangles have no common vertex, so they carry all fifteen feature pairs. These loops
       // are ones that compilers unroll.
-      for (const VertexId v : mesh_.corners(pair.a)) take(FeaturePair::of(v, pair.b));
-      for (const VertexId v : mesh_.corners(pair.b)) take(FeaturePair::of(v, pair.a));
+      for (const VertexId v : mesh_.corners(pair.a)) ask(FeaturePair::of(v, pair.b));
+      for (const VertexId v : mesh_.corners(pair.b)) ask(FeaturePair::of(v, pair.a));
       for (const EdgeId e : mesh_.edges_of(pair.a))
-        for (const EdgeId f : mesh_.edges_of(pair.b)) take(FeaturePair::of(e, f));
+        for (const EdgeId f : mesh_.edges_of(pair.b)) ask(FeaturePair::of(e, f));
+      if (places != 0) out.push_back({pair, static_cast<CarriedPlaces>(places)});
     }
   }
   std::span<const FeaturePair> always() const override { return orphans_; }

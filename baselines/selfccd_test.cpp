@@ -42,8 +42,11 @@ TEST(RepresentativeTriangles, AndOrphansCoverEveryFeaturePairExactlyOnce) {
         // Pairs come in either order, as descents meet them.
         if (!adjacent) distant.push_back((i + j) % 2 == 0 ? pair : TrianglePair{pair.b, pair.a});
       }
+    std::vector<CarriedPairs> by_triangles;
+    assignment->append(distant, by_triangles);
     std::vector<FeaturePair> tested;
-    assignment->append(distant, tested);
+    for (const CarriedPairs& pairs : by_triangles)
+      for_each_carried(mesh, pairs, [&](const FeaturePair& features) { tested.push_back(features); });
     const std::size_t by_pairs = tested.size();
     tested.insert(tested.end(), assignment->always().begin(), assignment->always().end());
     for (const FeaturePair& features : tested) ++brought[features];

@@ -48,8 +48,8 @@ void for_each_carried(const TriangleMesh& mesh, const TrianglePair& pair, const 
 class FeatureAssignment {
  public:
   virtual ~FeatureAssignment() = default;
-  // Appends the feature pairs that the triangle pairs of a block have to be tested for.
-  virtual void append(std::span<const TrianglePair> block, std::vector<FeaturePair>& out) const = 0;
+  // Appends the triangle pairs of a block that have to be tested, with the feature pairs to test each for.
+  virtual void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const = 0;
   // The feature pairs that are tested in every interval.
   virtual std::span<const FeaturePair> always() const = 0;
 };

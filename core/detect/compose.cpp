@@ -85,7 +85,7 @@ class PairTester : public TrianglePairSink {
     flush();
     if (!options_.assignment) return;
     clock_.enter(Stage::elementary);
-    test_assigned(options_.assignment->always());
+    test_always(options_.assignment->always());
   }
   const PairCounts& counts() const { return counts_; }
 
@@ -107,9 +107,9 @@ class PairTester : public TrianglePairSink {
     const bool drop = exclusions_ != nullptr && !options_.assignment;
     const std::vector<TrianglePair>& block = drop ? without_excluded(whole) : whole;
     if (options_.assignment) {
-      assigned_.clear();
-      options_.assignment->append(block, assigned_);
-      test_assigned(assigned_);
+      carried_.clear();
+      options_.assignment->append(block, carried_);
+      test_carried();
     } else if (first_only_) {
       test_in_order(block);
     } else {
@@ -166,9 +166,8 @@ class PairTester : public TrianglePairSink {
     }
   }
 
-  // Tests feature pairs of an assignment. They are filtered one by one and not by triangle pair, because few
-  // of a triangle pair's feature pairs are assigned to it.
-  void test_assigned(std::span<const FeaturePair> pairs) {
+  // Tests feature pairs that no triangle pair is tested for.
+  void test_always(std::span<const FeaturePair> pairs) {
     counts_.feature_pairs += pairs.size();
     left_.clear();
     if (plain_sign_) {
@@ -228,7 +227,10 @@ class PairTester : public TrianglePairSink {
 
   void test_left() {
     vertex_faces_.clear(), edge_edges_.clear();
-    for (const FeaturePair& pair : left_) {
+    constexpr std::size_t kAhead = 16;  // pairs that are looked up while one is fetched
+    for (std::size_t i = 0; i < left_.size(); ++i) {
+      if (i + kAhead < left_.size()) met_.fetch(left_[i + kAhead]);
+      const FeaturePair& pair = left_[i];
       if (!met_.insert(pair) || (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair))) continue;
       if (pair.kind == FeaturePair::Kind::vertex_face)
         vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
@@ -268,7 +270,6 @@ class PairTester : public TrianglePairSink {
   PairCounts counts_;
   std::vector<TrianglePair> kept_;     // the block without what is excluded
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
-  std::vector<FeaturePair> assigned_;  // to the block's triangle pairs
   std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
   FeaturePairSet met_;                           // feature pairs met in this interval

@@ -106,10 +106,8 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
     std::size_t count = 0;
     for (const auto& [pair, places] : pairs.first(std::min(kTogether, pairs.size()))) {
       const Triangle &a = mesh.corners(pair.a), &b = mesh.corners(pair.b);
-      std::optional<CarriedPlaces> kept;
-      if (single_precision_first) kept = not_filtered_in_single(motion, a, b, places, last);
-      if (!kept) kept = not_filtered(motion, a, b, places);
-      rest[count++] = {pair, *kept};
+      rest[count++] = {pair, single_precision_first ? not_filtered_when_coplanar(motion, a, b, places, last)
+                                                    : not_filtered(motion, a, b, places)};
     }
     for (std::size_t i = 0; i < count; ++i)
       for_each_carried(mesh, rest[i], [&](const FeaturePair& features) { left.push_back(features); });

@@ -32,6 +32,12 @@ CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triang
 // only if the pair certainly does not touch until then, and keeps what it cannot decide.
 std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
                                                     const Triangle& b, CarriedPlaces places, double last = 1);
+// Drops more: looks along directions in the plane only for the part of the interval in which a feature pair
+// may be coplanar, because most pairs that come into one plane are far apart at that moment. What is left may
+// depend on which triangles carry a feature pair. Asks not_filtered() where single precision leaves signs
+// open.
+CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
+                                         CarriedPlaces places, double last);
 
 // Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
 // et al. 2010), one pair at a time. This is the filter of the pipeline `published`. It may drop features that

@@ -1,8 +1,10 @@
 #include "core/detect/filter_block.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/elementary/catalogue.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/question/filter.h"
 #include "core/mesh/test_shapes.h"
@@ -58,13 +60,14 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
   const TriangleMesh mesh = test::icosphere(1).mesh();
   const auto count = static_cast<std::int32_t>(mesh.triangle_count());
   std::mt19937_64 random(13);
+  const ElementaryTest& exact_test = *find_elementary_test("filtered_exact");
   for (const double scale : {1.0, 1e-160, 1e-90, 1e110}) {
     std::vector<Vec3> start = scattered(mesh.vertex_count(), random), end = start;
     for (Vec3& x : end) x += 0.1 * scattered(1, random)[0];
     for (Vec3& x : start) x *= scale;
     for (Vec3& x : end) x *= scale;
     const Motion motion(start, end);
-    std::size_t dropped = 0, coplanar = 0, kept = 0;
+    std::size_t dropped = 0, coplanar = 0, kept = 0, kept_in_single = 0;
     for (std::int32_t i = 0; i < count; ++i)
       for (std::int32_t j = 0; j < count; ++j) {
         if (i == j) continue;
@@ -79,11 +82,15 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
                           : !never_coplanar(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
         });
         filter(mesh, motion, features, expected);
-        for (const bool single_precision_first : {false, true}) {
-          left.clear();
-          filter(mesh, motion, std::span(&pairs, 1), single_precision_first, 1, left);
-          ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
-        }
+        filter(mesh, motion, std::span(&pairs, 1), false, 1, left);
+        ASSERT_EQ(left, expected) << i << " and " << j << ", scale " << scale;
+        std::vector<FeaturePair> in_single;
+        filter(mesh, motion, std::span(&pairs, 1), true, 1, in_single);
+        for (const FeaturePair& pair : features)
+          if (std::ranges::find(in_single, pair) == in_single.end()) {
+            ASSERT_EQ(ask(exact_test, mesh, motion, pair).verdict, Verdict::apart) << i << " and " << j;
+          }
+        kept_in_single += in_single.size();
         dropped += features.size() - left.size();
         kept += left.size();
       }
@@ -93,6 +100,7 @@ TEST(FilterBlock, LeavesOfTwoTrianglesWhatItLeavesPairByPair) {
     }
     if (scale == 1) {
       EXPECT_GT(coplanar, kept + 1000);  // the others are apart in their plane
+      EXPECT_LT(kept_in_single, kept);   // single precision looks at shorter parts of the interval
     }
   }
 }

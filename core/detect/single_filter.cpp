@@ -177,13 +177,79 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
   return {static_cast<Mask16>(apart), static_cast<Mask16>(kept)};
 }
 
-}  // namespace
+// The part of the interval in which each cubic may have a root. Lanes without a root may have their `low`
+// above their `high`.
+//
+// A cubic that begins certainly positive is above the straight line from its first control point to the one
+// that the steepest descent leads to, and so has no root before that line reaches 0; likewise from the other
+// end. Narrowed once more, by the control points of the part, little more than the root itself is left
+// (Bezier clipping, Sederberg and Nishita 1990).
+//
+// Rounding. With the sizes A, B and C of Rounding16, coefficients are at most 6 A B C, so that the control
+// points of a part are off by 12 u times that, beside `bound`, and a descent by as much again. `bound` is at
+// least 68 u A B C, so that four times the bound pays for all. 0.9999 pays for the quotient, and 2^-20 for
+// the times.
+struct PartWithRoots {
+  Float16 low = {}, high = all_lanes(1);
 
-std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
-                                                    const Triangle& b, CarriedPlaces places, double last) {
+  explicit PartWithRoots(const TripleProducts16& f) {
+    const Float16 third = all_lanes(1.0F / 3), bound = 4 * f.bound;
+    const Float16 whole[4] = {f.c[0], f.c[1] * third, f.c[2] * third, f.c[3]};
+    narrow(whole, bound);
+    const auto polar = [&](Float16 r, Float16 s, Float16 t) {
+      const auto mixed = [](Float16 x, Float16 y, Float16 at) { return (1 - at) * x + at * y; };
+      const Float16 x = mixed(whole[0], whole[1], r), y = mixed(whole[1], whole[2], r),
+                    z = mixed(whole[2], whole[3], r);
+      return mixed(mixed(x, y, s), mixed(y, z, s), t);
+    };
+    narrow({polar(low, low, low), polar(low, low, high), polar(low, high, high), polar(high, high, high)},
+           bound);
+  }
+
+ private:
+  // `c` holds the control points between `low` and `high`.
+  void narrow(const Float16 (&c)[4], Float16 bound) {
+    const auto without_root = [&](int from, int step) {
+      const Float16 zero = {}, one = all_lanes(1), sign = select(c[from] < zero, -one, one),
+                    size = sign * c[from];
+      const auto descent = [&](int i) {
+        return (3.0F / static_cast<float>(i)) * (size - sign * c[from + i * step]);
+      };
+      const Float16 steepest = larger(larger(descent(1), descent(2)), descent(3)), clear = size - bound;
+      const Float16 reached = select(steepest > zero, smaller(0.9999F * clear / steepest, one), one);
+      return select(clear > zero, reached, zero);
+    };
+    const Float16 width = high - low, slack = all_lanes(0x1p-20F);
+    const Float16 begin = low + width * without_root(0, 1) - slack,
+                  end = high - width * without_root(3, -1) + slack;
+    low = larger(low, begin), high = smaller(high, end);
+  }
+};
+
+// The points at the ends of that part. If each was off by 4 `error`, it is now off by less than three times
+// that, because a weighted mean of two numbers rounds thrice.
+VectorLanes16 between(const VectorLanes16& x, const PartWithRoots& part) {
+  VectorLanes16 out;
+  for (int i = 0; i < 3; ++i) {
+    const auto at = [&](Float16 t) { return product_plus(t, x.at[1][i], (all_lanes(1) - t) * x.at[0][i]); };
+    out.at[0][i] = at(part.low), out.at[1][i] = at(part.high);
+  }
+  return out;
+}
+
+// What a look at the fifteen feature pairs of two triangles finds. Unless `certain`, double precision may
+// drop more of those left.
+struct Looked {
+  CarriedPlaces left;
+  bool certain;
+};
+
+// Looks at the interval from t = 0 to `last`. If `narrowed`, looks along directions in the plane only for the
+// part of it in which the points of a feature pair may be coplanar.
+template <bool narrowed>
+Looked look(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places, double last) {
   const Corners c = corners_of(motion, a, b, last);
-  if (!(c.largest <= kLargest && c.beyond <= kLargest)) return std::nullopt;
-  const bool whole = last == 1;
+  if (!(c.largest <= kLargest && c.beyond <= kLargest)) return {places, false};
   const float error = c.error();
   const VectorLanes16 from = points<3, 3, 3, 0, 0, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2>(c),
                       second = points<5, 5, 5, 2, 2, 2, 4, 5, 3, 4, 5, 3, 4, 5, 3, 3>(c),
@@ -195,15 +261,39 @@ std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const 
   cross(p, q, normal);
   const TripleProducts16 products =
       triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), error), error);
-  const unsigned never = products.positive() | products.negative(), sometime = products.mixed();
-  if (whole && (places & ~(never | sometime)) != 0) return std::nullopt;
-  const unsigned left = places & ~never;
-  if (left == 0) return CarriedPlaces{0};
+  const unsigned never = products.positive() | products.negative();
+  const bool whole = last == 1;
+  bool certain = !whole || (places & ~(never | products.mixed())) == 0;
+  unsigned left = places & ~never;
+  if (left == 0) return {0, certain};
 
-  const VectorLanes16 seen[3] = {p, chosen(q, r), chosen(r, second - from)};
-  const auto [apart, kept] = sideways(seen, alike(a, b), error);
-  if (whole && (left & ~(apart | kept)) != 0) return std::nullopt;
-  return static_cast<CarriedPlaces>(left & ~apart);
+  VectorLanes16 seen[3] = {p, chosen(q, r), chosen(r, second - from)};
+  if (narrowed) {
+    const PartWithRoots part(products);
+    for (VectorLanes16& x : seen) x = between(x, part);
+  }
+  const auto [apart, kept] = sideways(seen, alike(a, b), narrowed ? 3 * error : error);
+  if (narrowed)
+    left &= ~(apart & products.known);
+  else {
+    certain = certain && (!whole || (left & ~(apart | kept)) == 0);
+    left &= ~apart;
+  }
+  return {static_cast<CarriedPlaces>(left), certain};
+}
+
+}  // namespace
+
+std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
+                                                    const Triangle& b, CarriedPlaces places, double last) {
+  const Looked found = look<false>(motion, a, b, places, last);
+  return found.certain ? std::optional(found.left) : std::nullopt;
+}
+
+CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
+                                         CarriedPlaces places, double last) {
+  const Looked found = look<true>(motion, a, b, places, last);
+  return found.certain || found.left == 0 ? found.left : not_filtered(motion, a, b, found.left);
 }
 
 }  // namespace cscd
