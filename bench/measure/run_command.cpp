@@ -47,6 +47,12 @@ void print(const VerificationRecord& v, const std::string& timed) {
               v.reference.c_str(), v.elementary.c_str(), v.seconds, v.intervals.size());
   std::printf("  with contacts: %zu%s\n", v.colliding.size(),
               v.colliding.empty() ? ", so a row could fail by inventing one alone" : "");
+  if (v.truth) {
+    std::printf("  held against %s (%llu pairs, %llu contacts): %llu missed, %llu invented%s\n",
+                v.truth->file.c_str(), count(v.truth->pairs), count(v.truth->contacts),
+                count(v.truth->missed), count(v.truth->invented), v.truth->ok() ? "" : ", FAILED");
+    for (const std::string& difference : v.truth->differences) std::printf("    %s\n", difference.c_str());
+  }
   if (!v.unembedded.empty())
     std::printf("  with a start that is not embedded, as the surface crosses itself: %zu\n",
                 v.unembedded.size());
@@ -84,11 +90,25 @@ void say_who_cannot_ignore(const Input& input, const ReplayRequest& request) {
         std::printf("without %s: %s\n", std::string(strategy->name).c_str(), reason->c_str());
 }
 
+// Truth from outside is a gate. Whatever would have to be left out of it is refused.
+void read_truth(Input& input) {
+  if (!is_point_cache(input.name)) return;
+  input.truth = outside_truth(input.name, input.mesh);
+  if (!input.truth) return;
+  if (const std::size_t intervals = input.clip->interval_count(); intervals != 1)
+    throw InputError("truth " + input.truth->file + ": is of one step, and " + input.name + " has " +
+                     std::to_string(intervals) + "; move the table away, or give a cache of two frames");
+  if (input.ignored)
+    throw InputError("--ignore: " + input.truth->file + " beside " + input.name +
+                     " judges all contacts; move the table away, or ignore nothing");
+}
+
 Input open(const RunOptions& options, const ReplayRequest& request) {
   Input input = open_input(request.scene, request.model);
   say_what_was_read(input, stdout);
   input.threads = request.threads;
   ignore(input, options.ignored);
+  read_truth(input);
   say_who_cannot_ignore(input, request);
   return input;
 }

@@ -16,6 +16,7 @@ namespace cscd::bench {
 using nlohmann::ordered_json;
 
 bool VerificationRecord::ok() const {
+  if (truth && !truth->ok()) return false;
   return std::all_of(strategies.begin(), strategies.end(),
                      [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
 }
@@ -81,6 +82,10 @@ ordered_json to_json(const VerificationRecord& v) {
                         {"tests", v.accuracy_tests}}},
                       {"seconds", v.seconds}};
   if (!v.own_tests.empty()) out["own_tests"] = v.own_tests;
+  if (v.truth)
+    out["truth"] = {{"file", v.truth->file},         {"pairs", v.truth->pairs},
+                    {"contacts", v.truth->contacts}, {"missed", v.truth->missed},
+                    {"invented", v.truth->invented}, {"differences", v.truth->differences}};
   return out;
 }
 
@@ -131,6 +136,12 @@ VerificationRecord verification_from(const ordered_json& v) {
                   accuracy.at("largest_time_error")};
   out.accuracy_tests = accuracy.at("tests");
   out.own_tests = v.value("own_tests", ordered_json::array());
+  if (v.contains("truth")) {
+    const ordered_json& truth = v["truth"];
+    out.truth = {truth.at("file"),     truth.at("pairs"),
+                 truth.at("contacts"), truth.at("missed"),
+                 truth.at("invented"), truth.at("differences").get<std::vector<std::string>>()};
+  }
   out.seconds = v.at("seconds");
   return out;
 }

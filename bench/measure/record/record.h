@@ -71,6 +71,16 @@ struct VerifiedStrategy {
   std::vector<std::string> failures;
 };
 
+// How the reference's contacts differ from a table of truth from outside (bench/query/input/outside_truth.h).
+struct TruthRecord {
+  std::string file;
+  std::uint64_t pairs = 0, contacts = 0;      // that the table judges, and that touch by its word
+  std::uint64_t missed = 0, invented = 0;     // by the reference
+  std::vector<std::string> differences = {};  // the first of them
+
+  bool ok() const { return missed == 0 && invented == 0; }
+};
+
 struct VerificationRecord {
   std::string reference, elementary;    // the complete strategy and the exact test
   std::vector<std::size_t> intervals;   // those verified
@@ -89,6 +99,7 @@ struct VerificationRecord {
   // referee's, and the first differences with the pair, the strategy's answer and the true one. Empty without
   // such a strategy.
   nlohmann::ordered_json own_tests = nlohmann::ordered_json::array();
+  std::optional<TruthRecord> truth = std::nullopt;  // of an input with such a table beside it
   double seconds = 0;
 
   bool ok() const;

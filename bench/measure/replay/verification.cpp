@@ -45,7 +45,7 @@ class Verifier::OwnTest {
       if (listed_.size() == kListed) return;
       listed_.push_back({{"interval", interval},
                          {"kind", is_vertex_face(difference.pair) ? "vf" : "ee"},
-                         {"vertices", vertices(mesh, difference.pair)},
+                         {"vertices", VerticesOfPair::of(mesh, difference.pair).vertices},
                          {"said", time(difference.said)},
                          {"true", time(difference.truth)}});
     }
@@ -61,19 +61,6 @@ class Verifier::OwnTest {
  private:
   static constexpr std::size_t kListed = 200;
   static bool is_vertex_face(const FeaturePair& pair) { return pair.kind == FeaturePair::Kind::vertex_face; }
-  static std::vector<int> vertices(const TriangleMesh& mesh, const FeaturePair& pair) {
-    std::vector<VertexId> ids;
-    if (is_vertex_face(pair)) {
-      const Triangle& corner = mesh.corners(TriangleId{pair.b});
-      ids = {VertexId{pair.a}, corner[0], corner[1], corner[2]};
-    } else {
-      const Edge &a = mesh.ends(EdgeId{pair.a}), &b = mesh.ends(EdgeId{pair.b});
-      ids = {a[0], a[1], b[0], b[1]};
-    }
-    std::vector<int> out;
-    for (const VertexId id : ids) out.push_back(static_cast<int>(id));
-    return out;
-  }
   static nlohmann::ordered_json time(const std::optional<double>& t) {  // null: apart
     return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
   }
@@ -84,6 +71,20 @@ class Verifier::OwnTest {
 };
 
 namespace {
+
+TruthRecord held_against(const OutsideTruth& outside, const TriangleMesh& mesh, const ContactSet& found) {
+  constexpr std::size_t kListed = 20;
+  std::vector<VerticesOfPair> own, missed, invented;
+  for (const Contact& contact : found.contacts) own.push_back(VerticesOfPair::of(mesh, contact.pair));
+  std::ranges::sort(own);
+  std::ranges::set_difference(outside.contacts, own, std::back_inserter(missed));
+  std::ranges::set_difference(own, outside.contacts, std::back_inserter(invented));
+  TruthRecord out{outside.file, outside.pairs, outside.contacts.size(), missed.size(), invented.size()};
+  for (const auto& [what, pairs] : {std::pair("missed ", &missed), std::pair("invented ", &invented)})
+    for (const VerticesOfPair& pair : *pairs)
+      if (out.differences.size() < kListed) out.differences.push_back(what + text(pair));
+  return out;
+}
 
 // Leaves the referee's answers to the pairs that both call contacts.
 void keep_shared(const ContactSet& truth, ContactSet& answer) {
@@ -161,6 +162,7 @@ void Verifier::judge_one(std::size_t i) {
   const Report expected = reference_->used->judged->detect({interval.motion, bones}, truth);
   truth.sort();
   if (!truth.contacts.empty()) record_.colliding.push_back(i);
+  if (input_.truth) record_.truth = held_against(*input_.truth, input_.mesh, truth);
   std::vector<Report>& reports = reports_[i];
   for (std::size_t c = 0; c < contestants_.size(); ++c) {
     const Strategy& strategy = *contestants_[c].strategy;

@@ -13,7 +13,8 @@
 namespace cscd::bench {
 
 // Judges every contestant's contacts on intervals, each once, against those of the complete reference, both
-// with the exact elementary test; and the timed elementary test on the reference's pairs.
+// with the exact elementary test; and the timed elementary test on the reference's pairs. The reference
+// itself is held against truth from outside where the input has some.
 class Verifier {
  public:
   // `exact` and `timed` are the tests that the contestants were made with. Everything given must outlive the

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/query/input/import.h"
+#include "bench/query/input/outside_truth.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/strategy.h"
 #include "core/mesh/rig.h"
@@ -47,7 +48,8 @@ struct Input {
   std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
   Up up = {};
-  std::shared_ptr<const Ignored> ignored = nullptr;  // null where nothing is
+  std::shared_ptr<const Ignored> ignored = nullptr;     // null where nothing is
+  std::shared_ptr<const OutsideTruth> truth = nullptr;  // null where none is to be held against
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
   std::span<const Vec3> rest() const {
