@@ -206,7 +206,9 @@ void add_replay_options(CLI::App& command, ReplayRequest& request) {
   command.add_option("--scene,--input", request.scene, kInputHelp)->capture_default_str();
   command
       .add_option("--strategy", request.strategies,
-                  "strategies or groups of them, with commas between; default all without a group")
+                  "strategies or groups of them, with commas between; default all without a group. "
+                  "\"STRATEGY --first\"\n"
+                  "looks for the earliest contact alone")
       ->delimiter(',');
   command.add_option("--elementary", request.elementary, "the elementary test that is timed")
       ->capture_default_str();

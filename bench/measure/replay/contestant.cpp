@@ -36,17 +36,16 @@ std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& 
   return std::nullopt;
 }
 
-std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
-                                         const ElementaryTest& exact, const ElementaryTest& timed,
-                                         Pipeline pipeline) {
-  Progress progress("preparing " + input.name, 2 * strategies.size());
+std::vector<Contestant> make_contestants(const Input& input, std::span<const StrategyRow> rows,
+                                         const ElementaryTest& exact, const ElementaryTest& timed) {
+  Progress progress("preparing " + input.name, 2 * rows.size());
   std::vector<Contestant> contestants;
-  for (const Strategy* strategy : strategies) {
+  for (const StrategyRow& row : rows) {
     Contestant& contestant = contestants.emplace_back();
-    contestant.strategy = strategy;
-    contestant.pipeline = pipeline;
+    contestant.row = row;
     const auto make = [&](const ElementaryTest& test) {
-      Prepared prepared = strategy->make(measured_setup(input, *strategy, test, false, pipeline));
+      Prepared prepared =
+          row.strategy->make(measured_setup(input, *row.strategy, test, row.first, row.pipeline));
       add(prepared.preparation, contestant.preparation);
       contestant.threads = prepared.preparation.threads;
       progress.advance();
@@ -58,33 +57,35 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
   return contestants;
 }
 
-std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names,
-                                               Pipeline pipeline) {
-  const auto has = [&](const Strategy& strategy) {
-    return pipeline == Pipeline::vectorised || strategy.kind == StrategyKind::published;
+std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::string> texts,
+                                     Pipeline pipeline) {
+  const auto has = [&](const StrategyRow& row) {
+    return pipeline == Pipeline::vectorised || row.strategy->kind == StrategyKind::published;
   };
-  std::vector<const Strategy*> chosen;
-  const auto add = [&](const Strategy* strategy) {
-    if (std::find(chosen.begin(), chosen.end(), strategy) == chosen.end()) chosen.push_back(strategy);
+  std::vector<StrategyRow> chosen;
+  const auto add = [&](StrategyRow row) {
+    row.pipeline = pipeline;
+    if (std::ranges::find(chosen, row) == chosen.end()) chosen.push_back(row);
   };
-  const auto add_group = [&](std::string_view group) {
-    for (const Strategy* strategy : strategies_in(group))
-      if (has(*strategy) && allows(input, *strategy) && !why_not_ignoring(input, *strategy)) add(strategy);
+  const auto add_of_group = [&](const StrategyRow& row) {
+    if (has(row) && allows(input, *row.strategy) && !why_not_ignoring(input, *row.strategy)) add(row);
   };
-  if (names.empty()) add_group("");
-  for (const std::string& name : names)
-    if (strategies_in(name).empty()) {
-      const Strategy& strategy = strategy_named(name);
-      if (!has(strategy))
-        throw InputError("strategy " + name +
+  if (texts.empty())
+    for (const Strategy* strategy : strategies_in("")) add_of_group({strategy});
+  for (const std::string& text : texts)
+    for (const StrategyRow& row : rows_called({&text, 1})) {
+      if (row.name() != text) {
+        add_of_group(row);
+        continue;
+      }
+      if (!has(row))
+        throw InputError("strategy " + text +
                          " is not of the paper, so the pipeline published does not have it; leave it out, or "
                          "run it with --pipeline today");
-      if (const auto reason = why_not_ignoring(input, strategy))
-        throw InputError("strategy " + name + " cannot leave out what is ignored: " + *reason +
+      if (const auto reason = why_not_ignoring(input, *row.strategy))
+        throw InputError("strategy " + text + " cannot leave out what is ignored: " + *reason +
                          "; leave the strategy out, or --ignore and --ignore-neighbours");
-      add(&strategy);
-    } else {
-      add_group(name);
+      add(row);
     }
   return chosen;
 }

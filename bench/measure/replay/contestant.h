@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "bench/measure/record/record.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/input/input.h"
 #include "core/detect/strategy.h"
 
 namespace cscd::bench {
 
-// A strategy made twice for one input: to be judged, with the exact elementary test, and to be timed.
+// A row made twice for one input: to be judged, with the exact elementary test, and to be timed.
 struct Contestant {
-  const Strategy* strategy;
-  Pipeline pipeline = Pipeline::vectorised;
+  StrategyRow row;
   std::unique_ptr<Detector> judged, timed;
   PreparationRecord preparation;
   int threads = 1;  // on which it answers
@@ -27,19 +27,18 @@ StrategyInput measured_setup(const Input& input, const Strategy& strategy, const
                              bool first_only = false, Pipeline pipeline = Pipeline::vectorised);
 
 // Throws InputError when the input lacks what a strategy needs. The input must outlive the detectors.
-std::vector<Contestant> make_contestants(const Input& input, std::span<const Strategy* const> strategies,
-                                         const ElementaryTest& exact, const ElementaryTest& timed,
-                                         Pipeline pipeline = Pipeline::vectorised);
+std::vector<Contestant> make_contestants(const Input& input, std::span<const StrategyRow> rows,
+                                         const ElementaryTest& exact, const ElementaryTest& timed);
 
 // Says why a strategy cannot leave out what an input ignores; nothing where it can, or where nothing is
 // ignored.
 std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& strategy);
 
-// Strategies by name, or all of a group that the input allows; without names, those without a group that it
-// allows. Rows that the pipeline does not have, or that cannot leave out what the input ignores, are left out
-// of groups. Throws InputError for a name that is not known, and for a row that is named and would be left
-// out of a group.
-std::vector<const Strategy*> chosen_strategies(const Input& input, std::span<const std::string> names,
-                                               Pipeline pipeline = Pipeline::vectorised);
+// Rows by the texts that rows_called() reads; of a group, those that the input allows; without texts, those
+// without a group that it allows. Rows that the pipeline does not have, or that cannot leave out what the
+// input ignores, are left out of groups. Throws InputError for a name that is not known, and for a row that
+// is named and would be left out of a group.
+std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::string> texts,
+                                     Pipeline pipeline = Pipeline::vectorised);
 
 }  // namespace cscd::bench

@@ -74,7 +74,7 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
     });
     kept += expected.contacts.size();
     std::vector<std::string> names;
-    for (const Strategy* strategy : chosen_strategies(subject.input, {})) names.emplace_back(strategy->name);
+    for (const StrategyRow& row : chosen_rows(subject.input, {})) names.push_back(row.name());
     names.emplace_back("brute");
     for (const std::string& name : names) {
       const Strategy& strategy = strategy_named(name);
@@ -90,13 +90,13 @@ TEST(Ignoring, EveryRowThatIsMeasuredLeavesTheOtherContacts) {
 
 TEST(Ignoring, RowsThatCannotAreLeftOutOrRefused) {
   const Subject subject(1);
-  for (const Strategy* strategy : chosen_strategies(subject.input, {}))
-    EXPECT_TRUE(strategy->guarantee == Guarantee::complete ||
-                strategy->guarantee == Guarantee::all_from_embedded)
-        << strategy->name;
+  for (const StrategyRow& row : chosen_rows(subject.input, {}))
+    EXPECT_TRUE(row.strategy->guarantee == Guarantee::complete ||
+                row.strategy->guarantee == Guarantee::all_from_embedded)
+        << row.name();
   for (const char* name : {"drvbc", "drvbc_fast", "drvbc_one_vertex"}) {
     const std::vector<std::string> asked{name};
-    EXPECT_THROW(chosen_strategies(subject.input, asked), InputError) << name;
+    EXPECT_THROW(chosen_rows(subject.input, asked), InputError) << name;
   }
 }
 

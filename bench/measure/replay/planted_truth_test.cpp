@@ -49,7 +49,7 @@ Record record_of(std::uint64_t seed, Prepared (*make)(const StrategyInput&), boo
   const ElementaryTest& exact = elementary_test_named("exact");
   const Strategy strategy{"row",           "for tests",         Guarantee::complete,
                           Needs::any_mesh, StrategyKind::fixed, make};
-  const std::array rows = {&strategy};
+  const std::array rows = {StrategyRow{&strategy}};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact, exact);
   Verifier verifier(input, contestants, exact, exact);
   const std::vector<std::size_t> all = {0};

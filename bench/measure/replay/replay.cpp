@@ -93,11 +93,11 @@ SceneRecord describe(Input& input) {
 
 StrategyRecord describe(const Contestant& contestant) {
   StrategyRecord record;
-  record.name = contestant.strategy->name;
-  record.source = contestant.strategy->source;
-  record.guarantee = to_string(contestant.strategy->guarantee);
+  record.name = contestant.row.name();
+  record.source = contestant.row.strategy->source;
+  record.guarantee = to_string(contestant.row.strategy->guarantee);
   record.threads = contestant.threads;
-  if (contestant.strategy->kind == StrategyKind::adaptive) record.lead = kLead;
+  if (contestant.row.strategy->kind == StrategyKind::adaptive) record.lead = kLead;
   record.preparation = contestant.preparation;
   return record;
 }
@@ -138,9 +138,9 @@ VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contes
   if (!replay.intervals.timed.empty() && !void_times && verifier.record().ok()) {
     const TimingPlan plan{record.timed_intervals, replay.request.repetitions, replay.request.seed};
     void_times = time_contestants(input, contestants, plan, verifier, counted, record.strategies);
-    for (StrategyRecord& strategy : record.strategies)
-      strategy.footprint = measure_footprint(input, {&strategy_named(strategy.name), false, record.pipeline},
-                                             timed, record.timed_intervals);
+    for (std::size_t c = 0; c < contestants.size(); ++c)
+      record.strategies[c].footprint =
+          measure_footprint(input, contestants[c].row, timed, record.timed_intervals);
   }
   VerificationRecord verified = verifier.record();
   verified.disagreeing = counted.disagreeing;
@@ -156,8 +156,7 @@ void require_sound(const ReplayRequest& request) {
     throw InputError("--pipeline published --elementary " + request.elementary +
                      ": the paper's elementary test is a part of that pipeline; leave --elementary out");
   elementary_test_named(request.elementary);
-  for (const std::string& name : request.strategies)
-    if (strategies_in(name).empty()) strategy_named(name);
+  rows_called(request.strategies);
 }
 
 Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
@@ -177,9 +176,8 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
   if (!input.clip_was_named)  // so that the record says which clip it is of
     request.model.import.clip = std::to_string(input.import->chosen_clip);
   request.strategies.clear();
-  for (const Strategy* strategy :
-       chosen_strategies(input, asked.strategies, pipeline_named(request.pipeline)))
-    request.strategies.emplace_back(strategy->name);
+  for (const StrategyRow& row : chosen_rows(input, asked.strategies, pipeline_named(request.pipeline)))
+    request.strategies.push_back(row.name());
   if (request.strategies.empty())
     throw InputError("--strategy: " + request.scene +
                      " allows none of these; name others (cscd list strategies)");
@@ -197,8 +195,6 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
 Record execute(Input& input, const Replay& replay) {
   const ElementaryTest& timed = elementary_test_named(replay.request.elementary);
   const ElementaryTest& exact = elementary_test_named(kReferee);
-  std::vector<const Strategy*> strategies;
-  for (const std::string& name : replay.request.strategies) strategies.push_back(&strategy_named(name));
   input.threads = replay.request.threads;
 
   Record record;
@@ -211,7 +207,8 @@ Record execute(Input& input, const Replay& replay) {
   record.intervals = replay.intervals.range.last - replay.intervals.range.first;
   record.counted_intervals = replay.intervals.counted;
   record.timed_intervals = replay.intervals.timed;
-  std::vector<Contestant> contestants = make_contestants(input, strategies, exact, timed, record.pipeline);
+  std::vector<Contestant> contestants =
+      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed);
   for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
 
   record.verification = verified_and_timed(input, contestants, exact, timed, replay, record);

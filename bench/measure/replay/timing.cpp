@@ -23,7 +23,7 @@ namespace cscd::bench {
 namespace {
 
 // Culling must not depend on the elementary test behind it; otherwise the verified strategy is not the timed
-// one.
+// one. A row that looks for the first contact alone culls by the times that the test finds.
 bool same_culling(const Report& a, const Report& b) {
   return a.cull.bvot == b.cull.bvot && a.cull.pctp == b.cull.pctp &&
          a.cull.contour_box_tests == b.cull.contour_box_tests &&
@@ -44,6 +44,7 @@ Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, Cont
   const Report report =
       contestant.timed->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
   found.sort();
+  if (contestant.row.first) keep_first(found);
   const auto first = found.contacts.empty() ? std::nullopt : std::optional(found.contacts.front().time);
   return {report, digest(found), first};
 }
@@ -61,16 +62,19 @@ bool agree(std::span<const Contestant> contestants, std::span<const Answer> answ
            const StartsEmbedded& starts_embedded) {
   const Answer *complete = nullptr, *first = nullptr;
   for (std::size_t c = 0; c < contestants.size(); ++c) {
-    const Strategy& strategy = *contestants[c].strategy;
-    if (strategy.own_test || strategy.guarantee != Guarantee::complete) continue;
+    const StrategyRow& row = contestants[c].row;
+    if (row.strategy->own_test || row.strategy->guarantee != Guarantee::complete) continue;
+    if (first != nullptr && first->first != answers[c].first) return false;
+    first = &answers[c];
+    if (row.first) continue;
     if (complete != nullptr && complete->digest != answers[c].digest) return false;
     complete = &answers[c];
   }
-  first = complete;
   for (std::size_t c = 0; c < contestants.size(); ++c) {
-    const Guarantee guarantee = contestants[c].strategy->guarantee;
+    const Guarantee guarantee = contestants[c].row.strategy->guarantee;
     if (!needs_embedded_start(guarantee)) continue;
-    const bool all = guarantee == Guarantee::all_from_embedded && complete != nullptr;
+    const bool all =
+        guarantee == Guarantee::all_from_embedded && !contestants[c].row.first && complete != nullptr;
     if (all && complete->digest != answers[c].digest) return !starts_embedded();
     if (first != nullptr && first->first != answers[c].first) return !starts_embedded();
     first = &answers[c];
@@ -108,10 +112,10 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     expect_verified(embedded, verifier, i, input);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
-      const Strategy& strategy = *contestants[c].strategy;
+      const Strategy& strategy = *contestants[c].row.strategy;
       if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken.count(), records[c].ms, repetition);
-      if (&strategy != &complete_fallback()) continue;
+      if (&strategy != &complete_fallback() || contestants[c].row.first) continue;
       lead_up(strategy, *contestants[c].timed, *input.clip, i);
       interval = input.clip->load(i);
       stream_positions(interval.motion);
@@ -164,14 +168,15 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
   for (const std::size_t i : counted) {
     scenes::ClipInterval interval = input.clip->load(i);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
-      lead_up(*contestants[c].strategy, *contestants[c].timed, *input.clip, i);
+      lead_up(*contestants[c].row.strategy, *contestants[c].timed, *input.clip, i);
       interval = input.clip->load(i);
       answers[c] = answer(contestants[c], interval, found);
       append_counts(answers[c].report, found, records[c].counts);
       records[c].digests.push_back(answers[c].digest);
       records[c].first_times.push_back(answers[c].first);
       out.reports[c].push_back(answers[c].report);
-      if (verifier.has_judged(i) && !same_culling(answers[c].report, verifier.report(c, i))) {
+      if (verifier.has_judged(i) && !contestants[c].row.first &&
+          !same_culling(answers[c].report, verifier.report(c, i))) {
         out.unrepeatable = {c,
                             "interval " + std::to_string(i) + ": culls otherwise than when it was verified"};
         return out;
@@ -200,14 +205,14 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
   ContactSet found;
   std::mt19937_64 random(plan.seed);
   const bool leads = std::ranges::any_of(
-      contestants, [](const Contestant& c) { return c.strategy->kind == StrategyKind::adaptive; });
+      contestants, [](const Contestant& c) { return c.row.strategy->kind == StrategyKind::adaptive; });
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t repetition = 0; repetition < plan.repetitions; ++repetition) {
     for (const std::size_t i : plan.timed) {
       const std::size_t row = place_of(i, warm_up.counted);
       for (const Contestant& contestant : contestants)
-        lead_up(*contestant.strategy, *contestant.timed, *input.clip, i);
+        lead_up(*contestant.row.strategy, *contestant.timed, *input.clip, i);
       // A lead brings what its strategy works on into the caches, from where other strategies drive it
       // otherwise.
       if (leads) drive_from_caches();

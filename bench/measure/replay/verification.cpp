@@ -24,12 +24,10 @@ class Verifier::Reference {
 
   Reference(const Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
             const ElementaryTest& timed) {
-    const Strategy* strategy = &complete_reference();
-    const auto row = std::find_if(contestants.begin(), contestants.end(), [&](const Contestant& c) {
-      return c.strategy == strategy && c.pipeline == Pipeline::vectorised;
-    });
-    used = row != contestants.end() ? &*row : &own;
-    if (used == &own) own = std::move(make_contestants(input, {&strategy, 1}, exact, timed).front());
+    const StrategyRow reference{&complete_reference()};
+    const auto among = std::ranges::find(contestants, reference, &Contestant::row);
+    used = among != contestants.end() ? &*among : &own;
+    if (used == &own) own = std::move(make_contestants(input, {&reference, 1}, exact, timed).front());
   }
 };
 
@@ -117,12 +115,12 @@ Verifier::Verifier(Input& input, std::span<Contestant> contestants, const Elemen
       contestants_(contestants),
       reference_(std::make_unique<Reference>(input, contestants, exact, timed)),
       embedding_(std::make_unique<EmbeddingTest>(input.mesh, input.reference)) {
-  record_.reference = reference_->used->strategy->name;
+  record_.reference = reference_->used->row.strategy->name;
   record_.elementary = exact.name;
   for (std::size_t c = 0; c < contestants.size(); ++c) {
-    const Strategy& strategy = *contestants[c].strategy;
+    const Strategy& strategy = *contestants[c].row.strategy;
     VerifiedStrategy& row = record_.strategies.emplace_back();
-    row.name = strategy.name;
+    row.name = contestants[c].row.name();
     row.guarantee = to_string(strategy.guarantee);
     if (strategy.own_test) own_tests_.emplace(c, std::make_unique<OwnTest>(strategy));
   }
@@ -165,18 +163,19 @@ void Verifier::judge_one(std::size_t i) {
   if (input_.truth) record_.truth = held_against(*input_.truth, input_.mesh, truth);
   std::vector<Report>& reports = reports_[i];
   for (std::size_t c = 0; c < contestants_.size(); ++c) {
-    const Strategy& strategy = *contestants_[c].strategy;
+    const Strategy& strategy = *contestants_[c].row.strategy;
     const bool itself = &contestants_[c] == reference_->used;
     lead_up(strategy, *contestants_[c].judged, *input_.clip, i);
     interval = input_.clip->load(i);
     bones = interval.bones ? &*interval.bones : nullptr;
     reports.push_back(itself ? expected : contestants_[c].judged->detect({interval.motion, bones}, answer));
     answer.sort();
+    if (contestants_[c].row.first) keep_first(answer);
     if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
       own->second->compare(input_.mesh, i, truth, answer);
       keep_shared(truth, answer);
     }
-    add(verify(truth, itself ? truth : answer, strategy.guarantee, starts_embedded),
+    add(verify(truth, itself ? truth : answer, contestants_[c].row, starts_embedded),
         promises(strategy.guarantee, starts_embedded, truth), i, record_.strategies[c]);
   }
   record_.accuracy_tests +=

@@ -97,7 +97,7 @@ struct Outcome {
 
 Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
   Input input = colliding_input();
-  const std::array rows = {&complete_reference(), &strategy};
+  const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&strategy}};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
   Outcome outcome;
   Verifier verifier(input, contestants, exact_test(), newton());
@@ -209,7 +209,7 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
                             Needs::any_mesh,
                             StrategyKind::fixed,
                             loses_first ? sabotage<lose_first> : sabotage<lose_last>};
-    const std::array rows = {&complete_reference(), &saboteur};
+    const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
     std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
     Verifier verifier(input, contestants, exact_test(), exact_test());
     std::vector<StrategyRecord> records(2);
@@ -228,7 +228,7 @@ TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
   const Strategy saboteur{
       "saboteur",         "test", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
       sabotage<lose_last>};
-  const std::array rows = {&complete_reference(), &saboteur};
+  const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
   Verifier verifier(input, contestants, exact_test(), exact_test());
   std::vector<StrategyRecord> records(2);
@@ -238,7 +238,7 @@ TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
 
 TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
   Input input = colliding_input();
-  const std::array rows = {&complete_reference()};
+  const std::array rows = {StrategyRow{&complete_reference()}};
   std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
   const Verifier verifier(input, contestants, exact_test(), newton());
   std::vector<StrategyRecord> records(1);
