@@ -110,6 +110,38 @@ TEST_F(TruthBesideCache, IsRefusedWhereItIsDamaged) {
   refused("step.truth.csv.gz: is a damaged gzip file");
 }
 
+// Mutation: an answer is not cut down to its first contacts before it is judged.
+TEST_F(TruthBesideCache, IsNoGateOfTheFirstContactAlone) {
+  put_cache();
+  put_truth(kRight);
+  const Ran ran =
+      run("cscd run --input step.h5 --strategy 'base,drvbc_fast_complete --first' --repetitions 1 --json "
+          "first.json");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
+  const ordered_json row = ordered_json::parse(text("first.json")).at("strategies").at(1);
+  EXPECT_EQ(row.at("name"), "drvbc_fast_complete --first");
+  EXPECT_EQ(row.at("counts").at("contacts"), ordered_json::parse("[1]"));
+  EXPECT_TRUE(row.at("ms").contains("traversal"));
+  expect_refused(run("cscd run --input step.h5 --strategy 'fcl --first' --json x.json"), "leave --first out");
+}
+
+TEST_F(TruthBesideCache, MakesATableOfTheCachesOfAFolder) {
+  put_cache();
+  put_truth(kRight);
+  const Ran ran =
+      run("mkdir steps && mv step.* steps && cp steps/step.h5 steps/other.h5\n"
+          "cscd run --input steps --strategy base,drvbc_fast_complete --repetitions 1 --json out && ls out");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(ran.out.ends_with("other.json\nstep.json\n")) << ran.out;
+  const std::string tables = run("cscd tables out").out;
+  const std::size_t begin = tables.find("Steps held against truth from outside");
+  ASSERT_NE(begin, std::string::npos) << tables;
+  const std::string table = tables.substr(begin, tables.find("\n\n", begin) - begin);
+  EXPECT_NE(table.find("\nstep "), std::string::npos) << table;
+  EXPECT_EQ(table.find("other"), std::string::npos) << table;  // no truth lies beside it
+  expect_refused(run("mkdir none && cscd run --input none --json out2"), "none: holds no point cache (.h5)");
+}
+
 TEST_F(TruthBesideCache, IsOfOneStepAlone) {
   put_cache(2);
   put_truth(kRight);

@@ -20,6 +20,7 @@
 #include "bench/query/options/model_options.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
+#include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::bench {
@@ -142,30 +143,56 @@ void make_folder(const std::filesystem::path& folder, const std::string& option)
                      "; choose another with " + option);
 }
 
-// Every scene that there is, each to its own record in the folder named as output.
-bool run_all(const RunOptions& options) {
+// The point caches of a folder.
+std::vector<std::string> caches_in(const std::filesystem::path& folder) {
+  std::vector<std::string> caches;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    if (entry->path().extension() == ".h5") caches.push_back(entry->path());
+  if (error)
+    throw InputError("folder " + folder.string() + ": cannot be read (" + error.message() +
+                     "); make it readable");
+  if (caches.empty())
+    throw InputError("folder " + folder.string() +
+                     ": holds no point cache (.h5); name a folder that does, or a file");
+  std::ranges::sort(caches);
+  return caches;
+}
+
+// Every scene that there is.
+std::vector<std::string> all_scenes() {
+  std::vector<std::string> names;
+  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
+    if (!scene.fault.empty())
+      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
+                       "); mend or remove that file, or name the scenes one by one");
+    names.push_back(scene.name);
+  }
+  return names;
+}
+
+// Each input to its own record in the folder named as output.
+bool run_each(const RunOptions& options, const std::vector<std::string>& inputs) {
   const std::filesystem::path folder = options.output;
   if (is_standard_output(folder))
     throw InputError("--json " + options.output +
                      ": several records do not go to standard output; name a folder, or one scene");
   make_folder(folder, "--json");
-  const std::vector<scenes::SceneSummary> all = scenes::list_scenes();
-  for (const scenes::SceneSummary& scene : all)
-    if (!scene.fault.empty())
-      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
-                       "); mend or remove that file, or name the scenes one by one");
   std::vector<ReplayRequest> runs;
   std::deque<OutputFile> outputs;  // what stands in the way of any is found before the work
-  for (const scenes::SceneSummary& scene : all) {
+  std::vector<std::filesystem::path> records;
+  for (const std::string& input : inputs) {
     runs.push_back(options.request);
-    runs.back().scene = scene.name;
-    outputs.emplace_back(folder / (scene.name + ".json"), options.force);
+    runs.back().scene = input;
+    records.push_back(folder / (scenes::plain_name(input) + ".json"));
+    outputs.emplace_back(records.back(), options.force);
   }
   bool ok = true;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
     ok = run_one(options, runs[i], outputs[i]) && ok;
-    std::printf("record: %s\n", (folder / (runs[i].scene + ".json")).c_str());
+    std::printf("record: %s\n", records[i].c_str());
   }
   return ok;
 }
@@ -191,8 +218,11 @@ void run(const RunOptions& options) {
     if (!work(options)) throw kVerificationFailed;
     return;
   }
-  if (options.request.scene == kAllScenes) {
-    if (!run_all(options)) throw kVerificationFailed;
+  std::error_code unknown;
+  const bool is_folder = std::filesystem::is_directory(options.request.scene, unknown);
+  if (is_folder || options.request.scene == kAllScenes) {
+    if (!run_each(options, is_folder ? caches_in(options.request.scene) : all_scenes()))
+      throw kVerificationFailed;
     return;
   }
   OutputFile output(options.output, options.force);
@@ -256,6 +286,7 @@ void add_run(CLI::App& app) {
       "Replay a scene with several culling strategies: verify their answers, then time them.\n\n"
       "  cscd run --scene rope --json rope.json\n"
       "  cscd run --scene all --json records         a record of every scene into that folder\n"
+      "  cscd run --input FOLDER --json records      the same of every point cache (.h5) in FOLDER\n"
       "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n"
       "  cscd run --cells cells --json rope.json     goes on where the same command was interrupted\n\n"
       "First every strategy answers the verified intervals with the exact elementary test and is judged "
@@ -272,7 +303,7 @@ void add_run(CLI::App& app) {
   add_ignore_options(*command, options->ignored);
   command->add_option(
       "--json", options->output,
-      "where the record goes, - is standard output; with --scene all, the folder of the records");
+      "where the record goes, - is standard output; with --scene all or a folder, the folder of the records");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_flag("--counts", options->counts,
                     "verdicts, counters and digests alone, which every machine repeats to the bit; no times");

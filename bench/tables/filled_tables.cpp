@@ -143,10 +143,12 @@ const Record* find_record(std::span<const Record> records, const std::string& sc
 
 std::vector<FilledTable> filled_tables(const ordered_json& definitions, const ordered_json& published,
                                        std::span<const Record> records) {
-  std::vector<std::string> scenes;
-  for (const Record& record : records) add_new(scenes, record.scene.name);
   std::vector<FilledTable> tables;
   for (const ordered_json& definition : definitions.at("tables")) {
+    std::vector<std::string> scenes;
+    for (const Record& record : records)
+      if (record.verification.truth || !definition.value("of_truth", false))
+        add_new(scenes, record.scene.name);
     FilledTable table{definition.at("id"),
                       definition.at("title"),
                       {},

@@ -56,7 +56,8 @@ std::vector<Pipeline> pipelines_of(std::span<const Record> records);
 // The record of a scene in a pipeline; null where none was given.
 const Record* find_record(std::span<const Record> records, const std::string& scene, Pipeline pipeline);
 
-// At most one record a scene and pipeline. Rows are the scenes of the records in their order. A column with
+// At most one record a scene and pipeline. Rows are the scenes of the records in their order; in a table with
+// `of_truth`, those alone that were held against truth from outside. A column with
 // `each_strategy` stands for one a strategy of the records, whose name replaces {strategy}. Where there are
 // records of both pipelines, a column stands once for each, unless the figures are the same, and a pipeline
 // in which none was measured has no column.

@@ -127,11 +127,21 @@ Amount verification_amount(const VerificationRecord& verification, const std::st
   throw std::logic_error("unknown verification quantity " + what);
 }
 
+Amount truth_amount(const VerificationRecord& verification, const std::string& what) {
+  if (!verification.truth) throw Missing{"not held against truth from outside"};
+  const TruthRecord& truth = *verification.truth;
+  if (what == "contacts") return exactly(static_cast<double>(truth.contacts));
+  if (what == "missed") return exactly(static_cast<double>(truth.missed));
+  if (what == "invented") return exactly(static_cast<double>(truth.invented));
+  throw std::logic_error("unknown quantity of truth " + what);
+}
+
 Amount amount_of(const Record& record, const std::string& quantity, const std::string& strategy,
                  const std::string& statistic) {
   const std::size_t dot = quantity.find('.');
   const std::string kind = quantity.substr(0, dot), what = quantity.substr(dot + 1);
   if (kind == "scene") return scene_amount(record.scene, what);
+  if (kind == "truth") return truth_amount(record.verification, what);
   if (kind == "verification") return verification_amount(record.verification, strategy, what);
   const StrategyRecord& row = strategy_of(record, strategy);
   if (kind == "preparation") return preparation_amount(row, what);

@@ -33,7 +33,8 @@ inline constexpr char kMarkNote[] =
 //              ms.streaming       the same of streaming all positions once from memory
 //              verification.recall, .first_contacts
 //              footprint.peak_bytes, .held_bytes, .instructions
-//   strategy   whose; absent for scene.*
+//              truth.contacts, .missed, .invented    of truth from outside
+//   strategy   whose; absent for scene.* and truth.*
 //   statistic  mean (default), median, min, max
 //   scale      a factor, 1 by default
 //   over       the strategy whose figure divides it; over_quantity, unless it is the same quantity

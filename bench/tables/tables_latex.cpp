@@ -9,6 +9,7 @@ std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '_' || c == '%' || c == '&' || c == '#') out += '\\';
+    if (c == '-' && out.ends_with('-')) out += "{}";  // TeX would draw a dash
     out += c;
   }
   return out;
