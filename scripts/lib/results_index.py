@@ -7,7 +7,7 @@ from script import ROOT, refuse
 from tracked import tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "latency", "waits")
+KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "latency", "waits")
 PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
@@ -19,6 +19,7 @@ and its kind.
 | full | `scripts/reproduce --full --scene all` | every strategy, ablation and today's packages, verified and timed |
 | starts | `scripts/reproduce --starts --scene all` | what a query takes where its start is known, and where it is not |
 | cloth | `scripts/reproduce --cloth` | sheets, a bag and a skirt: the complete strategies, and what covers that follow are worth |
+| real | `scripts/record real DIR` | steps of real simulations, every contact held against truth from outside |
 | accuracy | `scripts/record accuracy` | what every elementary test gets wrong, and what accuracy costs |
 | benchmark | `scripts/record benchmark` | scores of this project's strategies and today's packages on [the public benchmark](../bench/BENCHMARK.md) |
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |

@@ -9,6 +9,7 @@ packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcl
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages_build+=(nodejs npm); fi
 packages_compare=(libembree-dev libfcl-dev)
 packages_figures=(python3-matplotlib)
+packages_real=(python3-h5py)
 packages_counters=(valgrind)
 packages_kernels=(libbenchmark-dev)
 packages_tests=(assimp-testmodels chromium clang-format pybind11-dev python3-dev python3-numpy python3-h5py
