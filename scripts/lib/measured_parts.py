@@ -250,6 +250,62 @@ def cloth(results):
                               f"{built(results.records[0]['environment'])}."]) + "\n"
 
 
+COMPLETE, EARLIEST = "drvbc_fast_complete", "drvbc_fast_complete --first"
+
+
+def steps_of(results):
+    """The cells of each step of a real simulation by their keys, the smallest surface first."""
+    rows = results.cells["real"]
+    return dict(sorted(rows.items(), key=lambda row: row[1]["triangles"]["measured"]))
+
+
+def plain_step(name):
+    """The name of a step without the number of its frame, as in `cloth-ball-92`."""
+    return re.sub(r"-\d+$", "", name)
+
+
+def real(results):
+    """What steps of real simulations take, held against truth from outside, and what another program took."""
+    steps = steps_of(results)
+    keys = ("triangles", "contacts", "base.median", "selfccd.median", "complete.median", "first.median", "complete.over_base",
+            "complete.over_selfccd", "missed", "invented")
+    lines = table(["step", "triangles", "contacts", "`base`, ms", "`selfccd`, ms", f"`{COMPLETE}`, ms", "its `--first`, ms",
+                   "times faster than `base`", "than `selfccd`", "missed", "invented"],
+                  [[name, *(f"{cells[key]['measured']:,.0f}" if key in ("triangles", "contacts") else shown(cells[key], text=short)
+                            for key in keys)] for name, cells in steps.items()])
+    crossing = [r["scene"] for r in results.records if r["unembedded_intervals"]]
+    lines += ["", f"One query with refit, median [95 % interval]. The surface crosses itself at the start of {', '.join(crossing) or 'no step'}.",
+              f"Measured on {built(results.records[0]['environment'])}; [all rows]({results.link}/tables.md)."]
+    peers = read_json(ROOT / "scripts" / "lib" / "peers.json")
+    asked = {name: peers["steps"][plain_step(name)] for name in steps if plain_step(name) in peers["steps"]}
+    if asked:
+        lines += ["", f"The same steps with [{peers['program']}]({peers['url']}), which most simulators link ({peers['how']}):", ""]
+        lines += table(["step", "its candidates", "its earliest contact, ms", "at t, it says", "at t, exactly", "ours, ms", "its all contacts, ms",
+                        "ours, ms"],
+                       [[name, f"{peer['candidates']:,.0f}", short(peer["earliest_ms"]), short(peer["earliest"]),
+                         short(exact_earliest(results, name)), short(steps[name]["first.median"]["measured"]), short(1000 * peer["all_s"]),
+                         short(steps[name]["complete.median"]["measured"])] for name, peer in asked.items()])
+    return "\n".join(lines) + "\n"
+
+
+def exact_earliest(results, scene):
+    return next(s["first_times"][0] for s in results.record(scene)["strategies"] if s["name"] == EARLIEST)
+
+
+def steps(results):
+    """The same in a sentence."""
+    rows = steps_of(results).values()
+
+    def span(key):
+        values = sorted(row[key]["measured"] for row in rows)
+        return f"{short(values[0])} to {short(values[-1])}"
+
+    wrong = sum(row[key]["measured"] for row in rows for key in ("missed", "invented"))
+    return (f"- On {len(rows)} steps of real simulations with {span('contacts')} contacts, all contacts take {span('complete.median')} ms, "
+            f"{span('complete.over_base')} times\n  faster than `base`, and the earliest one takes {span('first.median')} ms; "
+            f"{wrong or 'none'} is missed or invented ([step by step](bench/paper.md#steps-of-real-simulations)).\n")
+
+
 def mean(values):
     values = list(values)
     return sum(values) / len(values)
@@ -309,8 +365,9 @@ def sweep(results):
 
 
 PAGES = ("README.md", "bench/paper.md", "bench/METHODOLOGY.md", "core/fast/README.md")
-OWN_KIND = {"starts": "starts", "cloth": "cloth"}
+OWN_KIND = {"starts": "starts", "cloth": "cloth", "real": "real", "steps": "real"}
 PARTS = {"picture": picture, "door": door, "headline": headline, "starts": starts, "paper": paper, "ideas": ideas, "cloth": cloth,
+         "real": real, "steps": steps,
          "sweep": sweep}
 
 
@@ -342,8 +399,10 @@ def faults_of_default(program):
 
 
 def newest(kind):
-    """The newest results folder of a kind that is a study of its own."""
+    """The newest results folder of a kind that is a study of its own. None of `real`, whose data not everybody has."""
     folders = {path.parent for path in tracked_files("results") if path.parent.name.endswith(f"-{kind}")}
+    if not folders and kind == "real":
+        return None
     if not folders:
         command = {"cloth": "--cloth", "starts": "--starts --scene all"}[kind]
         refuse(f"results: holds no record of kind {kind}; run scripts/reproduce {command}")
@@ -365,6 +424,8 @@ def page_of(page, folder, program):
         if match[2] not in PARTS:
             refuse(f"{page}: knows no part {match[2]}; choose one of {', '.join(PARTS)}")
         of = newest(OWN_KIND[match[2]]) if match[2] in OWN_KIND else folder
+        if of is None:
+            return match[1] + match[3]
         try:
             text = PARTS[match[2]](Results(of, page))
         except (OSError, ValueError) as error:
