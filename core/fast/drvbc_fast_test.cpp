@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
@@ -74,6 +75,26 @@ TEST(DrvbcFast, AnswersTheSameOnAnyNumberOfThreads) {
     EXPECT_GT(reports[0].cull.bvot, large ? 20'000u : 500u);
     EXPECT_EQ(alone[0].contacts.size() > 1000, noise > 0.2 || large);
     EXPECT_EQ(alone[0].contacts.empty(), noise == 0);
+  }
+}
+
+// A surface that faces inward costs what it costs facing outward. Mutation: it is looked at as it is, from
+// behind, and then nothing of it is certified by caps.
+TEST(DrvbcFast, DoesNotAskWhichSideIsTheOutside) {
+  Scene outward(0.1), inward(0.1);
+  std::vector<Triangle> triangles = inward.shape.triangles;
+  for (Triangle& t : triangles) std::swap(t[1], t[2]);
+  inward.mesh = TriangleMesh(triangles, inward.shape.positions.size());
+  for (const bool complete : {false, true}) {
+    ContactSet expected, found;
+    const auto counts = [&](const Scene& scene, ContactSet& out) {
+      return make_drvbc_fast(scene.setup(1), {.complete = complete}).detector->detect({scene.motion()}, out);
+    };
+    const Report a = counts(outward, expected), b = counts(inward, found);
+    EXPECT_EQ(a.cull.bvot, b.cull.bvot);
+    EXPECT_EQ(a.cull.radial->positive, b.cull.radial->positive);
+    EXPECT_FALSE(expected.contacts.empty());
+    EXPECT_EQ(expected.contacts.size(), found.contacts.size());
   }
 }
 

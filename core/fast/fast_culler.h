@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/team.h"
@@ -31,6 +33,9 @@ class FastCuller : public Culler {
   // Takes over a surface that has been cut (prepare/cut_surface.h). The mesh of the set-up must outlive the
   // culler.
   FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFastOptions& options);
+
+  // Keeps the mesh of the set-up, where that is not the caller's, for as long as the culler lives.
+  void keep(std::unique_ptr<const TriangleMesh> mesh) { kept_mesh_ = std::move(mesh); }
 
   // From the next interval on, the first cover follows the surface (adaptive_cover.h).
   void follow() { following_.emplace(mesh_, reference_, cut_); }
@@ -97,6 +102,7 @@ class FastCuller : public Culler {
   void fetch(std::size_t patch) const;
 
   const TriangleMesh& mesh_;
+  std::unique_ptr<const TriangleMesh> kept_mesh_;  // null where the caller keeps mesh_
   std::span<const Vec3> reference_;
   CutSurface cut_;
   std::size_t covers_used_ = 0;

@@ -12,6 +12,7 @@
 #include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/joints_of_parts.h"
 #include "core/fast/prepare/coarse_surface.h"
+#include "core/fast/prepare/outward_mesh.h"
 #include "core/fast/trial_poses.h"
 #include "core/radial/atomic_clusters.h"
 #include "core/radial/bone_clusters.h"
@@ -236,10 +237,8 @@ Decision decided(const Surfaces& surfaces, const DrvbcFastOptions& options, Stag
   return {std::move(candidates[taken]), results[taken].covers};
 }
 
-}  // namespace
-
-TrialCuller best_trial_culler(const StrategyInput& setup, const DrvbcFastOptions& options,
-                              StageClock& clock) {
+// Does what best_trial_culler() does, for a surface of which no component faces inward.
+TrialCuller best_of_outward(const StrategyInput& setup, const DrvbcFastOptions& options, StageClock& clock) {
   if (!setup.preparation.empty()) return restored(setup, options);
   // A row of the ablation takes the candidate that `drvbc_fast` with all its ideas would take, so that the
   // rows differ in nothing but the idea that is left out.
@@ -258,6 +257,21 @@ TrialCuller best_trial_culler(const StrategyInput& setup, const DrvbcFastOptions
   if (!best.culler || tried_on_coarse || options != whole)
     best = made(setup, std::move(best.cluster_of), options);
   best.culler->use_covers(std::min(decision.covers, options.covers));
+  return best;
+}
+
+}  // namespace
+
+TrialCuller best_trial_culler(const StrategyInput& setup, const DrvbcFastOptions& options,
+                              StageClock& clock) {
+  std::unique_ptr<const TriangleMesh> outward = turned_outward(setup.mesh, setup.reference);
+  if (!outward) return best_of_outward(setup, options, clock);
+  StrategyInput turned{*outward, setup.reference, setup.rig, setup.elementary};
+  turned.threads = setup.threads;
+  turned.preparation = setup.preparation;
+  turned.labels = setup.labels;
+  TrialCuller best = best_of_outward(turned, options, clock);
+  best.culler->keep(std::move(outward));
   return best;
 }
 
