@@ -199,6 +199,25 @@ TEST(Timing, AnswersThatDifferBetweenRepetitionsVoidTheTimes) {
                   .void_times);
 }
 
+// Mutation: what the filter leaves for one test is held against what it leaves for another.
+TEST(Verification, TheFilterMayLeaveOtherPairsForAnotherTest) {
+  const ElementaryTest& filtered = elementary_test_named("filtered_exact");
+  std::size_t others = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Input input = random_input(seed);
+    const std::array rows = {StrategyRow{&complete_reference()}};
+    std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), filtered);
+    Verifier verifier(input, contestants, exact_test(), filtered);
+    const std::vector<std::size_t> all = {0};
+    verifier.judge(all);
+    std::vector<StrategyRecord> records(1);
+    const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+    EXPECT_FALSE(counted.unrepeatable) << seed;
+    others += counted.reports[0][0].pairs.elementary_tests != verifier.report(0, 0).pairs.elementary_tests;
+  }
+  EXPECT_GT(others, 0u);
+}
+
 // Mutation: rows are not compared, so only intervals that were chosen for it are verified.
 TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
   for (const bool loses_first : {true, false}) {
