@@ -25,7 +25,8 @@ void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid
 void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
   sink_ = &sink;
   visit<Depth::all>(at);
-  pass_on_waiting();
+  ask_planes();
+  ask_edges();
 }
 
 void PatchDescent::split(NodePair at, std::vector<NodePair>& below) {
@@ -153,23 +154,42 @@ inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wan
 [[gnu::noinline]] void PatchDescent::pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes) {
   const Patch &first = patches_[p], &second = patches_[q];
   for_each_lane(lanes, [&](std::size_t other) {
+    Waiting& to = for_planes_;
     for (std::size_t k = 0; k < 3; ++k) {
-      waiting_vertices_.first[k][waiting_count_] = first.vertex[first.corner[k][lane]];
-      waiting_vertices_.second[k][waiting_count_] = second.vertex[second.corner[k][other]];
+      to.vertices.first[k][to.count] = first.vertex[first.corner[k][lane]];
+      to.vertices.second[k][to.count] = second.vertex[second.corner[k][other]];
     }
-    waiting_[waiting_count_++] = {input_.tree.triangles[p][lane], input_.tree.triangles[q][other]};
-    if (waiting_count_ == waiting_.size()) pass_on_waiting();
+    to.pairs[to.count++] = {input_.tree.triangles[p][lane], input_.tree.triangles[q][other]};
+    if (to.count == kLanes16) ask_planes();
   });
 }
 
-// Passes on the waiting pairs that no plane parts, in the order in which they were found.
-void PatchDescent::pass_on_waiting() {
-  if (waiting_count_ == 0) return;
-  unsigned left = (1U << waiting_count_) - 1;
-  if (input_.planes && input_.positions.known())
-    left &= not_parted(input_.positions.records(), waiting_vertices_, input_.positions.error());
-  for_each_lane(left, [&](std::size_t k) { sink_->add(waiting_[k].a, waiting_[k].b); });
-  waiting_count_ = 0;
+// Keeps the waiting pairs that no triangle's plane parts, in the order in which they were found.
+void PatchDescent::ask_planes() {
+  Waiting &from = for_planes_, &to = for_edges_;
+  unsigned left = (1U << from.count) - 1;
+  from.count = 0;
+  const bool asks = input_.planes && input_.positions.known();
+  if (left != 0 && asks)
+    left &= not_parted(input_.positions.records(), from.vertices, input_.positions.error());
+  for_each_lane(left, [&](std::size_t l) {
+    if (!asks) return sink_->add(from.pairs[l].a, from.pairs[l].b);
+    for (std::size_t k = 0; k < 3; ++k) {
+      to.vertices.first[k][to.count] = from.vertices.first[k][l];
+      to.vertices.second[k][to.count] = from.vertices.second[k][l];
+    }
+    to.pairs[to.count++] = from.pairs[l];
+    if (to.count == kLanes16) ask_edges();
+  });
+}
+
+// Passes on the waiting pairs that no plane parallel to an edge of each triangle parts, in the same order.
+void PatchDescent::ask_edges() {
+  unsigned left = (1U << for_edges_.count) - 1;
+  for_edges_.count = 0;
+  if (left == 0) return;
+  left &= not_parted_by_edges(input_.positions.records(), for_edges_.vertices, input_.positions.error());
+  for_each_lane(left, [&](std::size_t l) { sink_->add(for_edges_.pairs[l].a, for_edges_.pairs[l].b); });
 }
 
 inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16 mask,

@@ -120,7 +120,8 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   Mask16 not_flat(std::size_t p, std::size_t lane, Mask16 wanted, const SharedVertices& common);
   bool flat(VertexId vertex);
   void pass_on(std::size_t p, std::size_t lane, std::size_t q, Mask16 lanes);
-  void pass_on_waiting();
+  void ask_planes();
+  void ask_edges();
   Mask16 near_counted(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);
   Mask16 near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane);
   const TriangleBounds& bounds_of_triangles(std::size_t p);
@@ -133,10 +134,13 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   std::vector<Star> star_;  // [vertices]: what is known of its star
   OnDemand<TriangleBounds> triangle_bounds_;
   TrianglePairSink* sink_ = nullptr;
-  // Pairs that wait until there are sixteen to ask planes about. Behind them stand pairs of earlier rounds.
-  std::array<TrianglePair, kLanes16> waiting_{};
-  PairLanes waiting_vertices_;
-  std::size_t waiting_count_ = 0;
+  // Pairs that wait until there are sixteen to ask about together. Behind them stand pairs of earlier rounds.
+  struct Waiting {
+    std::array<TrianglePair, kLanes16> pairs{};
+    PairLanes vertices;
+    std::size_t count = 0;
+  };
+  Waiting for_planes_, for_edges_;  // the latter are those that no triangle's plane parts
   std::vector<NodePair>* split_into_ = nullptr;
   std::uint64_t tests_ = 0, most_tests_ = 0;
 };

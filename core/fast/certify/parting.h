@@ -7,7 +7,8 @@
 #include "core/fast/classify/local_positions.h"
 #include "core/geometry/simd_floats.h"
 
-// Pairs of triangles that the moving plane of one triangle parts.
+// Pairs of triangles that a plane parts: the moving plane of one triangle, or one that is parallel to an edge
+// of each.
 //
 // Let A and B be triangles, and let A have corners that B does not have. If these corners lie strictly on one
 // side of B's plane at every t, no feature of A touches a feature of B that shares no vertex with it,
@@ -24,5 +25,13 @@ struct PairLanes {
 // Returns the pairs that neither of the two planes parts. `error` bounds the error of every coordinate. The
 // triangles of a pair have to be different.
 Mask16 not_parted(std::span<const LocalPositions::Record> records, const PairLanes& pairs, float error);
+
+// Returns the pairs that share a corner and those that no plane parallel to an edge of each triangle parts.
+// The edges are taken as they lie half-way through the interval, and the direction at right angles to both is
+// held fixed: triangles that lie on the same side of each other along a fixed direction at both ends do so at
+// every t, because corners move in straight lines. At any one time, two triangles that are apart are parted
+// by the plane of one of them or by a plane parallel to an edge of each.
+Mask16 not_parted_by_edges(std::span<const LocalPositions::Record> records, const PairLanes& pairs,
+                           float error);
 
 }  // namespace cscd::fast
