@@ -81,22 +81,37 @@ inline void edge_half_way(const VectorLanes16 (&corner)[3], std::size_t k, Float
   for (int i = 0; i < 3; ++i) out[i] = (to.at[0][i] - from.at[0][i]) + (to.at[1][i] - from.at[1][i]);
 }
 
+// Computes three times the motion of the second triangle as seen from the first one.
+inline void relative_motion(const GapLanes& lanes, Float16 (&out)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    out[i] = Float16{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &first = lanes.corner[0][k].at, &second = lanes.corner[1][k].at;
+      out[i] += (second[1][i] - second[0][i]) - (first[1][i] - first[0][i]);
+    }
+  }
+}
+
 // Returns the lanes in which one triangle stays on one side of the other along a direction at right angles to
-// an edge of each.
+// an edge of each, or to an edge of one and the relative motion.
 Mask16 parted_by_edges(const GapLanes& lanes) {
-  Float16 a[3][3], b[3][3];
+  Float16 a[3][3], b[3][3], motion[3];
   for (std::size_t k = 0; k < 3; ++k)
     edge_half_way(lanes.corner[0], k, a[k]), edge_half_way(lanes.corner[1], k, b[k]);
+  relative_motion(lanes, motion);
   unsigned parted = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      Float16 d[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t x = (k + 1) % 3, y = (k + 2) % 3;
-        d[k] = product_minus(a[i][x], b[j][y], a[i][y] * b[j][x]);
-      }
-      parted |= parted_along(lanes, d);
+  const auto ask = [&](const Float16(&p)[3], const Float16(&q)[3]) {
+    Float16 d[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t x = (k + 1) % 3, y = (k + 2) % 3;
+      d[k] = product_minus(p[x], q[y], p[y] * q[x]);
     }
+    parted |= parted_along(lanes, d);
+  };
+  for (const auto& edge : a)
+    for (const auto& other : b) ask(edge, other);
+  for (const auto& edge : a) ask(edge, motion);
+  for (const auto& edge : b) ask(edge, motion);
   return static_cast<Mask16>(parted);
 }
 

@@ -26,11 +26,13 @@ struct PairLanes {
 // triangles of a pair have to be different.
 Mask16 not_parted(std::span<const LocalPositions::Record> records, const PairLanes& pairs, float error);
 
-// Returns the pairs that share a corner and those that no plane parallel to an edge of each triangle parts.
-// The edges are taken as they lie half-way through the interval, and the direction at right angles to both is
-// held fixed: triangles that lie on the same side of each other along a fixed direction at both ends do so at
-// every t, because corners move in straight lines. At any one time, two triangles that are apart are parted
-// by the plane of one of them or by a plane parallel to an edge of each.
+// Returns the pairs that share a corner and those that no plane parallel to an edge of each triangle parts,
+// or to an edge of one and the relative motion. The edges are taken as they lie half-way through the
+// interval, and the direction at right angles to both is held fixed: triangles that lie on the same side of
+// each other along a fixed direction at both ends do so at every t, because corners move in straight lines.
+// Two triangles that do not turn and do not touch are always parted by the plane of one of them or by such a
+// plane: their differences, from one end to the other, fill a polytope without the origin, and these are its
+// faces.
 Mask16 not_parted_by_edges(std::span<const LocalPositions::Record> records, const PairLanes& pairs,
                            float error);
 

@@ -127,6 +127,24 @@ TEST(Parting, EdgesThatCrossAtADistancePartTheirTriangles) {
   EXPECT_TRUE(crossed(0.1, -0.1, 0).parted(not_parted_by_edges).empty());
 }
 
+// A small triangle passes an edge of another one slantwise, and crosses the plane of that one on the way.
+// Mutation: directions at right angles to edges alone.
+TEST(Parting, EdgesAndTheWayPartTrianglesThatPassEachOther) {
+  const auto passing = [](double x) {
+    Interval interval{TriangleMesh(std::vector<Triangle>{test::corners(0, 1, 2), test::corners(3, 4, 5)}, 6),
+                      {{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}},
+                      {{0, 0, -1}, {0, 0, 1}, {-1, 0, 0}}};
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0, 0.01)}) {
+      interval.start.push_back(corner + Vec3(x - 1.1, 1.1, 0));
+      interval.end.push_back(corner + Vec3(x + 1.1, -1.1, 0));
+    }
+    return interval;
+  };
+  EXPECT_TRUE(passing(0.1).parted().empty());
+  EXPECT_EQ(passing(0.1).parted(not_parted_by_edges).size(), 2u);
+  EXPECT_TRUE(passing(-0.1).parted(not_parted_by_edges).empty());
+}
+
 // Two triangles with the same three corners have no other corner, so no plane parts them. Mutation: shared
 // corners alone are enough.
 TEST(Parting, TwoTrianglesOfOneFaceAreNotParted) {
