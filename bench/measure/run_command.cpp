@@ -160,18 +160,6 @@ std::vector<std::string> caches_in(const std::filesystem::path& folder) {
   return caches;
 }
 
-// Every scene that there is.
-std::vector<std::string> all_scenes() {
-  std::vector<std::string> names;
-  for (const scenes::SceneSummary& scene : scenes::list_scenes()) {
-    if (!scene.fault.empty())
-      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
-                       "); mend or remove that file, or name the scenes one by one");
-    names.push_back(scene.name);
-  }
-  return names;
-}
-
 // Each input to its own record in the folder named as output.
 bool run_each(const RunOptions& options, const std::vector<std::string>& inputs) {
   const std::filesystem::path folder = options.output;
@@ -221,7 +209,7 @@ void run(const RunOptions& options) {
   std::error_code unknown;
   const bool is_folder = std::filesystem::is_directory(options.request.scene, unknown);
   if (is_folder || options.request.scene == kAllScenes) {
-    if (!run_each(options, is_folder ? caches_in(options.request.scene) : all_scenes()))
+    if (!run_each(options, is_folder ? caches_in(options.request.scene) : scenes::all_scene_names()))
       throw kVerificationFailed;
     return;
   }

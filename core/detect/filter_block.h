@@ -15,8 +15,8 @@ namespace cscd {
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 // Does the same for everything that pairs of triangles carry, with all that two triangles carry at once. If
-// so wished, single precision goes first, which is faster and gives the same answer. It may then look at the
-// interval from t = 0 to `last` alone, and drop feature pairs that touch later only.
+// so wished, single precision goes first, which is faster and drops more (not_filtered_when_coplanar()). It
+// may then look at the interval from t = 0 to `last` alone, and drop feature pairs that touch later only.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const CarriedPairs> pairs,
             bool single_precision_first, double last, std::vector<FeaturePair>& left);
 
@@ -24,9 +24,9 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
 // (core/elementary/question/filter.h) cannot prove apart. The six vertices are loaded once; what fifteen
 // pairs need are permutations of registers.
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
-// Single-precision version of not_filtered(). Evaluates all fifteen feature pairs of two triangles side by
-// side, with bounds on what single precision loses. Returns nothing if rounding leaves any of them undecided;
-// the caller then asks not_filtered().
+// Single-precision version of not_filtered(), by which tests hold the filter below to its scalar twins.
+// Evaluates all fifteen feature pairs of two triangles side by side, with bounds on what single precision
+// loses. Returns nothing if rounding leaves any of them undecided; the caller then asks not_filtered().
 //
 // With `last` below 1, in (0, 1], looks at the interval from t = 0 to that time alone: drops a feature pair
 // only if the pair certainly does not touch until then, and keeps what it cannot decide.

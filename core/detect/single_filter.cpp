@@ -5,10 +5,11 @@
 #include "core/detect/filter_block.h"
 #include "core/geometry/triple_product16.h"
 
-// Whatever this look finds certain, the filter finds in double precision too. A sign that exceeds its bound
-// here exceeds the much smaller bound there; and if two coefficients certainly have opposite signs here, the
-// cubic has no certain sign there. So the result does not depend on the points from which vectors start or on
-// the order of two edges, as long as the cubics and directions are the same up to their sign.
+// Whatever a look at the whole interval finds certain, the filter finds in double precision too. A sign that
+// exceeds its bound here exceeds the much smaller bound there; and if two coefficients certainly have
+// opposite signs here, the cubic has no certain sign there. So the result does not depend on the points from
+// which vectors start or on the order of two edges, as long as the cubics and directions are the same up to
+// their sign.
 namespace cscd {
 namespace {
 

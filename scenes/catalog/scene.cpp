@@ -336,4 +336,15 @@ std::vector<SceneSummary> list_scenes() {
   return summaries;
 }
 
+std::vector<std::string> all_scene_names() {
+  std::vector<std::string> names;
+  for (const SceneSummary& scene : list_scenes()) {
+    if (!scene.fault.empty())
+      throw InputError("--scene all: " + scene.fault + " (scene " + scene.name +
+                       "); mend or remove that file, or name the scenes one by one");
+    names.push_back(scene.name);
+  }
+  return names;
+}
+
 }  // namespace cscd::scenes

@@ -66,6 +66,8 @@ std::optional<std::filesystem::path> installed_scenes();
 
 // Returns all scenes in the order of their names, including those with a fault.
 std::vector<SceneSummary> list_scenes();
+// Returns the names of all scenes, for `--scene all`. Throws InputError if a scene file has a fault.
+std::vector<std::string> all_scene_names();
 
 // Tells whether the argument is the path of a scene file and not a scene's name.
 bool is_scene_file(const std::filesystem::path& name_or_path);
