@@ -133,6 +133,30 @@ TEST(Catalogue, TimesAreInTheInterval) {
   });
 }
 
+TEST(Catalogue, AtDistanceZeroAnswersAreThoseOfTouching) {
+  QueryMaker make{58};
+  for (int i = 0; i < 2000; ++i) {
+    const auto query = query_of<MovingEdgeEdge>(make.lattice(2));
+    for (const ElementaryTest& row : elementary_tests()) {
+      const Answer touching = row.edge_edge(query), close = row.answer_close(query, 0);
+      EXPECT_EQ(close.verdict, touching.verdict) << row.name;
+      EXPECT_EQ(close.time, touching.time) << row.name;
+    }
+  }
+}
+
+TEST(Catalogue, DistancesThatAreNoneAreRefused) {
+  const auto query = test::against_triangle({1, 1, 1}, {1, 1, -1});
+  for (const ElementaryTest& row : elementary_tests()) {
+    for (const double r : {-1.0, -1e-300, std::nan(""), HUGE_VAL}) {
+      EXPECT_THROW(row.answer_close(query, r), InputError) << row.name << " at " << r;
+    }
+    if (!row.knows_distance()) {
+      EXPECT_THROW(row.answer_close(query, 0.1), InputError) << row.name;
+    }
+  }
+}
+
 TEST(Catalogue, NamesAreUnique) {
   for (const ElementaryTest& row : elementary_tests()) EXPECT_EQ(find_elementary_test(row.name), &row);
   EXPECT_EQ(find_elementary_test("none such"), nullptr);
