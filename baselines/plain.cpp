@@ -10,7 +10,8 @@ class BruteCuller : public Culler {
  public:
   explicit BruteCuller(std::int32_t triangles) : triangles_(triangles) {}
 
-  void refit(const Motion&) override {}
+  bool knows_distance() const override { return true; }
+  void refit(const Step&) override {}
   CullCounts cull(TrianglePairSink& sink) override {
     for (std::int32_t a = 0; a < triangles_; ++a)
       for (std::int32_t b = a + 1; b < triangles_; ++b) sink.add(TriangleId{a}, TriangleId{b});

@@ -33,7 +33,7 @@ class RvbcCuller : public Culler {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }
 
-  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
 
   bool classify(const Step& step) override {
     table_.update(step.motion);

@@ -32,8 +32,8 @@ class CgalBoxesCuller : public Culler {
   explicit CgalBoxesCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), of_vertex_(mesh_.vertex_count()), boxes_(mesh_.triangle_count()) {}
 
-  void refit(const Motion& motion) override {
-    swept_vertex_bounds(motion, std::span(of_vertex_));
+  void refit(const Step& step) override {
+    swept_vertex_bounds(step.motion, std::span(of_vertex_));
     pointers_.clear();
     for (std::size_t t = 0; t < boxes_.size(); ++t) {
       PackageBox box(swept_triangle<Aabb>(mesh_.triangles()[t], of_vertex_), kFarthest);

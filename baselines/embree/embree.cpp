@@ -58,7 +58,7 @@ class EmbreeCuller : public Culler {
     rtcSetGeometryUserData(geometry_, this);
     rtcSetGeometryBoundsFunction(geometry_, write_bounds, nullptr);
     rtcAttachGeometry(scene_, geometry_);
-    refit(Motion(setup.reference, setup.reference));
+    refit({Motion(setup.reference, setup.reference)});
   }
   EmbreeCuller(const EmbreeCuller&) = delete;
   EmbreeCuller& operator=(const EmbreeCuller&) = delete;
@@ -68,8 +68,8 @@ class EmbreeCuller : public Culler {
     rtcReleaseDevice(device_);
   }
 
-  void refit(const Motion& motion) override {
-    swept_vertex_bounds(motion, std::span(of_vertex_));
+  void refit(const Step& step) override {
+    swept_vertex_bounds(step.motion, std::span(of_vertex_));
     for (std::size_t t = 0; t < box_.size(); ++t)
       box_[t] = swept_triangle<Aabb>(mesh_.triangles()[t], of_vertex_);
     on_this_thread([this] {

@@ -50,7 +50,7 @@ class McdCuller : public Culler {
         discs_(mesh_, tree_),
         cones_(mesh_, tree_, setup.pipeline) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(motion); }
+  void refit(const Step& step) override { bounds_.refit(step.motion); }
 
   bool classify(const Step& step) override {
     cones_.update(tree_, step.motion);

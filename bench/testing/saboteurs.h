@@ -51,8 +51,8 @@ class PlainCuller : public Culler {
   explicit PlainCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override {
-    bounds_.refit(motion);
+  void refit(const Step& step) override {
+    bounds_.refit(step.motion);
     leaf_.clear();
     for (NodeIndex n = 0; n < static_cast<NodeIndex>(tree_.node_count()); ++n) {
       if (!tree_.is_leaf(n)) continue;
@@ -108,10 +108,10 @@ class ConeCuller : public Culler {
         discs_(mesh_, tree_),
         cones_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override {
-    bounds_.refit(motion);
-    cones_.update(tree_, motion);
-    motion_ = motion;
+  void refit(const Step& step) override {
+    bounds_.refit(step.motion);
+    cones_.update(tree_, step.motion);
+    motion_ = step.motion;
   }
   CullCounts cull(TrianglePairSink& sink) override {
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
@@ -151,7 +151,7 @@ class RadialCuller : public Culler {
         labels_(clusters_.clusters.size(), 0) {
     if (flaw != Flaw::observers_mixed) std::iota(labels_.begin(), labels_.end(), 0);
   }
-  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
   bool classify(const Step& step) override {
     table_.update(step.motion);
     for (std::size_t c = 0; c < kinds_.size(); ++c) {
@@ -205,7 +205,7 @@ class ManyCoversCuller : public Culler {
   explicit ManyCoversCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(motion); }
+  void refit(const Step& step) override { bounds_.refit(step.motion); }
   bool classify(const Step& step) override {
     const Motion& motion = step.motion;
     by_.assign(mesh_.triangle_count(), {});
@@ -281,7 +281,7 @@ class RepresentativeDetector : public Detector {
   Report detect(const Step& step, ContactSet& out) override {
     out.clear();
     Sink sink(*this, step.motion, out);
-    culler_->refit(step.motion);
+    culler_->refit(step);
     culler_->classify(step);
     Report report;
     report.cull = culler_->cull(sink);

@@ -40,5 +40,9 @@ inline float float_below(double x) {
   const float nearest = static_cast<float>(x);
   return static_cast<double>(nearest) > x ? next_below(nearest) : nearest;
 }
+// Returns the smallest float that is not below x.
+inline float float_not_below(double x) {
+  return -float_below(-x);
+}
 
 }  // namespace cscd

@@ -4,8 +4,10 @@
 #include <bit>
 #include <iterator>
 
+#include "core/base/error.h"
 #include "core/base/stage_clock.h"
 #include "core/base/team.h"
+#include "core/detect/distance_filter.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
@@ -34,12 +36,14 @@ template <class Query>
 struct Tests {
   std::vector<FeaturePair> pairs;
   std::vector<Query> queries;
+  std::vector<double> thickness;
   std::vector<Answer> answers;
 
-  void clear() { pairs.clear(), queries.clear(); }
-  void add(const FeaturePair& pair, const Query& query) {
+  void clear() { pairs.clear(), queries.clear(), thickness.clear(); }
+  void add(const FeaturePair& pair, const Query& query, double thick) {
     pairs.push_back(pair);
     queries.push_back(query);
+    thickness.push_back(thick);
   }
 };
 
@@ -59,6 +63,7 @@ class PairTester : public TrianglePairSink {
   void start_interval(const Step& step, ContactSet& out) {
     restart();
     motion_ = &step.motion;
+    thickness_ = step.thickness;
     start_ = step.crossings;
     most_ = step.most_crossings;
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
@@ -112,12 +117,34 @@ class PairTester : public TrianglePairSink {
       test_carried();
     } else if (first_only_) {
       test_in_order(block);
+    } else if (!thickness_.is_zero()) {
+      carried_.clear();
+      for_each_near(block, [&](const Bounded& pair) { take_all_carried(pair.pair); });
+      test_carried();
     } else {
       carried_.clear();
       for (const TrianglePair& pair : block) take_all_carried(pair);
       test_carried();
     }
     clock_.enter(Stage::traversal);
+  }
+
+  // Visits the triangle pairs that may come near enough no later than the earliest contact that matters.
+  template <class Take>
+  void for_each_near(const std::vector<TrianglePair>& block, const Take& take) const {
+    for (std::size_t first = 0; first < block.size(); first += kLanes16) {
+      const auto pairs = std::span(block).subspan(first, std::min(kLanes16, block.size() - first));
+      const auto before = no_contact_before(mesh_, *motion_, pairs, thickness_.largest());
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (matters({before[i], pairs[i]})) take(Bounded{before[i], pairs[i]});
+    }
+  }
+  struct Bounded {
+    float before;  // time before which the two certainly do not touch
+    TrianglePair pair;
+  };
+  bool matters(const Bounded& pair) const {
+    return pair.before <= (first_only_ ? earliest_ + kTimeSlack : 1);
   }
 
   void consider(double done) override {
@@ -145,14 +172,8 @@ class PairTester : public TrianglePairSink {
   // up to the earliest contact found so far.
   void test_in_order(const std::vector<TrianglePair>& block) {
     constexpr std::size_t kTogether = 16;  // more would be tested in vain; fewer leave lanes idle
-    const auto matters = [&](const Bounded& pair) { return pair.before <= earliest_ + kTimeSlack; };
     order_.clear();
-    for (std::size_t first = 0; first < block.size(); first += kLanes16) {
-      const auto pairs = std::span(block).subspan(first, std::min(kLanes16, block.size() - first));
-      const auto before = no_contact_before(mesh_, *motion_, pairs);
-      for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (matters({before[i], pairs[i]})) order_.push_back({before[i], pairs[i]});
-    }
+    for_each_near(block, [&](const Bounded& pair) { order_.push_back(pair); });
     const auto later = [](const Bounded& a, const Bounded& b) { return a.before > b.before; };
     std::make_heap(order_.begin(), order_.end(), later);
     while (!order_.empty() && matters(order_.front())) {
@@ -183,10 +204,13 @@ class PairTester : public TrianglePairSink {
     for (const CarriedPairs& carried : carried_)
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
-    if (plain_sign_) {
+    if (plain_sign_ || !thickness_.is_zero()) {
       for (const CarriedPairs& carried : carried_)
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
-      drop_by_plain_sign(mesh_, *motion_, left_);
+      if (thickness_.is_zero())
+        drop_by_plain_sign(mesh_, *motion_, left_);
+      else
+        drop_farther_than(thickness_, mesh_, *motion_, left_);
     } else {
       filter_carried();
     }
@@ -212,7 +236,7 @@ class PairTester : public TrianglePairSink {
     const CarriedPlaces places = carried_by(mesh_.corners(pair.a), mesh_.corners(pair.b));
     const bool adjacent = places != kAllCarried;
     counts_.adjacent_pctp += adjacent;
-    if (!adjacent && options_.relative_boxes && relative_boxes_apart(pair)) {
+    if (!adjacent && options_.relative_boxes && thickness_.is_zero() && relative_boxes_apart(pair)) {
       ++counts_.relative_dropped;
       return;
     }
@@ -232,10 +256,11 @@ class PairTester : public TrianglePairSink {
       if (i + kAhead < left_.size()) met_.fetch(left_[i + kAhead]);
       const FeaturePair& pair = left_[i];
       if (!met_.insert(pair) || (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair))) continue;
+      const double thick = thickness_.of(mesh_, pair);
       if (pair.kind == FeaturePair::Kind::vertex_face)
-        vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
+        vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}), thick);
       else
-        edge_edges_.add(pair, edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}));
+        edge_edges_.add(pair, edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}), thick);
     }
     test_all(vertex_faces_), test_all(edge_edges_);
   }
@@ -243,9 +268,15 @@ class PairTester : public TrianglePairSink {
   void test_all(Tests<Query>& tests) {
     tests.answers.resize(tests.pairs.size());
     const std::span<const Query> queries = tests.queries;
+    const std::span<const double> thickness = tests.thickness;
     const std::span<Answer> answers = tests.answers;
     team_.ranges(queries.size(), kAskedTogether, [&](std::size_t first, std::size_t last, std::size_t) {
-      test_.answer(queries.subspan(first, last - first), answers.subspan(first, last - first));
+      const std::size_t count = last - first;
+      if (thickness_.is_zero())
+        test_.answer(queries.subspan(first, count), answers.subspan(first, count));
+      else
+        test_.answer_close(queries.subspan(first, count), thickness.subspan(first, count),
+                           answers.subspan(first, count));
     });
     for (std::size_t i = 0; i < tests.pairs.size(); ++i) take_answer(tests.pairs[i], tests.answers[i]);
   }
@@ -264,6 +295,7 @@ class PairTester : public TrianglePairSink {
   StageClock& clock_;
   const bool plain_sign_;  // the published filter
   const Motion* motion_ = nullptr;
+  Thickness thickness_;
   ContactSet* out_ = nullptr;
   Crossings* start_ = nullptr;
   std::size_t most_ = 0;  // crossings that are kept
@@ -277,10 +309,6 @@ class PairTester : public TrianglePairSink {
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
   double last_ = 1;      // the interval is looked at until this time
-  struct Bounded {
-    float before;  // time before which the two certainly do not touch
-    TrianglePair pair;
-  };
   std::vector<Bounded> order_;
 };
 
@@ -295,6 +323,9 @@ class ComposedDetector : public Detector {
 
   Report detect(const Step& step, ContactSet& out) override {
     out.clear();
+    if (!step.thickness.is_zero() && !culler_->knows_distance())
+      throw InputError("this strategy has no proof for a thickness above 0; take base, aabb, drvbc_fast or "
+                       "drvbc_fast_complete");
     Step known = step;
     // A start that is to be looked at is not taken for granted. The first contact may be an excluded one, and
     // then says nothing of the others.
@@ -303,7 +334,7 @@ class ComposedDetector : public Detector {
     clock_.reset();
 
     clock_.enter(Stage::refit);
-    culler_->refit(step.motion);
+    culler_->refit(step);
     clock_.enter(Stage::classify);
     const bool classified = culler_->classify(known);
     clock_.enter(Stage::traversal);

@@ -19,7 +19,7 @@ class ListCuller : public Culler {
  public:
   explicit ListCuller(std::vector<TrianglePair> pairs, bool classifies = false)
       : pairs_(std::move(pairs)), classifies_(classifies) {}
-  void refit(const Motion&) override {}
+  void refit(const Step&) override {}
   bool classify(const Step&) override { return classifies_; }
   CullCounts cull(TrianglePairSink& sink) override {
     for (const TrianglePair& pair : pairs_) sink.add(pair.a, pair.b);

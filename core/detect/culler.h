@@ -77,8 +77,11 @@ class Culler {
  public:
   virtual ~Culler() = default;
 
+  // Whether its proofs hold for a thickness above 0. Where they do, "apart" means farther than the thickness
+  // in every comment below.
+  virtual bool knows_distance() const { return false; }
   // Computes the bounds of this interval. Stage `refit`.
-  virtual void refit(const Motion& motion) = 0;
+  virtual void refit(const Step& step) = 0;
   // Computes orientation classes and clusters. Stage `classify`; returns false where the strategy has no
   // such stage. Where the step starts embedded, cull() may look for the first contact alone, and cull_rest()
   // then passes on the others.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/base/rounding.h"
 #include "core/geometry/triple_product16.h"
 
 namespace cscd {
@@ -68,19 +69,30 @@ Float16 meets_zero(Float16 start, Float16 end) {
 // projections is off by twice that and 6 u M N. That is less than 31 u M N; the factor 32 also pays for the
 // roundings of this bound. Below kTiny products might underflow and above kHuge they might overflow, and
 // nothing is known. The time is then computed from numbers that count as exact, with few roundings.
-Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3], Float16 reach) {
+//
+// The length of the direction, for a distance above 0, is computed from components that are divided by the
+// largest, so that no square vanishes; where all are 0 it is no number, and nothing is known.
+Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3], Float16 reach,
+                          float distance) {
   constexpr float kTiny = 1e-30F, kHuge = 1e30F;
   const Float16 error =
       (32 * 0x1p-24F) * reach * larger_size(larger_size(direction[0], direction[1]), direction[2]);
-  Float16 over[2], under[2];
+  Float16 over[2], under[2], least = error;
+  if (distance > 0) {
+    const Float16 largest = larger_size(larger_size(direction[0], direction[1]), direction[2]);
+    Float16 squares = {};
+    for (const Float16& component : direction)
+      squares = product_plus(component / largest, component / largest, squares);
+    least = product_plus(all_lanes(distance) * largest, (1 + 0x1p-20F) * square_root(squares), error);
+  }
   for (int end = 0; end < 2; ++end) {
     const auto along = [&](int k) {
       const Float16(&x)[3] = pairs.corner[k].at[end];
       return product_plus(direction[2], x[2], product_plus(direction[1], x[1], direction[0] * x[0]));
     };
     const Float16 zero = {}, a = along(1), b = along(2), c = along(3), d = along(4), e = along(5);
-    over[end] = smaller(smaller(c, d), e) - larger(larger(zero, a), b) - error;
-    under[end] = smaller(smaller(zero, a), b) - larger(larger(c, d), e) - error;
+    over[end] = smaller(smaller(c, d), e) - larger(larger(zero, a), b) - least;
+    under[end] = smaller(smaller(zero, a), b) - larger(larger(c, d), e) - least;
   }
   const Float16 before = larger(meets_zero(over[0], over[1]), meets_zero(under[0], under[1])), zero = {};
   return select((error > kTiny) & (error < kHuge), before, zero);
@@ -89,13 +101,14 @@ Float16 no_contact_before(const PairCorners& pairs, const Float16 (&direction)[3
 }  // namespace
 
 std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Motion& motion,
-                                              std::span<const TrianglePair> pairs) {
+                                              std::span<const TrianglePair> pairs, double distance) {
+  const float not_below = float_not_below(distance);
   const PairCorners corners = corners_of(mesh, motion, pairs);
   const VectorLanes16(&p)[6] = corners.corner;
   Float16 reach = {}, before = {};
   for (const VectorLanes16& corner : p) reach = larger(reach, largest_component(corner));
   const auto take = [&](const Float16(&direction)[3]) {
-    before = larger(before, no_contact_before(corners, direction, reach));
+    before = larger(before, no_contact_before(corners, direction, reach, not_below));
   };
   const Float16 zero = {}, one = all_lanes(1);
   take({one, zero, zero}), take({zero, one, zero}), take({zero, zero, one});

@@ -13,7 +13,7 @@ namespace {
 class AllPairs : public Culler {
  public:
   explicit AllPairs(std::size_t triangles) : count_(static_cast<std::int32_t>(triangles)) {}
-  void refit(const Motion&) override {}
+  void refit(const Step&) override {}
   CullCounts cull(TrianglePairSink& sink) override {
     for (std::int32_t a = 0; a < count_; ++a)
       for (std::int32_t b = a + 1; b < count_; ++b) sink.add(TriangleId{a}, TriangleId{b});

@@ -20,7 +20,8 @@ class PlainCuller : public Culler {
               Pipeline pipeline = Pipeline::vectorised)
       : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_, pipeline) {}
 
-  void refit(const Motion& motion) override { bounds_.refit(motion); }
+  bool knows_distance() const override { return true; }
+  void refit(const Step& step) override { bounds_.refit(step.motion, step.thickness.largest() / 2); }
 
   CullCounts cull(TrianglePairSink& sink) override {
     const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/detect/thickness.h"
 #include "core/mesh/motion.h"
 #include "core/mesh/rig.h"
 
@@ -29,14 +30,18 @@ struct Crossings {
 struct Step {
   Motion motion;                         // all positions are finite
   const Rig::Interval* bones = nullptr;  // the skeleton at both ends; null for a mesh without a rig
-  // Whether the caller knows that the start is embedded (rule embedded-start, core/soundness.md). A complete
-  // strategy may then take less time, and finds the same contacts.
+  // Whether the caller knows that the start is embedded (rule embedded-start, core/soundness.md), and with a
+  // thickness, that it is clear: embedded, and no pair close. A complete strategy may then take less time,
+  // and finds the same contacts.
   bool starts_embedded = false;
   // Takes the triangle pairs that cross at the start, at most `most_crossings` of them; null where they are
   // not wanted. The detector tests the pairs that its culling passes on, exactly, in the pose of the start.
   // Only strategies that promise it (Strategy::sees_start) may be asked.
   Crossings* crossings = nullptr;
   std::size_t most_crossings = 0;
+  // How near features may come before they count as contacts. Above 0, only cullers that know distances
+  // (Culler::knows_distance) and an elementary test that does may be asked.
+  Thickness thickness = {};
 };
 
 }  // namespace cscd

@@ -35,7 +35,7 @@ class DrvbcCuller : public Culler {
         table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
-  void refit(const Motion& motion) override { hierarchy_.refit(motion); }
+  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
 
   bool classify(const Step& step) override {
     table_.update(step.motion);

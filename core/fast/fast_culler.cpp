@@ -31,7 +31,7 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
       options_(options),
       signs_suffice_(options.complete && setup.mesh.closed_and_oriented()),
       positions_(setup.reference),
-      certificates_(cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),
+      certificates_(setup.mesh, cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),
       stars_(setup.mesh),
       team_(setup.threads),
       descent_({cut_.tree, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear,
@@ -41,11 +41,13 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
   use_covers(options.covers);
 }
 
-void FastCuller::refit(const Motion& motion) {
-  motion_ = motion;
+void FastCuller::refit(const Step& step) {
+  motion_ = step.motion;
+  thickness_ = step.thickness;
   last_ = 1;
-  positions_.update(motion, team_);
-  grid_ = Grid(positions_.error());
+  positions_.update(step.motion, team_);
+  local_thickness_ = positions_.in_local(thickness_.largest());
+  grid_ = grid_of(positions_.error());
 }
 
 bool FastCuller::classify(const Step& step) {
@@ -59,7 +61,7 @@ void FastCuller::look_at(const Motion& motion) {
   if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
   const bool by_caps = options_.complete && !by_signs_;
   certificates_.use_contour_test(by_caps);
-  certificates_.start(positions_, team_);
+  certificates_.start(positions_, team_, local_thickness_);
   team_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
                [&](std::size_t first, std::size_t last, std::size_t) {
                  for (std::size_t p = first; p < last; ++p) look(p);
@@ -82,7 +84,7 @@ std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
   if (!by_signs_) return std::nullopt;
   by_signs_ = false;
   tests_.reset();  // the cover stays as it is within an interval
-  refit(*motion_);
+  refit({.motion = *motion_, .thickness = thickness_});
   look_at(*motion_);
   return descend(sink);
 }
@@ -97,7 +99,7 @@ std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
         return cull_parts(sink, false);
       }
       const std::uint64_t most = options_.long_descent * patch_count();
-      tests_ = descent_.run_until_closed(bounds_, grid_, sink, most);
+      tests_ = run_until_closed(sink, most);
       const std::uint64_t tests = *tests_;
       if (sink.closed() || tests <= most) return tests;
       sink.begin_again();
@@ -106,8 +108,22 @@ std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
     }
   }
   const bool may_stop = sink.may_close() && patch_count() >= kWorthStopping;
-  return *(tests_ = may_stop ? descent_.run_until_closed(bounds_, grid_, sink)
-                             : descent_.run(bounds_, grid_, sink));
+  return *(tests_ = may_stop ? run_until_closed(sink) : run(sink));
+}
+
+std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
+  pass_on_near(sink);
+  return descent_.run(bounds_, grid_, sink, most);
+}
+
+std::uint64_t FastCuller::run_until_closed(TrianglePairSink& sink, std::uint64_t most) {
+  pass_on_near(sink);
+  return descent_.run_until_closed(bounds_, grid_, sink, most);
+}
+
+// Passes on the pairs near on the surface of which signs say nothing (certify/tall_rings.h).
+void FastCuller::pass_on_near(TrianglePairSink& sink) const {
+  certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { sink.add(a, b); });
 }
 
 // Returns by how much a position in between, start + t (end - start), may be off: it rounds three times.
@@ -118,7 +134,7 @@ double FastCuller::error_in_between() const {
 // Far from the origin, positions in between may be off by so much that the grid's steps are wider than
 // patches, and then nothing is proven apart.
 bool FastCuller::can_tell_in_between(const Moved& moved) const {
-  return Grid(positions_.error_beside(error_in_between())).steps() * moved.width >= 1;
+  return grid_of(positions_.error_beside(error_in_between())).steps() * moved.width >= 1;
 }
 
 bool FastCuller::can_shorten() const {
@@ -169,7 +185,7 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink, bool is_long) {
     if (last_ == 1) rounding_ = 0;  // both ends of the interval are given
     begin(whole);
     sink.begin_again();
-    return tests + *(tests_ = descent_.run(bounds_, grid_, sink));
+    return tests + *(tests_ = run(sink));
   }
   pass_on_new(sink);
   return tests;
@@ -204,7 +220,7 @@ std::uint64_t FastCuller::cull_part(const Part& part, TrianglePairSink& sink) {
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
   found_.restart();
-  tests_ = descent_.run(bounds_, grid_, found_, most);
+  tests_ = run(found_, most);
   found_.flush();
   if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) {
     use_whole_step_ = found_.pairs.size() > kMostCollected;
@@ -245,7 +261,7 @@ void FastCuller::begin(const Part& part) {
   };
   const Motion motion(at(part.first, part_start_), at(part.last, part_end_));
   positions_.update(motion, team_, rounding_);
-  grid_ = Grid(positions_.error());
+  grid_ = grid_of(positions_.error());
   look_at(motion);
 }
 

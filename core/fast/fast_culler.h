@@ -45,7 +45,8 @@ class FastCuller : public Culler {
     certificates_.use_covers(count);
   }
 
-  void refit(const Motion& motion) override;
+  bool knows_distance() const override { return true; }
+  void refit(const Step& step) override;
   // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded
   // once for its bounds and its orientations. Only a complete culler of a closed and consistently oriented
   // mesh makes use of an embedded start: signs alone certify until something touches, and capped clusters
@@ -92,6 +93,10 @@ class FastCuller : public Culler {
   double error_in_between() const;
   bool can_tell_in_between(const Moved& moved) const;
   std::uint64_t descend(TrianglePairSink& sink);
+  std::uint64_t run(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
+  std::uint64_t run_until_closed(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
+  void pass_on_near(TrianglePairSink& sink) const;
+  Grid grid_of(float error) const { return Grid(error, local_thickness_ / 2); }
   std::uint64_t cull_parts(TrianglePairSink& sink, bool is_long);
   std::uint64_t cull_part(const Part& part, TrianglePairSink& sink);
   std::uint64_t cull_halves(const Part& part, TrianglePairSink& sink);
@@ -119,7 +124,9 @@ class FastCuller : public Culler {
   std::optional<AdaptiveCover> following_;
   std::optional<std::uint64_t> tests_;  // that the last interval or part took; none before the first one
   std::optional<Motion> motion_;
-  double last_ = 1;  // the interval is looked at from t = 0 to this time
+  Thickness thickness_;
+  float local_thickness_ = 0;  // the largest of any pair, in local units
+  double last_ = 1;            // the interval is looked at from t = 0 to this time
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
   double rounding_ = 0;          // by how much positions in between are off

@@ -139,7 +139,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
 // Removes the triangles that the star of a common corner proves apart.
 inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
                                      const SharedVertices& common) {
-  if (input_.stars == nullptr) return wanted;
+  if (input_.stars == nullptr || grid_.has_margin()) return wanted;
   const Patch& patch = patches_[p];
   for (const Places16& place : patch.corner) {
     const Mask16 sharing = common.at[place[lane]];
@@ -169,7 +169,7 @@ void PatchDescent::ask_planes() {
   Waiting &from = for_planes_, &to = for_edges_;
   unsigned left = (1U << from.count) - 1;
   from.count = 0;
-  const bool asks = input_.planes && input_.positions.known();
+  const bool asks = input_.planes && input_.positions.known() && !grid_.has_margin();
   if (left != 0 && asks)
     left &= not_parted(input_.positions.records(), from.vertices, input_.positions.error());
   for_each_lane(left, [&](std::size_t l) {

@@ -63,9 +63,9 @@ std::uint64_t work(FastCuller& culler, std::span<const PosePair> trials, bool by
   for (const PosePair& trial : trials) {
     if (tests > most) break;
     CountingSink sink;
-    const Motion motion(trial[0], trial[1]);
-    culler.refit(motion);
-    culler.classify({.motion = motion, .starts_embedded = by_signs});
+    const Step step{.motion = Motion(trial[0], trial[1]), .starts_embedded = by_signs};
+    culler.refit(step);
+    culler.classify(step);
     const CullCounts counts = culler.cull(sink);
     tests += kTestsOfPatch * culler.patch_count() + kTestsOfLook * culler.looks_per_interval() +
              kTestsOfObserver * counts.radial->clusters + *counts.bvot + kTestsOfPair * sink.count();

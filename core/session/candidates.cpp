@@ -76,7 +76,7 @@ void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePai
     culler_ = fast::best_trial_culler(setup_, {.name = "candidates", .complete = true}, clock).culler;
   }
   CandidateSink sink(set_, motion, 0, out);
-  culler_->refit(motion);
+  culler_->refit({motion});
   culler_->classify({motion});
   culler_->cull(sink);
   sink.flush();

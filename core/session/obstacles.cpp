@@ -84,8 +84,11 @@ class Obstacles::ObstaclePairs {
   class View : public Culler {
    public:
     View(ObstaclePairs& between, std::size_t own_vertices) : pairs_(between), own_vertices_(own_vertices) {}
-    void refit(const Motion& motion) override {
-      pairs_.refit_own({motion.start().first(own_vertices_), motion.end().first(own_vertices_)});
+    bool knows_distance() const override { return true; }
+    void refit(const Step& step) override {
+      const Motion& motion = step.motion;
+      pairs_.refit_own({motion.start().first(own_vertices_), motion.end().first(own_vertices_)},
+                       step.thickness.largest());
     }
     CullCounts cull(TrianglePairSink& sink) override {
       CullCounts counts;

@@ -88,7 +88,7 @@ Queries of_scene(const std::string& scene, Source source) {
     const scenes::ClipInterval interval = input.clip->load((2 * k + 1) * count / 16);
     if (source == Source::unfiltered) {
       EverySixteenth sink(input.mesh, interval.motion, result);
-      culler.refit(interval.motion);
+      culler.refit({interval.motion});
       culler.cull(sink);
       sink.flush();
     } else {

@@ -40,7 +40,7 @@ Case fingertip_on_face() {
 class OnePair : public Culler {
  public:
   explicit OnePair(TrianglePair pair) : pair_(pair) {}
-  void refit(const Motion&) override {}
+  void refit(const Step&) override {}
   CullCounts cull(TrianglePairSink& sink) override {
     sink.add(pair_.a, pair_.b);
     return {};

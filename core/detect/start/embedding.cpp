@@ -44,10 +44,10 @@ void EmbeddingTest::search(std::span<const Vec3> positions,
     culler_ = std::make_unique<PlainCuller<Kdop16>>(*mesh_, reference_);
     reference_ = {};
   }
-  const Motion at_rest(positions, positions);
+  const Step at_rest{Motion(positions, positions)};
   ExactTester tester(*mesh_, positions, found);
   culler_->refit(at_rest);
-  culler_->classify({at_rest});
+  culler_->classify(at_rest);
   culler_->cull(tester);
   tester.flush();
   pairs_tested_ = tester.count();

@@ -19,7 +19,8 @@ std::uint64_t count(unsigned mask) {
 
 }  // namespace
 
-Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped)
+Certificates::Certificates(const TriangleMesh& mesh, const PatchTree& tree, const Covers& covers,
+                           std::vector<CappedClusters> capped)
     : tree_(tree),
       covers_(covers),
       certified_(tree.patches.size()),
@@ -27,7 +28,8 @@ Certificates::Certificates(const PatchTree& tree, const Covers& covers, std::vec
       state_((tree.patches.size() + kTogether - 1) / kTogether * kTogether, State::usual),
       label_(tree.nodes.size(), Label{} + kNone),
       capped_(std::move(capped)),
-      may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()) {
+      may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()),
+      rings_(mesh, tree) {
   // The first cover holds every triangle; `look` relies on that.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
@@ -73,6 +75,7 @@ void Certificates::relabel(std::size_t first, std::size_t last) {
     cell_[p].cluster[0] = tree_.patches[p].cluster[0];
     state_[p] = State::spoiled;
   }
+  rings_.forget_clusters();
 }
 
 void Certificates::set_cluster(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
@@ -90,8 +93,10 @@ std::size_t Certificates::looks_per_interval() const {
   return looks;
 }
 
-void Certificates::start(const LocalPositions& positions, const Team& team) {
+void Certificates::start(const LocalPositions& positions, const Team& team, float thickness) {
   positions_ = &positions;
+  thickness_ = thickness;
+  if (thickness_ > 0) rings_.start(covers_used_);
   place_viewpoints(positions.records());
   for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c)
     capped_[c].start(positions, viewpoint_[c], team);
@@ -102,6 +107,8 @@ void Certificates::finish(const Team& team) {
     certify_clear(team);
   else
     certify_all_round();
+  if (thickness_ > 0 && keeps_all_) keep_clear_stars();
+  if (thickness_ > 0 && !keeps_all_) rings_.spread(TallRings::kRings);
   if (!positions_->known()) forget();
   label_nodes(team);
 }
@@ -121,7 +128,10 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   for (std::size_t c = 0; c < covers_used_; ++c)
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
-  orientations(lanes, patch, from, positions_->error(), seen);
+  if (thickness_ > 0)
+    look_at_distance(p, lanes, from, seen);
+  else
+    orientations(lanes, patch, from, positions_->error(), seen);
   if (keeps_all_) {
     may_cross_ray_[p] = 0;
     for (std::size_t c = 0; c < covers_used_; ++c)
@@ -143,6 +153,35 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive),
                       single_triangle_signs_[p][0].negative};
   for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+}
+
+// By signs, planes have to be farther away than half of the thickness. Caps go by signs alone, and by the
+// heights of what is clear.
+void Certificates::look_at_distance(std::size_t p, const PatchLanes& lanes,
+                                    const Viewpoint* const (&from)[kCovers], Signs (&seen)[kCovers]) {
+  DistantSigns distant;
+  orientations_at_distance(lanes, tree_.patches[p], from, positions_->error(),
+                           keeps_all_ ? 0 : thickness_ / 2, thickness_, distant);
+  for (std::size_t c = 0; c < kCovers; ++c) {
+    seen[c] = distant.signs[c];
+    rings_.take(p, c, distant.tall[c]);
+  }
+}
+
+// With a thickness, a triangle is certified only if all triangles round its corners are clear and tall.
+void Certificates::keep_clear_stars() {
+  for (std::size_t p = 0; p < cell_.size(); ++p)
+    for (std::size_t c = 0; c < covers_used_; ++c)
+      rings_.spoil(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
+  rings_.spread(1);
+  for (std::size_t p = 0; p < cell_.size(); ++p)
+    for (std::size_t c = 0; c < covers_used_; ++c) {
+      if (cell_[p].cluster[c] == kNone) continue;
+      const Mask16 kept = certified_[p][c].positive & rings_.left(p, c);
+      if (kept == certified_[p][c].positive) continue;
+      certified_[p][c].positive = kept;
+      if (state_[p] != State::seen) state_[p] = State::spoiled;
+    }
 }
 
 void Certificates::make_usual(std::size_t p) {

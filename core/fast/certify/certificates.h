@@ -7,6 +7,7 @@
 
 #include "core/detect/counts.h"
 #include "core/detect/radial_view.h"
+#include "core/fast/certify/tall_rings.h"
 #include "core/fast/classify/patch_lanes.h"
 #include "core/fast/contour/capped_clusters.h"
 
@@ -25,7 +26,8 @@ class Certificates {
  public:
   // With `capped`, one for each cover, no contact is lost whatever the start (use_contour_test). Without, the
   // first contact of an embedded start is kept. `tree` and `covers` must outlive the certificates.
-  Certificates(const PatchTree& tree, const Covers& covers, std::vector<CappedClusters> capped = {});
+  Certificates(const TriangleMesh& mesh, const PatchTree& tree, const Covers& covers,
+               std::vector<CappedClusters> capped = {});
 
   // With `all`, capped clusters certify from the next interval on, which takes that they were given. Without,
   // signs alone do. At first, capped clusters do where they were given.
@@ -55,9 +57,17 @@ class Certificates {
 
   // An interval is one call of `start`, then one call of `look` for every patch, in any order and from any
   // thread, then one call of `finish`.
-  void start(const LocalPositions& positions, const Team& team = Team());
+  // With a thickness above 0, in local units, what is certified stays farther apart than that.
+  void start(const LocalPositions& positions, const Team& team = Team(), float thickness = 0);
   void look(std::size_t patch, const PatchLanes& lanes);
   void finish(const Team& team = Team());
+
+  // With a thickness, signs say nothing of pairs that are near on the surface (tall_rings.h). Calls
+  // take(triangle, triangle) for those among them that nothing else settles.
+  template <class Take>
+  void for_each_unsettled_pair(const Take& take) const {
+    if (thickness_ > 0 && !keeps_all_ && positions_->known()) rings_.for_each_unsettled_pair(take);
+  }
 
   // Whether no triangle below node `a` has to be held against a triangle below node `b`; for a == b, whether
   // no pair below the node has to be.
@@ -135,6 +145,9 @@ class Certificates {
   void take_all(std::size_t cover);
   void certify_clear(std::size_t patch);
   void label_nodes(const Team& team);
+  void look_at_distance(std::size_t patch, const PatchLanes& lanes, const Viewpoint* const (&from)[kCovers],
+                        Signs (&seen)[kCovers]);
+  void keep_clear_stars();
 
   // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
   // next, and what is certified of them stays as it is.
@@ -182,6 +195,8 @@ class Certificates {
   std::vector<std::uint8_t>
       may_cross_ray_;  // [patches]: the covers whose ray the patch may cross, a bit each
   RadialCounts counts_;
+  float thickness_ = 0;  // in local units
+  TallRings rings_;      // looked at only with a thickness
 };
 
 }  // namespace cscd::fast

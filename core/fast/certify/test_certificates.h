@@ -50,7 +50,7 @@ struct CertifiedBody : test::Body {
   Certificates with_caps() const {
     std::vector<CappedClusters> capped;
     for (std::size_t c = 0; c < covers.size(); ++c) capped.emplace_back(mesh, shape.positions, covers[c], c);
-    return Certificates(tree, covers, std::move(capped));
+    return Certificates(mesh, tree, covers, std::move(capped));
   }
   std::int32_t cluster(std::size_t c, std::size_t triangle) const { return covers[c].cluster_of[triangle]; }
   // Returns the certificate that is expected: in the first cover from the triangle alone, in the others from
@@ -95,7 +95,7 @@ struct CertifiedBody : test::Body {
     if (inside_out)
       for (std::vector<Vec3>* positions : {&start, &end})
         for (Vec3& p : *positions) p.x() = -p.x();
-    return Certificates(tree, covers);
+    return Certificates(mesh, tree, covers);
   }
   // Returns a vertex in local coordinates, but in double precision.
   MovingPoint at(VertexId v) const {

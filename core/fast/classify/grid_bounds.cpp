@@ -1,5 +1,7 @@
 #include "core/fast/classify/grid_bounds.h"
 
+#include <cmath>
+
 namespace cscd::fast {
 namespace {
 
@@ -29,11 +31,22 @@ template <class Low, class High>
 
 }  // namespace
 
+Grid::Grid(float error, float margin) : steps_(kSteps * 0x1p-24F / (error + 0x1p-24F * margin)) {
+  if (margin == 0) return;
+  // Axes have length 1, the other directions length sqrt(2). Both margins are below 23000 steps, and with the
+  // coordinates, which then are fewer steps, below 32100.
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const float length = k < 3 ? 1 : 1.41422F;
+    const auto grown = static_cast<std::int16_t>(std::ceil(1.0001F * length * margin * steps_));
+    for (const std::size_t pair : {k, kDirections + k}) margin_[2 * pair] = margin_[2 * pair + 1] = grown;
+  }
+}
+
 NodeBounds Grid::bounds_of(const PatchLanes& lanes) const {
   Short32 p[3], along[kDirections];
   for (int i = 0; i < 3; ++i) p[i] = rounded_pairs(lanes.at[0][i], lanes.at[1][i], steps_);
   along_directions(p, along);
-  return {smallest_pairs_of_rows(along) - std::int16_t{1}};
+  return {smallest_pairs_of_rows(along) - std::int16_t{1} - margin_};
 }
 
 TriangleBounds Grid::bounds_of_triangles(const PatchLanes& lanes, const Patch& patch) const {
@@ -45,8 +58,9 @@ TriangleBounds Grid::bounds_of_triangles(const PatchLanes& lanes, const Patch& p
     const Short32 along = rounded_pairs(start[k], end[k], steps_);
     const Short32 a = permuted_pairs(along, patch.corner[0]), b = permuted_pairs(along, patch.corner[1]),
                   c = permuted_pairs(along, patch.corner[2]);
-    bounds.low[k] = smaller(smaller(a, b), c);
-    bounds.high[k] = larger(larger(a, b), c) + std::int16_t{1};
+    const std::int16_t margin = margin_[2 * k];
+    bounds.low[k] = smaller(smaller(a, b), c) - margin;
+    bounds.high[k] = larger(larger(a, b), c) + static_cast<std::int16_t>(1 + margin);
   }
   return bounds;
 }

@@ -63,16 +63,18 @@ inline NodeBounds unbounded() {
 class Grid {
  public:
   // A grid for local positions whose coordinates are off by at most `error`, which is at least 2^-24 of the
-  // largest coordinate.
-  explicit Grid(float error) : steps_(kSteps * 0x1p-24F / error) {}
+  // largest coordinate. All bounds grow by `margin`, so that what is apart is so by more than twice as much.
+  explicit Grid(float error, float margin = 0);
 
   float steps() const { return steps_; }  // steps of the grid in a local unit
+  bool has_margin() const { return margin_[0] != 0; }
   NodeBounds bounds_of(const PatchLanes& lanes) const;
   TriangleBounds bounds_of_triangles(const PatchLanes& lanes, const Patch& patch) const;
 
  private:
   static constexpr float kSteps = 16000;
   float steps_;
+  Short32 margin_{};  // of a node, in steps along each direction
 };
 
 }  // namespace cscd::fast

@@ -37,6 +37,10 @@ class LocalPositions {
   float error() const { return error_; }
   // The same, if the positions of a part of the motion are off by `off`, in units of the scene, on top.
   float error_beside(double off) const { return error_ + 1.0001F * static_cast<float>(off * scale_); }
+  // A length of the scene in local units, rounded up.
+  float in_local(double length) const {
+    return length > 0 ? 1.000001F * static_cast<float>(length * scale_) + 1e-37F : 0;
+  }
   // False where the motion leaves the range in which errors are known. Nothing may be concluded from the
   // positions then.
   bool known() const { return known_; }

@@ -111,4 +111,62 @@ void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* 
     out[c] = from[c] ? look(normals, corner, rounding, *from[c], error) : Signs{};
 }
 
+namespace {
+
+Float16 longer(Float16 squared, const PatchLanes& v) {
+  for (const auto& end : v.at)
+    squared = larger(squared, product_plus(end[2], end[2], product_plus(end[1], end[1], end[0] * end[0])));
+  return squared;
+}
+// A bound on a length at every t, from the larger of its computed squares at both ends. Lengths are convex in
+// time. The difference of two points is off by 2 `error` along each axis, and by a few roundings.
+Float16 length_bound(Float16 squared, float error) {
+  return 1.0001F * square_root(squared) + all_lanes(4 * error);
+}
+
+}  // namespace
+
+// Lengths. Let L be the longest edge of a triangle and R its farthest corner from the viewpoint q, both at any
+// t. The normal n is at most L^2 long, so det = n . (p - q) > margin L^2 puts the plane farther than `margin`
+// from q. The heights of "clear stars keep their distance" are det over |v x w|, |(v - u) x w| or |n|, all at
+// most L max(L, R), because |v x w| is |w - v| times a distance from q. So det > height L max(L, R) makes a
+// triangle tall. A cubic exceeds what its Bernstein coefficients exceed.
+void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
+                              const Viewpoint* const (&from)[kCovers], float error, float margin,
+                              float height, DistantSigns& out) {
+  PatchLanes corner[3];
+  for (std::size_t k = 0; k < 3; ++k) corner_of(lanes, patch.corner[k], corner[k]);
+  PatchNormals normals;
+  PatchLanes first;
+  make_normals(lanes, patch, normals, first);
+  const Rounding16 rounding = rounding_of(normals.longest[0], normals.longest[1], error);
+  Float16 squared = {};
+  for (std::size_t k = 0; k < 3; ++k) squared = longer(squared, corner[(k + 1) % 3] - corner[k]);
+  const Float16 longest = length_bound(squared, error);
+  for (std::size_t c = 0; c < kCovers; ++c) {
+    out.signs[c] = {};
+    out.tall[c] = 0;
+    if (!from[c]) continue;
+    Float16 far = {};
+    PatchLanes seen = first;
+    for (std::size_t k = 0; k < 3; ++k) {
+      PatchLanes one = corner[k];
+      for (int end = 0; end < 2; ++end)
+        for (int i = 0; i < 3; ++i) one.at[end][i] -= all_lanes(from[c]->at[end][i]);
+      far = longer(far, one);
+      if (k == 0) seen = one;
+    }
+    TripleProducts16 products = triple_products(normals.control, seen, rounding, error);
+    const Float16 bound = products.bound;
+    const auto exceeding = [&](Float16 least) {
+      products.bound = bound + 1.0001F * least;
+      products.bound3 = 3 * products.bound;
+    };
+    exceeding(all_lanes(margin) * longest * longest);
+    out.signs[c] = {products.positive(), products.negative()};
+    exceeding(all_lanes(height) * longest * larger(longest, length_bound(far, error)));
+    out.tall[c] = products.positive();
+  }
+}
+
 }  // namespace cscd::fast

@@ -28,4 +28,17 @@ Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& 
 void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
                   float error, Signs (&out)[kCovers]);
 
+// Signs of triangles whose planes keep their distance from the viewpoint, and which of them are tall.
+struct DistantSigns {
+  Signs signs[kCovers];
+  // Positive triangles that are *tall*: all their heights, as seen from the viewpoint, exceed a height
+  // ("Theorem: clear stars keep their distance", core/soundness.md).
+  Mask16 tall[kCovers];
+};
+// Certifies, at every t, signs of triangles whose planes are farther than `margin` from the viewpoint, and
+// heights above `height`. Both lengths are in local units.
+void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
+                              const Viewpoint* const (&from)[kCovers], float error, float margin,
+                              float height, DistantSigns& out);
+
 }  // namespace cscd::fast

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "core/base/ids.h"
+#include "core/detect/contact.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd {
+
+// How near two features may come before they count as *close*. A feature pair is close if its distance is at
+// most its thickness at some t in [0, 1]; with thickness 0, close means that the features touch. The thickness
+// of a pair is `all`, and the largest of `of_vertex` among the vertices of either feature on top.
+class Thickness {
+ public:
+  Thickness() = default;
+  // Lengths in units of the positions, finite and at least 0. `of_vertex`, [vertices], is empty where all
+  // vertices have 0, and must outlive the object.
+  explicit Thickness(double all, std::span<const double> of_vertex = {})
+      : all_(all), of_vertex_(of_vertex) {
+    largest_ = all;
+    if (!of_vertex.empty()) largest_ += 2 * std::max(0.0, *std::ranges::max_element(of_vertex));
+  }
+
+  bool is_zero() const { return largest_ == 0; }
+  // The largest thickness that any pair may have.
+  double largest() const { return largest_; }
+  // The thickness of one pair.
+  double of(const TriangleMesh& mesh, const FeaturePair& pair) const {
+    if (of_vertex_.empty()) return all_;
+    if (pair.kind == FeaturePair::Kind::vertex_face)
+      return all_ + (of_vertex_[static_cast<std::size_t>(pair.a)] + at(mesh.corners(TriangleId{pair.b})));
+    return all_ + (at(mesh.ends(EdgeId{pair.a})) + at(mesh.ends(EdgeId{pair.b})));
+  }
+
+ private:
+  template <class Vertices>
+  double at(const Vertices& vertices) const {
+    double most = 0;
+    for (const VertexId v : vertices) most = std::max(most, of_vertex_[+v]);
+    return most;
+  }
+
+  double all_ = 0, largest_ = 0;
+  std::span<const double> of_vertex_;
+};
+
+}  // namespace cscd
