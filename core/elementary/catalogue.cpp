@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/elementary/certified/filtered_exact.h"
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/published.h"
 #include "core/elementary/question/filter.h"
@@ -17,6 +18,13 @@ template <class Query>
 Answer filtered_referee(const Query& query) {
   if (never_coplanar(query) || relative_boxes_apart(query)) return {Verdict::apart, 0};
   const auto time = exact::first_contact(query);
+  return time ? Answer{Verdict::contact, time->lo} : Answer{Verdict::apart, 0};
+}
+
+template <class Query>
+Answer filtered_close_referee(const Query& query, double r) {
+  if (relative_boxes_apart(query, r)) return {Verdict::apart, 0};
+  const auto time = exact::first_closeness(query, r);
   return time ? Answer{Verdict::contact, time->lo} : Answer{Verdict::apart, 0};
 }
 
@@ -58,6 +66,8 @@ constexpr std::array kTests = {
         .contact_is_proof = true,
         .ask_vertex_faces = one_by_one<filtered_referee<MovingVertexFace>>,
         .ask_edge_edges = one_by_one<filtered_referee<MovingEdgeEdge>>,
+        .close_vertex_faces = close_one_by_one<filtered_close_referee<MovingVertexFace>>,
+        .close_edge_edges = close_one_by_one<filtered_close_referee<MovingEdgeEdge>>,
     },
     ElementaryTest{
         .name = "cubic",

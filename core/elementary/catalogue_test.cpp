@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {
@@ -131,6 +133,47 @@ TEST(Catalogue, TimesAreInTheInterval) {
       EXPECT_LE(answer.time, 1);
     }
   });
+}
+
+// What each row promises of its answers, at random distances. All families take part.
+TEST(Catalogue, ProofsHoldAtADistance) {
+  int close = 0, apart = 0;
+  for (const Family& family : kFamilies) {
+    QueryMaker make{58};
+    for (int i = 0; i < family.count / 3; ++i) {
+      const FourMovingPoints vf = family.make(make, true), ee = family.make(make, false);
+      const auto ask_all = [&](const FourMovingPoints& points, const auto& query) {
+        const double r = extent(query) * std::exp(make.uniform(-8, 0));
+        const auto truth = exact::first_closeness(query, r);
+        ++(truth ? close : apart);
+        for (const ElementaryTest& row : elementary_tests()) {
+          if (!row.knows_distance() || r == 0) continue;
+          SCOPED_TRACE(std::string(row.name) + ", " + family.name + ", r = " + std::to_string(r) + "\n" +
+                       text(points));
+          const Answer answer = row.answer_close(query, r);
+          if (row.apart_is_proof && truth) {
+            EXPECT_NE(answer.verdict, Verdict::apart);
+            EXPECT_LE(answer.time, truth->hi);
+            if (answer.verdict == Verdict::contact && row.contact_is_proof) {
+              EXPECT_EQ(answer.time, truth->lo);
+            }
+          }
+          if (row.contact_is_proof && !truth) {
+            EXPECT_EQ(answer.verdict, Verdict::apart);
+          }
+          if (answer.verdict != Verdict::apart) {
+            EXPECT_GE(answer.time, 0);
+            EXPECT_LE(answer.time, 1);
+          }
+        }
+      };
+      ask_all(vf, query_of<MovingVertexFace>(vf));
+      ask_all(ee, query_of<MovingEdgeEdge>(ee));
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+  EXPECT_GT(close, 1000);
+  EXPECT_GT(apart, 300);
 }
 
 TEST(Catalogue, AtDistanceZeroAnswersAreThoseOfTouching) {

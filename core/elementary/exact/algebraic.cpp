@@ -109,7 +109,8 @@ double AlgebraicNumber::guess() const {
   for (int step = 0; step < 64; ++step) {
     const double s = 0.5 * (low + high);
     if (s == low || s == high) break;
-    const double value = ((c[3] * s + c[2]) * s + c[1]) * s + c[0];
+    double value = 0;
+    for (auto i = static_cast<std::size_t>(f.degree() + 1); i-- > 0;) value = value * s + c[i];
     (value > 0) == (sign_below_ > 0) ? low = s : high = s;
   }
   const double from = double_below(lower_), to = double_above(upper_);

@@ -213,6 +213,19 @@ struct Enclosure {
   mpq_class lower, upper;
 };
 
+// Encloses the earliest candidate for which `holds`, to within 2^-60.
+template <class Holds>
+std::optional<Enclosure> earliest(std::vector<Root>& candidates, const Holds& holds) {
+  std::optional<Enclosure> first;
+  for (Root& root : candidates) {
+    if (!holds([&](const Poly& p) { return root.sign_of(p); })) continue;
+    root.narrow(mpq_class(1, mpz_class(1) << 60));
+    if (!first) first = Enclosure{root.lower, root.upper};
+    first = Enclosure{std::min(first->lower, root.lower), std::min(first->upper, root.upper)};
+  }
+  return first;
+}
+
 // Encloses the earliest contact time in [0, 1] to within 2^-60. Returns nullopt if there is no contact.
 inline std::optional<Enclosure> first_contact(const Four& points, const Predicate& predicate) {
   const std::vector<Poly> events = predicate.events(points);
@@ -227,14 +240,71 @@ inline std::optional<Enclosure> first_contact(const Four& points, const Predicat
       if (p.size() > 1)
         for (const Root& root : unit_roots(p)) candidates.push_back(root);
   }
-  std::optional<Enclosure> first;
-  for (Root& root : candidates) {
-    if (!predicate.touch(events, [&](const Poly& p) { return root.sign_of(p); })) continue;
-    root.narrow(mpq_class(1, mpz_class(1) << 60));
-    if (!first) first = Enclosure{root.lower, root.upper};
-    first = Enclosure{std::min(first->lower, root.lower), std::min(first->upper, root.upper)};
+  return earliest(candidates, [&](const SignOf& sign) { return predicate.touch(events, sign); });
+}
+
+// Closeness at a distance. Squared distances and nearest points come from dot products alone (Gram
+// determinants). The features are close if, in some case, `whole` is above zero and no other number is
+// negative.
+struct CloseCase {
+  Poly whole;
+  std::vector<Poly> others;
+};
+
+inline void add_vertex_close(std::vector<CloseCase>& cases, const PolyPoint& p, const PolyPoint& q,
+                             const Poly& rr) {
+  const PolyPoint e = p - q;
+  cases.push_back({{1}, {rr - dot(e, e)}});
+}
+inline void add_segment_close(std::vector<CloseCase>& cases, const PolyPoint& p, const PolyPoint& a,
+                              const PolyPoint& b, const Poly& rr) {
+  const PolyPoint u = b - a, e = p - a;
+  const Poly length = dot(u, u), along = dot(e, u);
+  cases.push_back({length, {along, length - along, rr * length - dot(e, e) * length + along * along}});
+}
+
+inline std::vector<CloseCase> close_cases(const Four& x, bool vertex_face, const Poly& rr) {
+  const PolyPoint u = x[vertex_face ? 2 : 1] - x[vertex_face ? 1 : 0], w = x[3] - x[vertex_face ? 1 : 2],
+                  e = x[0] - x[vertex_face ? 1 : 2];
+  // For the vertex and the face, the vertex is nearest to x[1] + s u + q w; for edges, x[0] + s u to x[2] + q
+  // w. The variables s, q and `squared` hold these numbers and the squared distance times `gram`.
+  const Poly uu = dot(u, u), uw = dot(u, w), ww = dot(w, w), eu = dot(e, u), ew = dot(e, w);
+  const Poly gram = uu * ww - uw * uw, q = ew * uu - eu * uw, along = eu * ww - ew * uw;
+  const Poly s = vertex_face ? along : negated(along);
+  const Poly squared = dot(e, e) * gram - eu * along - ew * q;
+  std::vector<CloseCase> cases;
+  if (vertex_face) {
+    cases.push_back({gram, {s, q, gram - s - q, rr * gram - squared}});
+    for (std::size_t i = 1; i < 4; ++i) {
+      add_segment_close(cases, x[0], x[i], x[1 + i % 3], rr);
+      add_vertex_close(cases, x[0], x[i], rr);
+    }
+  } else {
+    cases.push_back({gram, {s, gram - s, q, gram - q, rr * gram - squared}});
+    for (std::size_t i = 0; i < 4; ++i) {
+      add_segment_close(cases, x[i], x[i < 2 ? 2 : 0], x[i < 2 ? 3 : 1], rr);
+      add_vertex_close(cases, x[i / 2], x[2 + i % 2], rr);
+    }
   }
-  return first;
+  return cases;
+}
+
+// Encloses the earliest time in [0, 1] at which the features are within r.
+inline std::optional<Enclosure> first_closeness(const Four& points, bool vertex_face, const mpq_class& r) {
+  const std::vector<CloseCase> cases = close_cases(points, vertex_face, {r * r});
+  const auto close = [&](const SignOf& sign) {
+    return std::any_of(cases.begin(), cases.end(), [&](const CloseCase& which) {
+      return sign(which.whole) > 0 && std::all_of(which.others.begin(), which.others.end(),
+                                                  [&](const Poly& p) { return sign(p) >= 0; });
+    });
+  };
+  if (close([](const Poly& p) { return sgn(value(p, 0)); })) return Enclosure{0, 0};
+  std::vector<Root> candidates;
+  for (const CloseCase& which : cases)
+    for (const Poly& p : which.others)
+      if (p.size() > 1)
+        for (const Root& root : unit_roots(p)) candidates.push_back(root);
+  return earliest(candidates, close);
 }
 
 }  // namespace cscd::brute

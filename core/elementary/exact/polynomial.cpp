@@ -80,6 +80,13 @@ void Polynomial::trim() {
   while (degree_ >= 0 && sgn((*this)[degree_]) == 0) --degree_;
 }
 
+Polynomial operator+(const Polynomial& a, const Polynomial& b) {
+  Polynomial sum;
+  for (int i = std::max(a.degree_, b.degree_); i >= 0; --i) sum.at(i) = a[i] + b[i];
+  sum.trim();
+  return sum;
+}
+
 Polynomial operator-(const Polynomial& a, const Polynomial& b) {
   Polynomial difference;
   for (int i = std::max(a.degree_, b.degree_); i >= 0; --i) difference.at(i) = a[i] - b[i];
@@ -196,25 +203,18 @@ int sign_at(const Polynomial& p, const Dyadic& t) {
 }
 
 UnitIntervalSigns signs_on_unit_interval(const Polynomial& p) {
-  // The Bernstein coefficients are b_j = sum_i C(j, i) / C(n, i) c_i. For n = 2 and 3 the inner
-  // coefficients are multiplied by n, so that they stay integers.
-  std::array<int, Polynomial::kMaxDegree + 1> sign{};
-  switch (p.degree()) {
-    case 3:
-      sign = {sgn(p[0]), sgn(3 * p[0] + p[1]), sgn(3 * p[0] + 2 * p[1] + p[2]),
-              sgn(p[0] + p[1] + p[2] + p[3])};
-      break;
-    case 2:
-      sign = {sgn(p[0]), sgn(2 * p[0] + p[1]), sgn(p[0] + p[1] + p[2]), 0};
-      break;
-    case 1:
-      sign = {sgn(p[0]), sgn(p[0] + p[1]), 0, 0};
-      break;
-    default:
-      sign = {sgn(p[0]), 0, 0, 0};
-  }
+  // The Bernstein coefficient of number j, times C(n, j), is the sum of C(n - i, j - i) c_i over i <= j.
+  const int n = p.degree();
   UnitIntervalSigns result{0, 0};
-  for (const int s : sign) {
+  mpz_class coefficient;
+  for (int j = 0; j <= n; ++j) {
+    coefficient = p[j];
+    unsigned long binomial = 1;
+    for (int i = j - 1; i >= 0; --i) {
+      binomial = binomial * static_cast<unsigned long>(n - i) / static_cast<unsigned long>(j - i);
+      mpz_addmul_ui(coefficient.get_mpz_t(), p[i].get_mpz_t(), binomial);
+    }
+    const int s = sgn(coefficient);
     if (s == 0) continue;
     if (result.sign != 0 && s != result.sign) ++result.variations;
     result.sign = s;

@@ -18,10 +18,11 @@ Dyadic midpoint(const Dyadic& a, const Dyadic& b);
 double double_below(const Dyadic& x);
 double double_above(const Dyadic& x);
 
-// An integer polynomial c[0] + c[1] t + c[2] t^2 + c[3] t^3. Degree 3 suffices for points in linear motion.
+// An integer polynomial c[0] + c[1] t + ... + c[6] t^6. For points in linear motion, degree 3 suffices for
+// contact and degree 6 for squared distances.
 class Polynomial {
  public:
-  static constexpr int kMaxDegree = 3;
+  static constexpr int kMaxDegree = 6;
 
   Polynomial() = default;  // zero
   explicit Polynomial(mpz_class constant);
@@ -33,6 +34,7 @@ class Polynomial {
   const mpz_class& operator[](int power) const { return c_[static_cast<std::size_t>(power)]; }
 
   friend bool operator==(const Polynomial& a, const Polynomial& b) { return a.c_ == b.c_; }
+  friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator-(const Polynomial& a, const Polynomial& b);
   // In a product the degrees may sum up to kMaxDegree.
   friend Polynomial operator*(const Polynomial& a, const Polynomial& b);

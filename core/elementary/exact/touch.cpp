@@ -90,19 +90,25 @@ void add_segment_events(std::vector<Polynomial>& events, const Point& p, const P
 }  // namespace
 
 FourPoints linear_points(const std::array<MovingPoint, 4>& points) {
-  std::array<double, 24> values;
+  return linear_points(points, 0).points;
+}
+
+PointsAndLength linear_points(const std::array<MovingPoint, 4>& points, double length) {
+  std::array<double, 25> values;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       values[6 * i + k] = points[i].start[static_cast<Eigen::Index>(k)];
       values[6 * i + 3 + k] = points[i].end[static_cast<Eigen::Index>(k)];
     }
-  const std::array<mpz_class, 24> integers = to_integers(values);
-  FourPoints result;
+  values[24] = length;
+  const std::array<mpz_class, 25> integers = to_integers(values);
+  PointsAndLength result;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const mpz_class &start = integers[6 * i + k], &end = integers[6 * i + 3 + k];
-      result[i][k] = Polynomial(start, end - start);
+      result.points[i][k] = Polynomial(start, end - start);
     }
+  result.length = integers[24];
   return result;
 }
 

@@ -18,6 +18,12 @@ using FourPoints = std::array<Point, 4>;
 
 // The coordinates of the points times one common power of two that makes all of them integers.
 FourPoints linear_points(const std::array<MovingPoint, 4>& points);
+// The same with a length that takes part in the scaling and comes back scaled.
+struct PointsAndLength {
+  FourPoints points;
+  mpz_class length;
+};
+PointsAndLength linear_points(const std::array<MovingPoint, 4>& points, double length);
 FourPoints constant_points(const std::array<Vec3, 4>& points);
 
 // The coplanarity polynomial, which is zero exactly when the four points lie in one plane. Its degree is at

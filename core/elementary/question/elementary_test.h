@@ -137,4 +137,15 @@ void one_by_one(std::span<const Query> queries, const TestParameters& parameters
       answers[i] = test(queries[i], parameters);
 }
 
+// The same for type AskAllClose.
+template <auto test, class Query>
+void close_one_by_one(std::span<const Query> queries, std::span<const double> distances,
+                      const TestParameters& parameters, std::span<Answer> answers) {
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    if constexpr (std::is_invocable_v<decltype(test), const Query&, double>)
+      answers[i] = test(queries[i], distances[i]);
+    else
+      answers[i] = test(queries[i], distances[i], parameters);
+}
+
 }  // namespace cscd

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/base/rounding.h"
 #include "core/geometry/feature_motion.h"
 
 // Relative axis-aligned bounding boxes (section 6 of the paper). Subtracting the mean velocity of all points
@@ -12,13 +13,17 @@
 // A strict comparison of the rounded numbers proves the sets apart (rule relative-motion, core/soundness.md),
 // for two reasons. The common translation may be any vector, so the rounding of the mean does not matter. And
 // each translated coordinate is one correctly rounded subtraction, and rounding is monotone, so fl(x) < fl(y)
-// implies x < y.
+// implies x < y. At a distance r > 0 the gap between the coordinates has to exceed r by more than the
+// roundings of both.
 namespace cscd {
 
-// True proves that the hulls of the moving points `a` and of the moving points `b` are apart at every t in
-// [0, 1].
+// True proves that the hulls of the moving points `a` and of the moving points `b` are farther than r apart
+// at every t in [0, 1].
 template <std::size_t N, std::size_t M>
-bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) {
+bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M], double r = 0) {
+  const auto below = [r](double x, double y) {
+    return r == 0 ? x < y : (y - x) - 4 * kUnitRoundoff * (std::abs(x) + std::abs(y)) > r;
+  };
   for (int axis = 0; axis < 3; ++axis) {
     double mean = 0;
     for (const MovingPoint& p : a) mean += p.end[axis] - p.start[axis];
@@ -37,18 +42,18 @@ bool relative_boxes_apart(const MovingPoint (&a)[N], const MovingPoint (&b)[M]) 
       low_b = std::min({low_b, start, end});
       high_b = std::max({high_b, start, end});
     }
-    if (high_a < low_b || high_b < low_a) return true;
+    if (below(high_a, low_b) || below(high_b, low_a)) return true;
   }
   return false;
 }
 
-// True proves that the two features never touch.
-inline bool relative_boxes_apart(const MovingVertexFace& query) {
+// True proves that the two features never touch, or for r > 0 that they are never close.
+inline bool relative_boxes_apart(const MovingVertexFace& query, double r = 0) {
   const MovingPoint vertex[1] = {query.vertex};
-  return relative_boxes_apart(vertex, query.corner);
+  return relative_boxes_apart(vertex, query.corner, r);
 }
-inline bool relative_boxes_apart(const MovingEdgeEdge& query) {
-  return relative_boxes_apart(query.first, query.second);
+inline bool relative_boxes_apart(const MovingEdgeEdge& query, double r = 0) {
+  return relative_boxes_apart(query.first, query.second, r);
 }
 
 }  // namespace cscd

@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <gtest/gtest.h>
 
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/question/test_queries.h"
 
@@ -55,6 +56,31 @@ TEST(RelativeBox, IsTightAtRest) {
   EXPECT_FALSE(relative_boxes_apart(touching, a));
   EXPECT_TRUE(relative_boxes_apart(a, beyond));
   EXPECT_TRUE(relative_boxes_apart(beyond, a));
+}
+
+// At a distance, boxes have to be farther apart than that by more than roundings. The referee finds close
+// what is exactly as far apart.
+TEST(RelativeBox, AtADistanceLeavesRoomForRoundings) {
+  const MovingEdgeEdge query{{test::still(0, 0, 0), test::still(1, 0, 0)},
+                             {test::still(3, 0, 0), test::still(4, 0, 0)}};
+  EXPECT_TRUE(exact::first_closeness(query, 2));
+  EXPECT_FALSE(relative_boxes_apart(query, 2));
+  EXPECT_TRUE(relative_boxes_apart(query, 2 - 1e-14));
+  QueryMaker make(58);
+  int apart = 0;
+  for (int i = 0; i < 3000; ++i) {
+    FourMovingPoints points = make.any();
+    const Vec3 common = 1e6 * make.vector();
+    for (MovingPoint& p : points) p.end += common;
+    const auto edges = query_of<MovingEdgeEdge>(points);
+    // A distance just below and just above the largest at which the boxes are apart.
+    double low = 0, high = 8;
+    for (int k = 0; k < 60; ++k)
+      (relative_boxes_apart(edges, low + (high - low) / 2) ? low : high) = low + (high - low) / 2;
+    apart += low > 0;
+    ASSERT_TRUE(low == 0 || !exact::first_closeness(edges, low)) << i;
+  }
+  EXPECT_GT(apart, 200);
 }
 
 TEST(RelativeBox, SeparatesNeighboursThatMoveTogether) {
