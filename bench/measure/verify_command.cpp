@@ -35,6 +35,8 @@ void add_verify(CLI::App& app) {
       ->add_option("--brute-every", options->plan.brute_every, "all pairs as the reference for every so many")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  command->add_flag("--thick", options->plan.thick,
+                    "every interval at a random thickness, by the strategies that know distances");
   command->add_option("--failures", options->folder, "folder for failing intervals")->capture_default_str();
   command->callback([options] {
     std::vector<StrategyRow> rows = rows_called(options->strategies);

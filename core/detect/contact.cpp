@@ -16,6 +16,13 @@ Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& m
   return test.edge_edge(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
 }
 
+Answer ask_close(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
+                 const FeaturePair& pair, double distance) {
+  if (pair.kind == FeaturePair::Kind::vertex_face)
+    return test.answer_close(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), distance);
+  return test.answer_close(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), distance);
+}
+
 void ContactSet::sort() {
   std::sort(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) {
     return std::tie(x.time, x.pair) < std::tie(y.time, y.pair);

@@ -31,6 +31,9 @@ struct FeaturePair {
 // Asks an elementary test about one feature pair of a moving mesh and returns its answer.
 Answer ask(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
            const FeaturePair& pair);
+// Asks when the pair first comes within a distance.
+Answer ask_close(const ElementaryTest& test, const TriangleMesh& mesh, const Motion& motion,
+                 const FeaturePair& pair, double distance);
 
 // A feature pair that touches, with the earliest time at which it does, or one whose test could not tell
 // (`undecided`).

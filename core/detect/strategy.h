@@ -115,6 +115,9 @@ struct Strategy {
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
   // edge can pierce a face.
   bool sees_start = false;
+  // Whether its detectors take steps with a thickness (Step::thickness). The guarantees are then about close
+  // pairs, and about clear starts instead of embedded ones.
+  bool knows_distance = false;
   // Whether its detectors, told that a start of a closed mesh is embedded, drop pairs by the orientation of
   // triangles alone (Step::starts_embedded), which takes less than half the time.
   bool looks_by_signs = false;

@@ -25,6 +25,7 @@ inline constexpr Strategy kDrvbcFast{
     .needs = Needs::closed_mesh,
     .kind = StrategyKind::adaptive,
     .make = [](const StrategyInput& setup) { return make_drvbc_fast(setup); },
+    .knows_distance = true,
 };
 inline constexpr Strategy kDrvbcFastComplete{
     .name = "drvbc_fast_complete",
@@ -37,6 +38,7 @@ inline constexpr Strategy kDrvbcFastComplete{
           return make_drvbc_fast(setup, {.name = "drvbc_fast_complete", .complete = true});
         },
     .sees_start = true,
+    .knows_distance = true,
     .looks_by_signs = true,
 };
 

@@ -1,13 +1,17 @@
 #include "bench/measure/replay/random_verification.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 
 #include "bench/measure/strategies/catalogue.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/geometry/feature_distance.h"
+#include "core/mesh/adjacency.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 
@@ -19,6 +23,11 @@ constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 template <class Query>
 Answer put_off(const Query&) {
   return {Verdict::undecided, 0};
+}
+template <class Query>
+void put_off_close(std::span<const Query>, std::span<const double>, const TestParameters&,
+                   std::span<Answer> answers) {
+  std::ranges::fill(answers, Answer{Verdict::undecided, 0});
 }
 
 // The elementary test while a strategy runs: every pair that gets past the certified filter is put off, so
@@ -33,7 +42,9 @@ constexpr ElementaryTest kPutOff{"put off",
                                  one_by_one<put_off<MovingEdgeEdge>>,
                                  {},
                                  "",
-                                 kSinglePrecisionFirst};
+                                 kSinglePrecisionFirst,
+                                 put_off_close<MovingVertexFace>,
+                                 put_off_close<MovingEdgeEdge>};
 
 scenes::RandomInterval made(std::uint64_t seed, bool torn) {
   return torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);
@@ -46,14 +57,63 @@ struct Subject {
   scenes::RandomInterval random;
   TriangleMesh mesh;
   std::optional<Rig> rig;
+  std::vector<double> of_vertex;          // of the thickness
+  Thickness thickness;                    // 0 where no interval has one
   std::map<FeaturePair, Answer> answers;  // the referee's
 
-  Subject(std::uint64_t seed_in, bool torn_in)
+  Subject(std::uint64_t seed_in, bool torn_in, bool thick)
       : seed(seed_in),
         torn(torn_in),
         random(made(seed, torn)),
         mesh(random.clip.header().triangles, random.clip.header().vertex_count, "random interval"),
-        rig(scenes::rig_of(random.clip)) {}
+        rig(scenes::rig_of(random.clip)) {
+    if (!thick) return;
+    std::mt19937_64 random_bits(seed);
+    const auto draw = [&] { return std::uniform_real_distribution<double>(0, 1)(random_bits); };
+    const double least = least_distance_at_start(), some = std::exp2(-8 * draw());
+    // Half of the starts are clear, for those who promise nothing of others.
+    const double all = draw() < 0.5 && least > 0 ? some * least : some * mean_edge();
+    if (draw() < 0.7) {
+      thickness = Thickness(all);
+      return;
+    }
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) of_vertex.push_back(all / 4 * draw());
+    thickness = Thickness(all / 2, of_vertex);
+  }
+  Subject(const Subject&) = delete;
+
+  double least_distance_at_start() const {
+    const Motion motion = random.clip.interval(0).motion;
+    double least = HUGE_VAL;
+    for_each_pair([&](const FeaturePair& pair) {
+      least = std::min(least, pair.kind == FeaturePair::Kind::vertex_face
+                                  ? distance_at(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), 0)
+                                  : distance_at(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), 0));
+    });
+    return least;
+  }
+  double mean_edge() const {
+    const std::span<const Vec3> start = random.clip.frame(0).positions;
+    double sum = 0;
+    for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+      const auto [p, q] = mesh.ends(EdgeId{static_cast<std::int32_t>(e)});
+      sum += (start[+p] - start[+q]).norm();
+    }
+    return sum / static_cast<double>(mesh.edge_count());
+  }
+  template <class Take>
+  void for_each_pair(const Take& take) const {
+    const auto vertices = static_cast<std::int32_t>(mesh.vertex_count()),
+               edges = static_cast<std::int32_t>(mesh.edge_count()),
+               triangles = static_cast<std::int32_t>(mesh.triangle_count());
+    for (std::int32_t v = 0; v < vertices; ++v)
+      for (std::int32_t t = 0; t < triangles; ++t)
+        if (!contains(mesh.corners(TriangleId{t}), VertexId{v})) take(FeaturePair::of(VertexId{v}, TriangleId{t}));
+    for (std::int32_t e = 0; e < edges; ++e)
+      for (std::int32_t f = e + 1; f < edges; ++f)
+        if (!share_vertex(mesh.ends(EdgeId{e}), mesh.ends(EdgeId{f})))
+          take(FeaturePair::of(EdgeId{e}, EdgeId{f}));
+  }
 
   StrategyInput setup(const ElementaryTest& test, bool first_only = false) const {
     return {mesh, random.clip.frame(0).positions, rig ? &*rig : nullptr, test, 1, first_only};
@@ -79,12 +139,14 @@ struct Subject {
         detector->detect(
             {k % 2 == 1 ? Motion(interval.motion.start(), interval.motion.start()) : interval.motion, bones},
             result.passed_on);
-    Step step{interval.motion, bones};
+    Step step{.motion = interval.motion, .bones = bones, .thickness = thickness};
     if (row.strategy->sees_start) step.crossings = &result.start, step.most_crossings = kAll;
     result.report = detector->detect(step, result.passed_on);
     for (const Contact& contact : result.passed_on.contacts) {
       const auto [entry, fresh] = answers.try_emplace(contact.pair);
-      if (fresh) entry->second = ask(referee, mesh, interval.motion, contact.pair);
+      if (fresh)
+        entry->second =
+            ask_close(referee, mesh, interval.motion, contact.pair, thickness.of(mesh, contact.pair));
       if (entry->second.verdict != Verdict::apart)
         result.found.contacts.push_back({contact.pair, entry->second.verdict, entry->second.time});
     }
@@ -136,14 +198,17 @@ Crossings judge_start_test(const Subject& subject, RandomSummary& summary) {
   return start;
 }
 
-void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows, RandomSummary& summary) {
+void judge(Subject&& subject, bool by_all_pairs, std::span<const StrategyRow> rows, RandomSummary& summary) {
   const ElementaryTest &exact = elementary_test_named("exact"), &inexact = elementary_tests().front();
   const Strategy& oracle = all_pairs();
   const StrategyRow judge{by_all_pairs ? &oracle : &complete_reference()};
   const Subject::Result judged = subject.run(judge, exact);
   const ContactSet& reference = judged.found;
   const std::span<const Vec3> start = subject.random.clip.frame(0).positions;
-  const bool embedded = EmbeddingTest(subject.mesh, start).embedded(start);
+  const bool thick = !subject.thickness.is_zero();
+  // With a thickness, whether the start is clear too.
+  const bool embedded = EmbeddingTest(subject.mesh, start).embedded(start) &&
+                        !(thick && !reference.contacts.empty() && reference.contacts.front().time == 0);
   const bool at_stake = embedded && !subject.torn && !reference.contacts.empty();
 
   ++summary.intervals;
@@ -159,6 +224,7 @@ void judge(Subject subject, bool by_all_pairs, std::span<const StrategyRow> rows
   for (const StrategyRow& asked : rows) {
     const Strategy& strategy = *asked.strategy;
     if (strategy.name == oracle.name && !by_all_pairs) continue;
+    if (thick && !strategy.knows_distance) continue;
     if (subject.torn && strategy.guarantee != Guarantee::complete) continue;  // promises nothing there
     const Subject::Result own = asked == judge ? Subject::Result{} : subject.run(asked, exact);
     const Subject::Result& result = asked == judge ? judged : own;
@@ -195,8 +261,8 @@ RandomSummary verify_random(const RandomVerification& plan, std::span<const Stra
   for (std::size_t i = 0; i < plan.intervals; ++i) {
     const std::uint64_t seed = plan.first_seed + i;
     const bool by_all_pairs = i % plan.brute_every == 0;
-    judge(Subject(seed, false), by_all_pairs, rows, summary);
-    if (i % plan.torn_every == 0) judge(Subject(seed, true), by_all_pairs, rows, summary);
+    judge(Subject(seed, false, plan.thick), by_all_pairs, rows, summary);
+    if (i % plan.torn_every == 0) judge(Subject(seed, true, plan.thick), by_all_pairs, rows, summary);
     if (progress) progress(i + 1);
   }
   return summary;

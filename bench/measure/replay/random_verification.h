@@ -19,6 +19,7 @@ struct RandomVerification {
   std::size_t brute_every =
       10;  // otherwise the complete reference stands in for all pairs, itself verified here
   std::size_t torn_every = 3;  // torn ones beside the whole ones, for what promises to be complete
+  bool thick = false;          // every interval at a random thickness, by the rows that know distances
 };
 
 struct RandomFailure {

@@ -41,6 +41,7 @@ constexpr std::array kStrategies = {
         .kind = StrategyKind::published,
         .make = make_base,
         .sees_start = true,
+        .knows_distance = true,
     },
     Strategy{
         .name = "brute",
@@ -51,6 +52,7 @@ constexpr std::array kStrategies = {
         .make = make_brute,
         .group = "oracle",
         .sees_start = true,
+        .knows_distance = true,
     },
     Strategy{
         .name = "aabb",
@@ -60,6 +62,7 @@ constexpr std::array kStrategies = {
         .kind = StrategyKind::published,
         .make = make_aabb,
         .sees_start = true,
+        .knows_distance = true,
     },
     Strategy{
         .name = "mcd",
@@ -126,6 +129,7 @@ constexpr std::array kStrategies = {
               return make_drvbc_fast(setup,
                                      {.name = "drvbc_fast_all", .complete = true, .starts_embedded = true});
             },
+        .knows_distance = true,
     },
 #ifdef CSCD_BASELINES_FCL
     Strategy{
