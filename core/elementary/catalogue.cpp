@@ -33,6 +33,12 @@ void all_of_filtered_exact(std::span<const Query> queries, const TestParameters&
   filtered_exact(queries, answers);
 }
 
+template <class Query>
+void all_of_filtered_exact_close(std::span<const Query> queries, std::span<const double> distances,
+                                 const TestParameters&, std::span<Answer> answers) {
+  filtered_exact_close(queries, distances, answers);
+}
+
 constexpr std::array kTests = {
     ElementaryTest{
         .name = "newton",
@@ -58,6 +64,8 @@ constexpr std::array kTests = {
         .ask_vertex_faces = all_of_filtered_exact,
         .ask_edge_edges = all_of_filtered_exact,
         .single_precision_first = true,
+        .close_vertex_faces = all_of_filtered_exact_close,
+        .close_edge_edges = all_of_filtered_exact_close,
     },
     ElementaryTest{
         .name = "exact",

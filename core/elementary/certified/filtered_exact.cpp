@@ -13,10 +13,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/elementary/certified/close_doubles.h"
 #include "core/elementary/certified/contact_time.h"
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/elementary/certified/exact_lanes.h"
 #include "core/elementary/certified/integer_contact.h"
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/relative_box.h"
@@ -167,6 +169,22 @@ class LaneStages {
   Waiting<Query> once_, several_, met_;
 };
 
+// At a distance there is no stage of integers of fixed capacity.
+template <class Query>
+Decision decide_close(const Query& query, double r) {
+  if (relative_boxes_apart(query, r)) return {kApart, ExactStage::filter};
+  const CloseResult found = close_in_doubles(query, r);
+  if (found.kind == CloseResult::apart) return {kApart, ExactStage::doubles};
+  if (found.kind == CloseResult::close) return {{Verdict::contact, found.time}, ExactStage::doubles};
+  const auto time = exact::first_closeness(query, r);
+  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::referee};
+}
+template <class Query>
+void decide_all_close(std::span<const Query> queries, std::span<const double> distances,
+                      std::span<Answer> answers) {
+  for (std::size_t i = 0; i < queries.size(); ++i) answers[i] = decide_close(queries[i], distances[i]).answer;
+}
+
 }  // namespace
 
 Answer filtered_exact_vertex_face(const MovingVertexFace& query) {
@@ -180,6 +198,20 @@ void filtered_exact(std::span<const MovingVertexFace> queries, std::span<Answer>
 }
 void filtered_exact(std::span<const MovingEdgeEdge> queries, std::span<Answer> answers) {
   LaneStages(queries, answers).decide(queries);
+}
+void filtered_exact_close(std::span<const MovingVertexFace> queries, std::span<const double> distances,
+                          std::span<Answer> answers) {
+  decide_all_close(queries, distances, answers);
+}
+void filtered_exact_close(std::span<const MovingEdgeEdge> queries, std::span<const double> distances,
+                          std::span<Answer> answers) {
+  decide_all_close(queries, distances, answers);
+}
+ExactStage filtered_exact_close_stage(const MovingVertexFace& query, double r) {
+  return decide_close(query, r).stage;
+}
+ExactStage filtered_exact_close_stage(const MovingEdgeEdge& query, double r) {
+  return decide_close(query, r).stage;
 }
 ExactStage filtered_exact_stage(const MovingVertexFace& query) {
   return decide(query).stage;

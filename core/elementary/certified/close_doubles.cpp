@@ -1,0 +1,221 @@
+// Two steps take turns from a time `low` on, up to which the features are certainly apart.
+//
+// Advance: the features stay farther than r apart at least as long as their gap along one fixed direction
+// exceeds r. The direction is that of their nearest points at `low`. The gap between two points along it is
+// linear in time, so the first time at which some two points leave no more than r is found without iteration.
+//
+// Close in: once that gains little, the case of nearest features at `low` is followed
+// (exact/closeness_cases.h). Where the nearest points certainly stay inside the same features from `low` to
+// `high` and the squared distance certainly falls there, the features become close exactly when the case's
+// polynomial falls to zero, if it does. Newton's method finds that time, and one value in pairs of doubles
+// makes the largest double not above it certain, as in contact_time.h.
+//
+// All numbers know how far they are off (approximate.h), and what they leave open is `unclear`.
+#include "core/elementary/certified/close_doubles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/elementary/certified/approximate.h"
+#include "core/elementary/exact/closeness_cases.h"
+#include "core/elementary/question/query_scale.h"
+#include "core/geometry/nearest_points.h"
+
+namespace cscd {
+namespace {
+
+using exact::CloseCase;
+using exact::PointOf;
+using Doubles = Approximate<double>;
+using Pairs = Approximate<Pair>;
+using Moving = WithSlope<Doubles>;
+
+template <class Query>
+struct Kind;
+template <>
+struct Kind<MovingVertexFace> {
+  static constexpr std::size_t split = 1;  // so many of the points belong to the first feature
+  static std::array<MovingPoint, 4> points(const MovingVertexFace& q) {
+    return {q.vertex, q.corner[0], q.corner[1], q.corner[2]};
+  }
+  static Nearest nearest(const std::array<Vec3, 4>& points) { return nearest_of_vertex_face(points); }
+  template <class Number>
+  static CloseCase<Number> close_case(int number, const std::array<PointOf<Number>, 4>& points,
+                                      const Number& rr) {
+    return exact::vertex_face_case(number, points, rr);
+  }
+};
+template <>
+struct Kind<MovingEdgeEdge> {
+  static constexpr std::size_t split = 2;
+  static std::array<MovingPoint, 4> points(const MovingEdgeEdge& q) {
+    return {q.first[0], q.first[1], q.second[0], q.second[1]};
+  }
+  static Nearest nearest(const std::array<Vec3, 4>& points) { return nearest_of_edges(points); }
+  template <class Number>
+  static CloseCase<Number> close_case(int number, const std::array<PointOf<Number>, 4>& points,
+                                      const Number& rr) {
+    return exact::edge_edge_case(number, points, rr);
+  }
+};
+
+template <class Query>
+class Closeness {
+ public:
+  Closeness(const Query& query, double r) : points_(Kind<Query>::points(query)), r_(r) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      start_[i] = points_[i].start - points_[3].start;
+      end_[i] = points_[i].end - points_[3].end;
+      largest_ = std::max({largest_, start_[i].cwiseAbs().maxCoeff(), end_[i].cwiseAbs().maxCoeff()});
+    }
+  }
+
+  CloseResult decide() {
+    double low = 0, tried = 0x1p-3;
+    for (int step = 0; step < kMostSteps; ++step) {
+      const std::array<Vec3, 4> now = at(low);
+      const Nearest nearest = Kind<Query>::nearest(now);
+      if (low == 0) {
+        const DistanceBounds distance = distance_bounds(now, Kind<Query>::split, nearest.way);
+        if (distance.high <= r_) return {CloseResult::close, 0};
+        // In this range no product underflows or overflows so far that it matters.
+        const bool in_range = largest_ > 0x1p-64 && largest_ < 0x1p64 && r_ > 0x1p-128 && r_ < 0x1p64;
+        if (distance.low <= r_ || !in_range) return {CloseResult::unclear};
+      }
+      const double gain = advance(now, nearest.way) * (1 - low);
+      if (low + gain >= 1) return {CloseResult::apart};
+      if (gain < tried) {
+        const CloseResult closed_in = close_in(low, nearest);
+        if (closed_in.kind != CloseResult::unclear || gain < 0x1p-40) return closed_in;
+        tried = gain / 4;
+      }
+      low += gain;
+    }
+    return {CloseResult::unclear};
+  }
+
+ private:
+  static constexpr int kMostSteps = 40;
+
+  std::array<Vec3, 4> at(double t) const {
+    std::array<Vec3, 4> now;
+    for (std::size_t i = 0; i < 4; ++i) now[i] = (1 - t) * start_[i] + t * end_[i];
+    return now;
+  }
+
+  // The share of the rest of the interval in which the features are certainly farther than r apart, at least
+  // 1 if they are in all of it. A projection is off by less than 32 u M times the length of `way`, where M is
+  // the largest coordinate: 4 u M from the point at this time and from the seen corner, and 4 u M from the
+  // product. Twice that is the error of a gap, and the share, whose quotient is rounded, moves a gap by 16 u
+  // M more.
+  double advance(const std::array<Vec3, 4>& now, const Vec3& way) const {
+    const double length = way.norm();
+    const double least = length * (r_ + 512 * kUnitRoundoff * (largest_ + r_));
+    double from[4], to[4];
+    for (std::size_t i = 0; i < 4; ++i) from[i] = now[i].dot(way), to[i] = end_[i].dot(way);
+    double share = 1;
+    for (std::size_t i = 0; i < Kind<Query>::split; ++i)
+      for (std::size_t j = Kind<Query>::split; j < 4; ++j) {
+        const double gap = from[i] - from[j], last = to[i] - to[j];
+        if (last > least && gap > least) continue;
+        share = gap > least ? std::min(share, (gap - least) / (gap - last)) : 0;
+      }
+    return share >= 0 ? share : 0;
+  }
+
+  // The case at the times within `error` of t.
+  CloseCase<Moving> case_at(int number, double t, double error) const {
+    const Doubles time{t, error};
+    std::array<PointOf<Moving>, 4> points;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double from = start_[i][k], to = end_[i][k];
+        const Doubles start{from, kUnitRoundoff * std::abs(from)}, end{to, kUnitRoundoff * std::abs(to)};
+        const Doubles change = end - start;
+        points[i][static_cast<std::size_t>(k)] = {start + change * time, change};
+      }
+    const Doubles r{r_, 0};
+    return Kind<Query>::close_case(number, points, Moving{r * r, {}});
+  }
+  // The polynomial of the case at time t.
+  Pairs beyond_at(int number, double t) const {
+    std::array<PointOf<Pairs>, 4> points;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Pairs start{exact_sum(points_[i].start[k], -points_[3].start[k]), 0},
+            end{exact_sum(points_[i].end[k], -points_[3].end[k]), 0};
+        points[i][static_cast<std::size_t>(k)] = start + (end - start) * Pairs{{t, 0}, 0};
+      }
+    const Pairs r{{r_, 0}, 0};
+    return Kind<Query>::close_case(number, points, r * r).beyond;
+  }
+
+  // True if the nearest points are certainly those of the case, and the distance certainly falls.
+  static bool falls(const CloseCase<Moving>& which) {
+    if (which.beyond.slope.sign() >= 0 || (which.insides > 0 && which.whole.value.sign() <= 0)) return false;
+    for (std::size_t i = 0; i < which.insides; ++i)
+      if (which.inside[i].value.sign() <= 0) return false;
+    for (std::size_t i = 0; i < which.elsewheres; ++i)
+      if (which.elsewhere[i].value.sign() >= 0) return false;
+    return true;
+  }
+
+  CloseResult close_in(double low, const Nearest& nearest) const {
+    const CloseCase<Moving> here = case_at(nearest.number, low, 0);
+    if (!falls(here)) return {CloseResult::unclear};
+    // The distance itself, and not its square, is nearly linear in time.
+    const double distance = nearest.way.norm();
+    const double guess = -here.beyond.value.value / here.beyond.slope.value * 2 * distance / (distance + r_);
+    const double high = std::min(1.0, low + 1.5 * std::max(guess, 0x1p-45));
+    const double middle = low + 0.5 * (high - low);
+    if (!falls(case_at(nearest.number, middle, 0.5 * (high - low) + 0x1p-52))) return {CloseResult::unclear};
+
+    constexpr double kNear = 0x1p-40;
+    double t = std::min(low + guess, high);
+    for (int i = 0; i < 6; ++i) {
+      const Moving beyond = case_at(nearest.number, t, kNear).beyond;
+      if (beyond.slope.sign() >= 0) return {CloseResult::unclear};
+      const double step = -beyond.value.value / beyond.slope.value;
+      if (std::abs(step) < 0x1p-44) return time_near(nearest.number, t, beyond.slope, low, high);
+      t = std::clamp(t + step, low, high);
+      if (t == high && high == 1 && case_at(nearest.number, 1, 0).beyond.value.sign() > 0)
+        return {CloseResult::apart};
+    }
+    return {CloseResult::unclear};
+  }
+
+  // The time at which the polynomial falls to zero, from its value at t and its slope nearby.
+  CloseResult time_near(int number, double t, const Doubles& slope, double low, double high) const {
+    const Pairs value = beyond_at(number, t);
+    const double least_slope = std::abs(slope.value) - slope.error;
+    const double step = -value.value.high / slope.value;
+    // The step leaves out the low part of the value, and its quotient is rounded.
+    const double error =
+        1.01 * ((std::abs(step) * slope.error + std::abs(value.value.low) + value.error) / least_slope +
+                2 * kUnitRoundoff * std::abs(step));
+    const Pair root = exact_sum(t, step);
+    if (!(std::abs(step) + error < 0x1p-42 && root.high > low && std::abs(root.low) > error))
+      return {CloseResult::unclear};
+    const double time = root.low < 0 ? next_below_positive(root.high) : root.high;
+    if (!(error < 0x1p-4 * (root.high - next_below_positive(root.high)))) return {CloseResult::unclear};
+    if (time >= 1 && high == 1) return {CloseResult::apart};
+    return time >= low && time < high ? CloseResult{CloseResult::close, time}
+                                      : CloseResult{CloseResult::unclear};
+  }
+
+  const std::array<MovingPoint, 4> points_;
+  const double r_;
+  std::array<Vec3, 4> start_, end_;  // seen from the last point
+  double largest_ = 0;
+};
+
+}  // namespace
+
+CloseResult close_in_doubles(const MovingVertexFace& query, double r) {
+  return Closeness<MovingVertexFace>(query, r).decide();
+}
+CloseResult close_in_doubles(const MovingEdgeEdge& query, double r) {
+  return Closeness<MovingEdgeEdge>(query, r).decide();
+}
+
+}  // namespace cscd
