@@ -204,13 +204,17 @@ class PairTester : public TrianglePairSink {
     for (const CarriedPairs& carried : carried_)
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(carried.places));
     left_.clear();
-    if (plain_sign_ || !thickness_.is_zero()) {
+    if (!thickness_.is_zero()) {
+      for (CarriedPairs carried : carried_) {
+        const TrianglePair& pair = carried.pair;
+        carried.places = not_farther_than(thickness_.largest(), *motion_, mesh_.corners(pair.a),
+                                          mesh_.corners(pair.b), carried.places);
+        for_each_carried(mesh_, carried, [&](const FeaturePair& left) { left_.push_back(left); });
+      }
+    } else if (plain_sign_) {
       for (const CarriedPairs& carried : carried_)
         for_each_carried(mesh_, carried, [&](const FeaturePair& pair) { left_.push_back(pair); });
-      if (thickness_.is_zero())
-        drop_by_plain_sign(mesh_, *motion_, left_);
-      else
-        drop_farther_than(thickness_, mesh_, *motion_, left_);
+      drop_by_plain_sign(mesh_, *motion_, left_);
     } else {
       filter_carried();
     }

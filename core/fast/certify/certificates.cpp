@@ -108,7 +108,7 @@ void Certificates::finish(const Team& team) {
   else
     certify_all_round();
   if (thickness_ > 0 && keeps_all_) keep_clear_stars();
-  if (thickness_ > 0 && !keeps_all_) rings_.spread(TallRings::kRings);
+  if (thickness_ > 0 && !keeps_all_) rings_.find_unsettled();
   if (!positions_->known()) forget();
   label_nodes(team);
 }
@@ -173,11 +173,11 @@ void Certificates::keep_clear_stars() {
   for (std::size_t p = 0; p < cell_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c)
       rings_.spoil(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
-  rings_.spread(1);
+  rings_.find_stars();
   for (std::size_t p = 0; p < cell_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c) {
       if (cell_[p].cluster[c] == kNone) continue;
-      const Mask16 kept = certified_[p][c].positive & rings_.left(p, c);
+      const Mask16 kept = certified_[p][c].positive & rings_.stars(p, c);
       if (kept == certified_[p][c].positive) continue;
       certified_[p][c].positive = kept;
       if (state_[p] != State::seen) state_[p] = State::spoiled;

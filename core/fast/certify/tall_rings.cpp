@@ -7,9 +7,11 @@
 namespace cscd::fast {
 
 void TallRings::start(std::size_t covers) {
+  if (known_ && covers == covers_) return;
   covers_ = covers;
-  if (!known_) find_inner();
+  find_inner();
   known_ = true;
+  pairs_known_ = false;
 }
 
 // The rings that lie inside clusters, whatever an interval says. A vertex at an edge that has not two
@@ -31,10 +33,10 @@ void TallRings::find_inner() {
         any_open |= open[static_cast<std::size_t>(patch.vertex[corner[lane]])] != 0;
       if (!any_open) closed |= static_cast<Mask16>(1U << lane);
     });
-    for (std::size_t c = 0; c < kCovers; ++c) all[p][c] = patch.cluster[c] == kNone ? Mask16{0} : closed;
+    for (std::size_t c = 0; c < covers_; ++c) all[p][c] = patch.cluster[c] == kNone ? Mask16{0} : closed;
   }
   shrink(all, inner_[0]);
-  for (std::size_t ring = 1; ring < kRings; ++ring) shrink(inner_[ring - 1], inner_[ring]);
+  shrink(inner_[0], inner_[1]);
   spoiled_.assign(all.size(), {});
   fresh_.assign(all.size(), {});
   next_.assign(all.size(), {});
@@ -50,96 +52,126 @@ void TallRings::shrink(const Masks& from, Masks& to) const {
     tree_.for_each_adjacent(p, [&](std::size_t q, const SharedVertices& common) {
       if (q == p) own = &common;
       const Patch& other = tree_.patches[q];
-      for (std::size_t c = 0; c < kCovers; ++c) {
+      for (std::size_t c = 0; c < covers_; ++c) {
         const unsigned kept = other.cluster[c] == patch.cluster[c] ? from[q][c] : 0U;
         bad[c] |= common.places(static_cast<Mask16>(other.lanes & ~kept));
       }
     });
-    for (std::size_t c = 0; c < kCovers; ++c)
+    for (std::size_t c = 0; c < covers_; ++c)
       to[p][c] = static_cast<Mask16>(from[p][c] & ~static_cast<unsigned>(own->lanes(bad[c])));
   }
 }
 
-void TallRings::spread(std::size_t rings) {
-  rings_ = rings;
+// What lies outside of clusters does not spread: the rings of those beside it end there anyway.
+void TallRings::begin_spread() {
+  for (const std::int32_t p : front_) fresh_[static_cast<std::size_t>(p)] = {};
   front_.clear();
   for (std::size_t p = 0; p < spoiled_.size(); ++p) {
+    const Patch& patch = tree_.patches[p];
     unsigned any = 0;
-    for (std::size_t c = 0; c < kCovers; ++c) {
-      if (c >= covers_ || tree_.patches[p].cluster[c] == kNone) spoiled_[p][c] = tree_.patches[p].lanes;
-      // What lies outside of clusters does not spread: the rings of those beside it end there anyway.
-      fresh_[p][c] = c < covers_ && tree_.patches[p].cluster[c] != kNone ? spoiled_[p][c] : Mask16{0};
-      any |= fresh_[p][c];
+    for (std::size_t c = 0; c < covers_; ++c) {
+      if (patch.cluster[c] == kNone) continue;
+      fresh_[p][c] = spoiled_[p][c];
+      any |= spoiled_[p][c];
     }
     if (any != 0) front_.push_back(static_cast<std::int32_t>(p));
   }
-  for (std::size_t ring = 0; ring < rings; ++ring) {
-    next_front_.clear();
-    for (const std::int32_t at : front_) {
-      const auto p = static_cast<std::size_t>(at);
-      const Patch& patch = tree_.patches[p];
-      std::array<Mask16, kCovers> corners{};
-      for (std::size_t c = 0; c < covers_; ++c) corners[c] = patch.corners_of(fresh_[p][c]);
-      fresh_[p] = {};
-      tree_.for_each_adjacent(p, [&](std::size_t q, const SharedVertices& common) {
-        unsigned before = 0, any = 0;
-        for (std::size_t c = 0; c < covers_; ++c) {
-          const auto more = static_cast<Mask16>(common.lanes(corners[c]) &
-                                                ~static_cast<unsigned>(spoiled_[q][c] | next_[q][c]));
-          before |= next_[q][c];
-          next_[q][c] |= more;
-          any |= more;
-        }
-        if (before == 0 && any != 0) next_front_.push_back(static_cast<std::int32_t>(q));
-      });
-    }
-    for (const std::int32_t at : next_front_) {
-      const auto q = static_cast<std::size_t>(at);
-      for (std::size_t c = 0; c < covers_; ++c) spoiled_[q][c] |= next_[q][c];
-      fresh_[q] = next_[q];
-      next_[q] = {};
-    }
-    front_.swap(next_front_);
+  spread_over_ = front_;
+}
+
+void TallRings::spread_ring() {
+  next_front_.clear();
+  for (const std::int32_t at : front_) {
+    const auto p = static_cast<std::size_t>(at);
+    std::array<Mask16, kCovers> corners{};
+    for (std::size_t c = 0; c < covers_; ++c) corners[c] = tree_.patches[p].corners_of(fresh_[p][c]);
+    fresh_[p] = {};
+    tree_.for_each_adjacent(p, [&](std::size_t q, const SharedVertices& common) {
+      unsigned before = 0, any = 0;
+      for (std::size_t c = 0; c < covers_; ++c) {
+        const auto more = static_cast<Mask16>(common.lanes(corners[c]) &
+                                              ~static_cast<unsigned>(spoiled_[q][c] | next_[q][c]));
+        before |= next_[q][c];
+        next_[q][c] |= more;
+        any |= more;
+      }
+      if (before == 0 && any != 0) next_front_.push_back(static_cast<std::int32_t>(q));
+    });
   }
-  for (const std::int32_t at : front_) fresh_[static_cast<std::size_t>(at)] = {};
-  if (rings == kRings) find_unsettled();
+  for (const std::int32_t at : next_front_) {
+    const auto q = static_cast<std::size_t>(at);
+    for (std::size_t c = 0; c < covers_; ++c) spoiled_[q][c] |= next_[q][c];
+    fresh_[q] = next_[q];
+    next_[q] = {};
+  }
+  front_.swap(next_front_);
+  spread_over_.insert(spread_over_.end(), front_.begin(), front_.end());
+}
+
+void TallRings::find_stars() {
+  begin_spread();
+  spread_ring();
 }
 
 void TallRings::find_unsettled() {
+  if (!pairs_known_) find_never_settled();
+  pairs_known_ = true;
+  for (const TriangleId t : touched_) rings_of_[+t] = inner_rings_[+t];
+  touched_.clear();
+  begin_spread();
+  spread_ring();
+  clear_rings(0);
+  spread_ring();
+  clear_rings(kSecondRing);
+}
+
+// Takes one of the two rings from all triangles that the spread has reached.
+void TallRings::clear_rings(unsigned ring) {
+  for (const std::int32_t at : spread_over_) {
+    const auto p = static_cast<std::size_t>(at);
+    for (std::size_t c = 0; c < covers_; ++c)
+      for_each_lane(spoiled_[p][c], [&](std::size_t lane) {
+        const TriangleId t = tree_.triangles[p][lane];
+        const auto less = static_cast<RingBits>(rings_of_[+t] & ~(1U << (ring + c)));
+        if (rings_of_[+t] == inner_rings_[+t] && less != rings_of_[+t]) touched_.push_back(t);
+        rings_of_[+t] = less;
+      });
+  }
+}
+
+void TallRings::find_never_settled() {
   if (near_offset_.empty()) find_near();
-  for (const TriangleId t : unsettled_) is_unsettled_[+t] = 0;
-  unsettled_.clear();
-  for (std::size_t p = 0; p < spoiled_.size(); ++p) {
-    unsigned settled = 0;
-    for (std::size_t c = 0; c < covers_; ++c) settled |= left(p, c);
-    for_each_lane(tree_.patches[p].lanes & ~settled, [&](std::size_t lane) {
-      const TriangleId t = tree_.triangles[p][lane];
-      is_unsettled_[+t] = 1;
-      unsettled_.push_back(t);
-    });
+  inner_rings_.assign(mesh_.triangle_count(), 0);
+  for (std::size_t p = 0; p < tree_.patches.size(); ++p)
+    for (std::size_t c = 0; c < covers_; ++c)
+      for (std::size_t ring = 0; ring < 2; ++ring)
+        for_each_lane(inner_[ring][p][c], [&](std::size_t lane) {
+          inner_rings_[+tree_.triangles[p][lane]] |= static_cast<RingBits>(1U << (ring * kSecondRing + c));
+        });
+  rings_of_ = inner_rings_;
+  touched_.clear();
+  never_settled_.clear();
+  for (std::size_t t = 0; t < inner_rings_.size(); ++t) {
+    const TriangleId a{static_cast<std::int32_t>(t)};
+    for (const TriangleId b : near(a))
+      if (t < +b && !settled(inner_rings_[t], inner_rings_[+b])) never_settled_.emplace_back(a, b);
   }
 }
 
 void TallRings::find_near() {
   const std::size_t count = mesh_.triangle_count();
   near_offset_.assign(1, 0);
-  near_.clear();
-  is_unsettled_.assign(count, 0);
   std::vector<std::int32_t> seen(count, -1);
   for (std::size_t t = 0; t < count; ++t) {
-    const TriangleId a{static_cast<std::int32_t>(t)};
-    const auto first = static_cast<std::ptrdiff_t>(near_.size());
-    seen[t] = static_cast<std::int32_t>(t);
-    for_each_neighbour(mesh_, a, [&](TriangleId beside) {
-      const auto take = [&](TriangleId b) {
-        if (seen[+b] == static_cast<std::int32_t>(t)) return;
-        seen[+b] = static_cast<std::int32_t>(t);
-        if (+b > t) near_.push_back(b);
-      };
-      take(beside);
-      for_each_neighbour(mesh_, beside, take);
-    });
-    std::ranges::sort(near_.begin() + first, near_.end());
+    const auto stamp = static_cast<std::int32_t>(t);
+    seen[t] = stamp;
+    const auto take = [&](TriangleId b) {
+      if (seen[+b] != stamp) near_.push_back(b);
+      seen[+b] = stamp;
+    };
+    const std::size_t first = near_.size();
+    for_each_neighbour(mesh_, TriangleId{stamp}, take);
+    for (std::size_t i = first, end = near_.size(); i < end; ++i) for_each_neighbour(mesh_, near_[i], take);
     near_offset_.push_back(static_cast<std::int32_t>(near_.size()));
   }
 }

@@ -10,47 +10,47 @@
 
 namespace cscd::fast {
 
-// Which triangles have nothing but tall triangles of one cluster (classify/patch_lanes.h) round them, within
-// one ring or three. The first ring of a triangle is all triangles that share a vertex with it, and each
-// further ring all that share a vertex with the ring before.
+// Which triangles have nothing but tall triangles of one cluster (classify/patch_lanes.h) round them. The first
+// ring of a triangle is all triangles that share a vertex with it, and the second ring all that share a vertex
+// with the first.
 //
-// Two features are *near on the surface* if some triangle has a vertex of both. If all pairs start farther
-// apart than the thickness, and the three rings of a triangle are tall, no feature near one of its features is
-// the first to come within the thickness ("Theorem: tall rings", core/soundness.md). Such a triangle is
-// *settled*. Two triangles that carry features near on the surface lie in each other's second ring.
+// Two features are *near on the surface* if some triangle has a vertex of both. Then any two triangles that
+// carry them lie in each other's second ring. If all pairs start farther apart than the thickness, and one
+// cover has tall triangles alone in two rings round one of the two triangles and in one ring round the other,
+// the two features are not the first to come within the thickness ("Theorem: tall rings",
+// core/soundness.md). Such a pair of triangles is *settled*.
 class TallRings {
  public:
-  static constexpr std::size_t kRings = 3;
-
   // Both must outlive the object.
   TallRings(const TriangleMesh& mesh, const PatchTree& tree) : mesh_(mesh), tree_(tree) {}
 
   // An interval is one call of `start`, one call of `take` for every patch and cover, from any thread, and one
-  // call of `spread`. `covers` are those in use.
+  // call of find_stars() or of find_unsettled(). The first `covers` are in use.
   void start(std::size_t covers);
+  // Takes the tall triangles of a patch, none where it is in no cluster.
   void take(std::size_t patch, std::size_t cover, Mask16 tall) {
-    const Mask16 lanes = tree_.patches[patch].lanes;
-    spoiled_[patch][cover] = static_cast<Mask16>(lanes & ~static_cast<unsigned>(tall));
+    spoiled_[patch][cover] = static_cast<Mask16>(tree_.patches[patch].lanes & ~static_cast<unsigned>(tall));
   }
-  // Takes out a triangle that is clear of others no longer, before `spread`.
+
+  // Takes out triangles that are not clear of others (contour/capped_clusters.h), before find_stars().
   void spoil(std::size_t patch, std::size_t cover, Mask16 triangles) {
     spoiled_[patch][cover] |= triangles;
   }
-  void spread(std::size_t rings);
-
-  // The triangles of a patch that have tall triangles of their cluster in all rings that `spread` was asked
-  // for.
-  Mask16 left(std::size_t patch, std::size_t cover) const {
-    return static_cast<Mask16>(inner_[rings_ - 1][patch][cover] &
-                               ~static_cast<unsigned>(spoiled_[patch][cover]));
+  void find_stars();
+  // The triangles of a patch whose first ring is tall and clear.
+  Mask16 stars(std::size_t patch, std::size_t cover) const {
+    return static_cast<Mask16>(inner_[0][patch][cover] & ~static_cast<unsigned>(spoiled_[patch][cover]));
   }
-  // Calls take(a, b) for all pairs of triangles within two rings of each other that are not settled, in a fixed
-  // order.
+
+  void find_unsettled();
+  // Calls take(a, b) for all pairs of triangles in each other's second ring that are not settled, in an order
+  // that depends on the interval alone. Some may come twice.
   template <class Take>
   void for_each_unsettled_pair(const Take& take) const {
-    for (const TriangleId a : unsettled_)
+    for (const auto& [a, b] : never_settled_) take(a, b);
+    for (const TriangleId a : touched_)
       for (const TriangleId b : near(a))
-        if (is_unsettled_[+b]) take(a, b);
+        if (!(b < a && is_touched(b)) && !settled(rings_of_[+a], rings_of_[+b])) take(a, b);
   }
 
   // Clusters of the first cover have changed.
@@ -58,11 +58,23 @@ class TallRings {
 
  private:
   using Masks = std::vector<std::array<Mask16, kCovers>>;  // [patches][covers]
+  // The covers in which one ring is tall, a bit each, and above them those in which two are.
+  using RingBits = std::uint8_t;
+  static constexpr unsigned kSecondRing = 4;
+  static_assert(kCovers <= kSecondRing);
+  static bool settled(RingBits a, RingBits b) {
+    return ((a >> kSecondRing & b) | (a & b >> kSecondRing)) != 0;
+  }
+
+  bool is_touched(TriangleId t) const { return rings_of_[+t] != inner_rings_[+t]; }
+
   void find_inner();
   void shrink(const Masks& from, Masks& to) const;
+  void begin_spread();
+  void spread_ring();
   void find_near();
-  void find_unsettled();
-  // The triangles within two rings that have a larger number.
+  void find_never_settled();
+  void clear_rings(unsigned ring);
   std::span<const TriangleId> near(TriangleId a) const {
     const auto first = static_cast<std::size_t>(near_offset_[+a]);
     return std::span(near_).subspan(first, static_cast<std::size_t>(near_offset_[+a + 1]) - first);
@@ -70,16 +82,21 @@ class TallRings {
 
   const TriangleMesh& mesh_;
   const PatchTree& tree_;
-  std::size_t covers_ = 0, rings_ = 1;
-  bool known_ = false;                  // whether inner_ is that of the clusters
-  std::array<Masks, kRings> inner_;     // triangles with so many rings inside their cluster
-  Masks spoiled_;                       // triangles that are not tall, or have such in a ring
-  Masks fresh_, next_;                  // those of the last ring, and of the next one
+  std::size_t covers_ = 0;
+  bool known_ = false;          // whether what follows is that of the clusters
+  std::array<Masks, 2> inner_;  // triangles with one ring, and with two, inside their cluster
+  std::vector<std::pair<TriangleId, TriangleId>> never_settled_;  // by their clusters
+  bool pairs_known_ = false;                                      // whether these are found
+  std::vector<RingBits> inner_rings_;                             // [triangles]: what inner_ says of each
+
+  Masks spoiled_;  // triangles that are not tall, or have such in a ring
+  Masks fresh_, next_;                            // those of the last ring, and of the next one
   std::vector<std::int32_t> front_, next_front_;  // the patches of these
+  std::vector<std::int32_t> spread_over_;         // all patches so far
+  std::vector<RingBits> rings_of_;                // [triangles]
+  std::vector<TriangleId> touched_;               // triangles of which the interval says less than the clusters
   std::vector<std::int32_t> near_offset_;         // [triangles + 1]
-  std::vector<TriangleId> near_;
-  std::vector<std::uint8_t> is_unsettled_;  // [triangles]
-  std::vector<TriangleId> unsettled_;
+  std::vector<TriangleId> near_;                  // the triangles in the first two rings of each
 };
 
 }  // namespace cscd::fast

@@ -126,46 +126,45 @@ Float16 length_bound(Float16 squared, float error) {
 
 }  // namespace
 
-// Lengths. Let L be the longest edge of a triangle and R its farthest corner from the viewpoint q, both at any
+// Lengths. Let L be the longest edge of a triangle and R its farthest point from the viewpoint q, both at any
 // t. The normal n is at most L^2 long, so det = n . (p - q) > margin L^2 puts the plane farther than `margin`
 // from q. The heights of "clear stars keep their distance" are det over |v x w|, |(v - u) x w| or |n|, all at
 // most L max(L, R), because |v x w| is |w - v| times a distance from q. So det > height L max(L, R) makes a
-// triangle tall. A cubic exceeds what its Bernstein coefficients exceed.
+// triangle tall. A cubic exceeds what its Bernstein coefficients exceed. R is at most the distance of one
+// corner plus L.
 void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
                               const Viewpoint* const (&from)[kCovers], float error, float margin,
                               float height, DistantSigns& out) {
-  PatchLanes corner[3];
-  for (std::size_t k = 0; k < 3; ++k) corner_of(lanes, patch.corner[k], corner[k]);
-  PatchNormals normals;
-  PatchLanes first;
-  make_normals(lanes, patch, normals, first);
-  const Rounding16 rounding = rounding_of(normals.longest[0], normals.longest[1], error);
-  Float16 squared = {};
-  for (std::size_t k = 0; k < 3; ++k) squared = longer(squared, corner[(k + 1) % 3] - corner[k]);
-  const Float16 longest = length_bound(squared, error);
+  PatchLanes corner, a, b;
+  corner_of(lanes, patch.corner[0], corner);
+  corner_of(lanes, patch.corner[1], a);
+  corner_of(lanes, patch.corner[2], b);
+  subtract(a, corner);
+  subtract(b, corner);
+  Float16 control[3][3];
+  cross(a, b, control);
+  const Rounding16 rounding = rounding_of(largest_component(a), largest_component(b), error);
+  const Float16 longest = length_bound(longer(longer(longer(Float16{}, a), b), b - a), error);
   for (std::size_t c = 0; c < kCovers; ++c) {
     out.signs[c] = {};
     out.tall[c] = 0;
     if (!from[c]) continue;
-    Float16 far = {};
-    PatchLanes seen = first;
-    for (std::size_t k = 0; k < 3; ++k) {
-      PatchLanes one = corner[k];
-      for (int end = 0; end < 2; ++end)
-        for (int i = 0; i < 3; ++i) one.at[end][i] -= all_lanes(from[c]->at[end][i]);
-      far = longer(far, one);
-      if (k == 0) seen = one;
-    }
-    TripleProducts16 products = triple_products(normals.control, seen, rounding, error);
+    PatchLanes seen;
+    for (int end = 0; end < 2; ++end)
+      for (int i = 0; i < 3; ++i) seen.at[end][i] = corner.at[end][i] - all_lanes(from[c]->at[end][i]);
+    TripleProducts16 products = triple_products(control, seen, rounding, error);
     const Float16 bound = products.bound;
     const auto exceeding = [&](Float16 least) {
       products.bound = bound + 1.0001F * least;
       products.bound3 = 3 * products.bound;
     };
+    const Float16 farthest = length_bound(longer(Float16{}, seen), error) + longest;
+    exceeding(all_lanes(height) * longest * farthest);
+    out.tall[c] = products.positive();
+    out.signs[c].positive = out.tall[c];
+    if ((patch.lanes & ~static_cast<unsigned>(out.tall[c])) == 0) continue;
     exceeding(all_lanes(margin) * longest * longest);
     out.signs[c] = {products.positive(), products.negative()};
-    exceeding(all_lanes(height) * longest * larger(longest, length_bound(far, error)));
-    out.tall[c] = products.positive();
   }
 }
 
