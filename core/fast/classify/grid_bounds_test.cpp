@@ -150,5 +150,45 @@ TEST(NodeBounds, TheSmallestPairsOfRowsAreThoseOfALoop) {
   }
 }
 
+// With a margin, what is apart is so by more than twice the margin, along one direction at both ends. Margins
+// may be larger than the surface.
+// Mutations: no margin; one side alone; diagonals with the margin of axes.
+TEST(GridBounds, WithAMarginApartMeansFartherThanTwiceTheMargin) {
+  const test::Patches scene(0.1, 2, {0, 0, 0}, 1, 5);
+  const double directions[kDirections][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
+                                             {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
+  const auto gap = [&](const Patch& a, const Patch& b, std::size_t end, const double (&d)[3]) {
+    const auto along = [&](std::int32_t vertex) {
+      const float* const at = &scene.local.records()[static_cast<std::size_t>(vertex)].at[4 * end];
+      return d[0] * static_cast<double>(at[0]) + d[1] * static_cast<double>(at[1]) + d[2] * static_cast<double>(at[2]);
+    };
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const std::int32_t v : a.vertex) most = std::max(most, along(v));
+    for (const std::int32_t v : b.vertex) least = std::min(least, along(v));
+    return (least - most) / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  };
+  std::size_t outcomes[2] = {};
+  for (const float margin : {1e-5F, 0.003F, 0.05F, 0.4F, 30.0F}) {
+    const Grid grid(scene.local.error(), margin);
+    EXPECT_TRUE(grid.has_margin());
+    for (std::size_t p = 0; p < scene.tree.patches.size(); p += 2)
+      for (std::size_t q = p % 5; q < scene.tree.patches.size(); q += 9) {
+        const Patch &a = scene.tree.patches[p], &b = scene.tree.patches[q];
+        const NodeBounds first = grid.bounds_of(load(scene.local.records(), a.vertex)),
+                         second = grid.bounds_of(load(scene.local.records(), b.vertex));
+        const bool is_apart = apart(first, second);
+        ++outcomes[is_apart];
+        if (!is_apart) continue;
+        bool any = false;
+        for (const auto& d : directions)
+          any |= (gap(a, b, 0, d) > 2 * margin && gap(a, b, 1, d) > 2 * margin) ||
+                 (gap(b, a, 0, d) > 2 * margin && gap(b, a, 1, d) > 2 * margin);
+        EXPECT_TRUE(any) << margin;
+      }
+  }
+  EXPECT_GT(outcomes[0], 100u);
+  EXPECT_GT(outcomes[1], 100u);
+}
+
 }  // namespace
 }  // namespace cscd::fast

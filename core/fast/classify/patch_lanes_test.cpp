@@ -192,5 +192,60 @@ TEST(PatchLanes, OrientationIsWhatScalarCodeSays) {
     }
 }
 
+// Planes and heights that are certified at a distance keep it at many times of the interval.
+// Mutations: no margin; no height; edges, or distances from the viewpoint, at the start alone; the middle
+// coefficients without their factor of three.
+TEST(PatchLanes, AtADistancePlanesAndHeightsKeepIt) {
+  std::size_t tall = 0, not_tall = 0, with_sign = 0;
+  int turn = 0;
+  for (const test::Patches& scene : test::patches()) {
+    if (scene.shift.norm() > 10) continue;  // the heights below are computed in doubles, from rounded positions
+    for (std::size_t p = 0; p < scene.tree.patches.size(); p += 3) {
+      const Patch& patch = scene.tree.patches[p];
+      const PatchLanes lanes = load(scene.local.records(), patch.vertex);
+      Viewpoint from;
+      for (std::size_t end = 0; end < 2; ++end)
+        for (std::size_t i = 0; i < 3; ++i)
+          from.at[end][i] = lanes.at[end][i][turn % 5] + (i == 0 ? 0.01F : -0.03F) * static_cast<float>(turn % 3);
+      const auto at = [&](std::size_t place, double t) {
+        Vec3 out;
+        for (std::size_t i = 0; i < 3; ++i)
+          out[static_cast<Eigen::Index>(i)] = (1 - t) * static_cast<double>(lanes.at[0][i][place] - from.at[0][i]) +
+                                              t * static_cast<double>(lanes.at[1][i][place] - from.at[1][i]);
+        return out;
+      };
+      const float margin = 0.0005F * static_cast<float>(turn % 4), height = 0.002F * static_cast<float>(turn % 7);
+      ++turn;
+      const Viewpoint* const viewpoints[kCovers] = {&from};
+      DistantSigns found;
+      orientations_at_distance(lanes, patch, viewpoints, scene.local.error(), margin, height, found);
+      for_each_lane(patch.lanes, [&](std::size_t l) {
+        const bool is_tall = found.tall[0] >> l & 1, positive = found.signs[0].positive >> l & 1,
+                   negative = found.signs[0].negative >> l & 1;
+        EXPECT_TRUE(!is_tall || positive);
+        tall += is_tall, not_tall += !is_tall, with_sign += positive || negative;
+        for (int k = 0; k <= 16; ++k) {
+          const Vec3 x[3] = {at(patch.corner[0][l], k / 16.0), at(patch.corner[1][l], k / 16.0),
+                             at(patch.corner[2][l], k / 16.0)};
+          const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
+          const double volume = normal.dot(x[0]), plane = volume / normal.norm();
+          if (positive) EXPECT_GT(plane, margin);
+          if (negative) EXPECT_LT(plane, -margin);
+          if (!is_tall) continue;
+          EXPECT_GT(plane, height);
+          for (int u = 0; u < 3; ++u) {
+            const Vec3 &v = x[(u + 1) % 3], &w = x[(u + 2) % 3];
+            EXPECT_GT(volume / v.cross(w).norm(), height);
+            EXPECT_GT(volume / (v - x[u]).cross(w).norm(), height);
+          }
+        }
+      });
+    }
+  }
+  EXPECT_GT(tall, 300u);
+  EXPECT_GT(not_tall, 300u);
+  EXPECT_GT(with_sign, tall);
+}
+
 }  // namespace
 }  // namespace cscd::fast

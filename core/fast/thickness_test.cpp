@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+#include "core/mesh/test_shapes.h"
+
+// The rows of the engine on steps with a thickness, held against all close pairs that boxes leave.
+namespace cscd {
+namespace {
+
+// A tube whose vertices come nearer to each other by chance: what is close first is near on the surface. With
+// `bend`, the tube bends until its ends come near, too.
+struct Scene {
+  test::Shape shape;
+  TriangleMesh mesh;
+  std::vector<Vec3> end;
+  double edge = 0;  // the mean length
+
+  Scene(unsigned seed, double noise, double bend)
+      : shape(test::uneven_tube(12, 90, 20, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); })),
+        mesh(shape.mesh()) {
+    std::mt19937 random(seed);
+    const auto dice = [&] { return noise * (static_cast<double>(random() >> 8) * 0x1p-23 - 1); };
+    for (const Vec3& p : shape.positions) {
+      const double angle = bend * (p.x() / 20 - 0.5), reach = 10 - p.y();
+      const Vec3 bent(10 + reach * std::sin(angle), 10 - reach * std::cos(angle), p.z());
+      end.push_back((bend == 0 ? p : bent) + Vec3(dice(), dice(), dice()));
+    }
+    for (const Edge& e : mesh.edges()) edge += (shape.positions[+e[0]] - shape.positions[+e[1]]).norm();
+    edge /= static_cast<double>(mesh.edge_count());
+  }
+  StrategyInput setup(bool first_only = false) const {
+    return {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact"), 1, first_only};
+  }
+  Motion motion() const { return Motion(shape.positions, end); }
+};
+
+ContactSet answer(Detector& detector, const Step& step, Report* report = nullptr) {
+  ContactSet found;
+  const Report own = detector.detect(step, found);
+  if (report != nullptr) *report = own;
+  found.sort();
+  return found;
+}
+std::size_t of_first_time(const ContactSet& sorted) {
+  return static_cast<std::size_t>(std::ranges::count(sorted.contacts, sorted.contacts.front().time, &Contact::time));
+}
+
+// From clear starts, drvbc_fast keeps a close pair of the earliest time, drvbc_fast_all and
+// drvbc_fast_complete keep all close pairs, and all of them leave most pairs unexamined.
+// Mutations: every pair near on the surface is settled; triangles are tall whatever their heights; one ring
+// instead of two settles; rings are not spread; bounds do not grow; only one side of a pair's bounds grows;
+// clear triangles need no clear ring; planes and stars are asked.
+TEST(Thickness, EveryRowKeepsWhatItPromises) {
+  std::size_t clear = 0, first_missing = 0, near_first = 0;
+  std::uint64_t plain = 0, by_signs = 0, by_caps = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const double noise = seed % 3 == 0 ? 0.02 : seed % 3 == 1 ? 0.05 : 0.12, bend = seed % 2 == 0 ? 0 : 5.6;
+    const Scene scene(seed, noise, bend);
+    std::mt19937 random(seed);
+    const double r = scene.edge * std::exp2(-5 * static_cast<double>(random()) * 0x1p-32);
+    const Step step{.motion = scene.motion(), .thickness = Thickness(r)};
+    const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(scene.setup()), scene.setup());
+    Report report;
+    const ContactSet all = answer(*base, step, &report);
+    plain += report.cull.pctp;
+    const ContactSet complete =
+        answer(*make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector, step, &report);
+    by_caps += report.cull.pctp;
+    EXPECT_EQ(digest(complete), digest(all)) << "seed " << seed;
+    if (!all.contacts.empty() && all.contacts.front().time == 0) continue;
+    ++clear;
+    Step known = step;
+    known.starts_embedded = true;
+    const ContactSet again =
+        answer(*make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector, known);
+    EXPECT_EQ(digest(again), digest(all)) << "seed " << seed;
+    const ContactSet first = answer(*make_drvbc_fast(scene.setup()).detector, step, &report);
+    by_signs += report.cull.pctp;
+    ASSERT_EQ(first.contacts.empty(), all.contacts.empty()) << "seed " << seed;
+    const ContactSet alone = answer(*make_drvbc_fast(scene.setup(true)).detector, step);
+    if (all.contacts.empty()) continue;
+    EXPECT_EQ(first.contacts.front().time, all.contacts.front().time) << "seed " << seed;
+    EXPECT_EQ(alone.contacts.front().time, all.contacts.front().time) << "seed " << seed;
+    first_missing += of_first_time(all) - of_first_time(first);
+    near_first += bend == 0;
+  }
+  EXPECT_GT(clear, 30u);
+  EXPECT_GT(near_first, 10u) << "pairs near on the surface are not put to the test";
+  EXPECT_LT(by_signs, plain / 3);
+  EXPECT_LT(by_caps, plain / 2);
+}
+
+// A thickness by vertex: each pair is held against its own, and the largest bounds what is looked at.
+TEST(Thickness, OfVerticesIsThatOfTheirPairs) {
+  const Scene scene(3, 0.12, 0);
+  std::vector<double> of_vertex(scene.mesh.vertex_count());
+  std::mt19937 random(7);
+  for (double& r : of_vertex) r = 0.2 * scene.edge * static_cast<double>(random()) * 0x1p-32;
+  const Step step{.motion = scene.motion(), .thickness = Thickness(0.05 * scene.edge, of_vertex)};
+  const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(scene.setup()), scene.setup());
+  const ContactSet all = answer(*base, step);
+  const auto complete = make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector;
+  EXPECT_EQ(digest(answer(*complete, step)), digest(all));
+  const Step largest{.motion = scene.motion(), .thickness = Thickness(step.thickness.largest())};
+  const ContactSet more = answer(*complete, largest);
+  EXPECT_LT(all.contacts.size(), more.contacts.size());
+  EXPECT_GT(all.contacts.size(), 0u);
+  for (const Contact& contact : all.contacts) {
+    const double r = step.thickness.of(scene.mesh, contact.pair);
+    EXPECT_EQ(ask_close(*find_elementary_test("exact"), scene.mesh, scene.motion(), contact.pair, r).time,
+              contact.time);
+  }
+}
+
+// What was asked with a thickness before leaves nothing behind.
+TEST(Thickness, DoesNotOutliveItsStep) {
+  const Scene scene(4, 0.1, 5.6);
+  for (const bool complete : {false, true}) {
+    const DrvbcFastOptions options{.name = "test", .follows = false, .complete = complete};
+    const auto used = make_drvbc_fast(scene.setup(), options).detector;
+    for (const double r : {0.0, 0.3, 0.0, 0.05, 0.3, 0.0}) {
+      const Step step{.motion = scene.motion(), .thickness = Thickness(r * scene.edge)};
+      const auto other = make_drvbc_fast(scene.setup(), options).detector;
+      EXPECT_EQ(digest(answer(*used, step)), digest(answer(*other, step))) << r;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cscd
