@@ -171,9 +171,9 @@ class SelfCollision::Engine {
     obstacles_->move(obstacle, from, to);
   }
 
-  // Answers one step. The answer is kept until the next.
-  void step(const Motion& motion, bool first) {
-    step_itself(first ? first_ : all_, motion);
+  // Answers one step. The answer is kept until the next. With `any_contact`, it need not be the first one.
+  void step(const Motion& motion, bool first, bool any_contact = false) {
+    step_itself(first ? first_ : all_, motion, any_contact);
     if (!obstacles_) return;
     obstacles_->step(motion, first, options_.check_start, touched_, crossed_);
     const std::optional<double> earliest = time();
@@ -273,9 +273,9 @@ class SelfCollision::Engine {
                 question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete, nullptr);
   }
 
-  void step_itself(Question& question, const Motion& motion) {
+  void step_itself(Question& question, const Motion& motion, bool any_contact) {
     if (question.filtered_steps == 0) {
-      plain(question).step(motion, nullptr, answer_);
+      plain(question).step(motion, nullptr, answer_, any_contact && exclusions_.empty());
       if (exclusions_.empty()) return;
       const std::size_t left_out = leave_out();
       if (left_out > 0) question.filtered_steps = kFilteredSteps;
@@ -357,7 +357,7 @@ void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, 
 
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
   return checked([&] {
-    engine_->step(engine_->motion(start, end), true);
+    engine_->step(engine_->motion(start, end), true, true);
     return !engine_->crosses() && !engine_->time();
   });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
+#include <tuple>
 
 #include "core/base/error.h"
 #include "core/base/stage_clock.h"
@@ -22,10 +23,8 @@ namespace {
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
 
-// For the first contact alone, the interval is cut short where a contact is found this early in what is
-// looked at, while no more than this share of the descent is done. To look at the shorter interval then costs
-// less than the rest of the descent.
-constexpr double kWorthCutting = 1.0 / 8, kMostDone = 1.0 / 4;
+// So many feature pairs are remembered. To test them takes some microseconds.
+constexpr std::size_t kRemembered = 8;
 
 // So many triangle pairs are filtered together, and so many feature pairs are tested together. Either takes
 // some microseconds.
@@ -66,38 +65,37 @@ class PairTester : public TrianglePairSink {
     thickness_ = step.thickness;
     start_ = step.crossings;
     most_ = step.most_crossings;
+    any_contact_ = first_only_ && step.any_contact && step.crossings == nullptr;
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
     out_ = &out;
     counts_ = {};
     met_.start_interval();
     earliest_ = 1;
-    last_ = 1;
   }
-  // Lets the tester close once it has found a contact early in what is looked at.
-  void let_cut(bool may) { let_close(may && first_only_); }
-  // Where the tester has closed: opens it again, for pairs that touch no later than at the time returned.
-  // What touches at the earliest time found so far is among them.
-  std::optional<double> next_cut() {
-    if (!closed()) return std::nullopt;
-    reopen();
-    let_close(true);
-    begin_again();
-    return last_ = cut();
+  // Tests the feature pairs that touched first in the last step in which any did. Those that touch bound the
+  // time until which the culler has to look.
+  void test_remembered() {
+    if (remembered_.empty()) return;
+    left_ = remembered_;
+    test_left();
   }
+  void forget() { remembered_.clear(); }
   // Tests what is left of the interval.
   void finish_interval() {
-    let_close(false);
     flush();
+    if (options_.remembers && first_only_ && !out_->contacts.empty()) remember();
     if (!options_.assignment) return;
     clock_.enter(Stage::elementary);
     test_always(options_.assignment->always());
   }
   const PairCounts& counts() const { return counts_; }
 
-  bool is_enough(double t) override {
+  void leave_start() override {
     flush();
-    return first_only_ && cut() <= t;
+    start_ = nullptr;
   }
+  bool looks_for_first() const override { return first_only_; }
+  double until() const override { return first_only_ ? cut() : 1; }
   void begin_again() override {
     flush();
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
@@ -147,9 +145,6 @@ class PairTester : public TrianglePairSink {
     return pair.before <= (first_only_ ? earliest_ + kTimeSlack : 1);
   }
 
-  void consider(double done) override {
-    if (may_close() && done <= kMostDone && cut() < kWorthCutting * last_) close();
-  }
   // Whatever touches at the earliest time found so far touches before this time.
   double cut() const { return std::min(1.0, earliest_ + 2 * kTimeSlack); }
 
@@ -166,6 +161,16 @@ class PairTester : public TrianglePairSink {
     std::ranges::copy_if(block, std::back_inserter(kept_),
                          [&](const TrianglePair& pair) { return !exclusions_->excludes(mesh_, pair); });
     return kept_;
+  }
+
+  void remember() {
+    std::vector<Contact>& contacts = out_->contacts;
+    const auto last = contacts.begin() + static_cast<std::ptrdiff_t>(std::min(kRemembered, contacts.size()));
+    std::ranges::partial_sort(contacts, last, {},
+                              [](const Contact& c) { return std::tuple(c.time, c.pair); });
+    remembered_.clear();
+    std::transform(contacts.begin(), last, std::back_inserter(remembered_),
+                   [](const Contact& c) { return c.pair; });
   }
 
   // Tests triangle pairs in the order of the times before which they certainly do not touch, a few at a time,
@@ -230,7 +235,7 @@ class PairTester : public TrianglePairSink {
                  [&](std::size_t first, std::size_t last, std::size_t part) {
                    lists_[part].clear();
                    filter(mesh_, *motion_, carried.subspan(first, last - first), test_.single_precision_first,
-                          first_only_ ? cut() : 1, lists_[part]);
+                          until(), lists_[part]);
                  });
     for (const std::vector<FeaturePair>& list : std::span(lists_).first(ranges))
       left_.insert(left_.end(), list.begin(), list.end());
@@ -287,7 +292,9 @@ class PairTester : public TrianglePairSink {
   void take_answer(const FeaturePair& pair, const Answer& answer) {
     ++counts_.elementary_tests;
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
-    if (answer.verdict == Verdict::contact) earliest_ = std::min(earliest_, answer.time);
+    if (answer.verdict != Verdict::contact) return;
+    earliest_ = std::min(earliest_, answer.time);
+    if (any_contact_) close();
   }
 
   const TriangleMesh& mesh_;
@@ -302,17 +309,18 @@ class PairTester : public TrianglePairSink {
   Thickness thickness_;
   ContactSet* out_ = nullptr;
   Crossings* start_ = nullptr;
-  std::size_t most_ = 0;  // crossings that are kept
+  std::size_t most_ = 0;      // crossings that are kept
+  bool any_contact_ = false;  // one is enough
   PairCounts counts_;
   std::vector<TrianglePair> kept_;     // the block without what is excluded
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
   std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
   FeaturePairSet met_;                           // feature pairs met in this interval
+  std::vector<FeaturePair> remembered_;          // those that touched first in an earlier step
   Tests<MovingVertexFace> vertex_faces_;         // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
-  double last_ = 1;      // the interval is looked at until this time
   std::vector<Bounded> order_;
 };
 
@@ -328,8 +336,9 @@ class ComposedDetector : public Detector {
   Report detect(const Step& step, ContactSet& out) override {
     out.clear();
     if (!step.thickness.is_zero() && !culler_->knows_distance())
-      throw InputError("this strategy has no proof for a thickness above 0; take base, aabb, drvbc_fast or "
-                       "drvbc_fast_complete");
+      throw InputError(
+          "this strategy has no proof for a thickness above 0; take base, aabb, drvbc_fast or "
+          "drvbc_fast_complete");
     Step known = step;
     // A start that is to be looked at is not taken for granted. The first contact may be an excluded one, and
     // then says nothing of the others.
@@ -337,21 +346,17 @@ class ComposedDetector : public Detector {
     tester_.start_interval(step, out);
     clock_.reset();
 
-    clock_.enter(Stage::refit);
-    culler_->refit(step);
-    clock_.enter(Stage::classify);
-    const bool classified = culler_->classify(known);
-    clock_.enter(Stage::traversal);
     Report report;
-    tester_.let_cut(first_only_ && culler_->can_shorten());
-    report.cull = culler_->cull(tester_);
-    tester_.finish_interval();
-    while (const std::optional<double> last = tester_.next_cut()) {
+    bool classified = false;
+    clock_.enter(Stage::elementary);
+    tester_.test_remembered();
+    if (!tester_.closed()) {
+      clock_.enter(Stage::refit);
+      culler_->refit_beginning(step, tester_.until());
       clock_.enter(Stage::classify);
-      culler_->shorten(*last);
+      classified = culler_->classify(known);
       clock_.enter(Stage::traversal);
-      const CullCounts again = culler_->cull(tester_);
-      *report.cull.bvot += *again.bvot;
+      report.cull = culler_->cull(tester_);
       tester_.finish_interval();
     }
     if (!out.contacts.empty() && !first_only_)
@@ -371,7 +376,7 @@ class ComposedDetector : public Detector {
     if (step.crossings) std::ranges::sort(step.crossings->pairs);
     return report;
   }
-  void forget() override { culler_->forget(); }
+  void forget() override { culler_->forget(), tester_.forget(); }
   std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
   RadialView radial_view() const override { return culler_->radial_view(); }
 

@@ -18,6 +18,9 @@ struct PairOptions {
   int threads = 1;
   // Every step is taken for one that starts embedded, unless its crossings are wanted.
   bool starts_embedded = false;
+  // Where the first contact alone is wanted, a step is tested first for a few feature pairs that touched in
+  // the step before, and the culler looks no further than they touch. Counters then depend on earlier steps.
+  bool remembers = false;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy

@@ -36,19 +36,17 @@ class TrianglePairSink {
   }
   // The culler calls this before it passes on all pairs of the interval once more.
   virtual void begin_again() {}
+  // The culler calls this when it has passed on all pairs that may touch at t = 0.
+  virtual void leave_start() {}
   std::uint64_t count() const { return count_; }
   bool closed() const { return closed_; }
-  // Returns whether the sink may close before it has every pair. A culler then calls tell() now and then,
-  // with the share of its work that is done, in [0, 1].
-  bool may_close() const { return may_close_; }
-  void tell(double done) {
-    if (block_.size() < kWorthTaking) return;
-    flush();
-    consider(done);
+  // Returns whether until() may come to be less than 1, and asks the culler to call tell() now and then.
+  virtual bool looks_for_first() const { return false; }
+  // Returns the time up to which the sink needs pairs that may touch, by what it has looked at so far.
+  virtual double until() const { return 1; }
+  void tell() {
+    if (block_.size() >= kWorthTaking) flush();
   }
-  // The culler calls this when it has passed on all pairs that may touch until time t. Returns whether the
-  // sink needs no others.
-  virtual bool is_enough(double /*t*/) { return false; }
   void restart() {
     block_.clear();
     count_ = 0;
@@ -57,16 +55,13 @@ class TrianglePairSink {
 
  protected:
   void close() { closed_ = true; }
-  void reopen() { closed_ = false; }
-  void let_close(bool may) { may_close_ = may; }
 
  private:
   static constexpr std::size_t kWorthTaking = 256;  // fewer pairs are not worth a look at them by themselves
-  virtual void consider(double /*done*/) {}
   virtual void take(const std::vector<TrianglePair>& block) = 0;
   std::vector<TrianglePair> block_;
   std::uint64_t count_ = 0;
-  bool closed_ = false, may_close_ = false;
+  bool closed_ = false;
 };
 
 // A culling strategy: it decides which triangle pairs have to be tested in an interval. The virtual functions
@@ -82,6 +77,8 @@ class Culler {
   virtual bool knows_distance() const { return false; }
   // Computes the bounds of this interval. Stage `refit`.
   virtual void refit(const Step& step) = 0;
+  // Does what refit() does, where only pairs that may touch until a time are needed, which is at most 1.
+  virtual void refit_beginning(const Step& step, double /*until*/) { refit(step); }
   // Computes orientation classes and clusters. Stage `classify`; returns false where the strategy has no
   // such stage. Where the step starts embedded, cull() may look for the first contact alone, and cull_rest()
   // then passes on the others.
@@ -93,11 +90,6 @@ class Culler {
   // because it looked for the first contact alone. Returns the number of overlap tests; nothing where cull()
   // has kept all contacts. Stage `traversal`.
   virtual std::optional<std::uint64_t> cull_rest(TrianglePairSink& /*sink*/) { return std::nullopt; }
-  // Returns whether the interval can be cut short (shorten()). Asked after classify().
-  virtual bool can_shorten() const { return false; }
-  // Cuts the interval short: refit() and classify() for its beginning alone, from t = 0 to `last`, in (0, 1].
-  // cull() then passes on every pair that is not proven apart until then. Stage `classify`.
-  virtual void shorten(double /*last*/) {}
   // Forgets all intervals (Detector::forget).
   virtual void forget() {}
   // Returns what preparation has found out (Detector::saved_preparation).

@@ -30,7 +30,9 @@ Prepared make_drvbc_fast(const StrategyInput& setup, const DrvbcFastOptions& opt
   preparation.threads = setup.threads;
   preparation.new_triangles = best.new_triangles;
   return {compose(std::move(best.culler), setup,
-                  {.threads = setup.threads, .starts_embedded = options.starts_embedded}),
+                  {.threads = setup.threads,
+                   .starts_embedded = options.starts_embedded,
+                   .remembers = options.follows}),
           preparation};
 }
 

@@ -11,6 +11,11 @@ constexpr std::size_t kCappedRange = 128;     // patches where caps are looked a
 constexpr std::size_t kAhead = 2;             // positions are fetched so many patches before the look
 constexpr std::size_t kSampled = 256;         // about so many patches are asked how far they move
 constexpr std::size_t kWorthStopping = 1024;  // patches; the descent of fewer is too short to be stopped
+// A part of the interval is cut short where that spares at least so much of it.
+constexpr double kWorthCutting = 1.0 / 2;
+// Where the first contact alone is wanted, a part whose descent takes more than so many overlap tests for
+// each patch is halved, which is about what it costs to look at a part.
+constexpr std::uint64_t kMostBySigns = 32, kMostByCaps = 64;
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const StrategyInput& setup, const Covers& covers,
@@ -44,32 +49,39 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
 void FastCuller::refit(const Step& step) {
   motion_ = step.motion;
   thickness_ = step.thickness;
-  last_ = 1;
-  positions_.update(step.motion, team_);
-  local_thickness_ = positions_.in_local(thickness_.largest());
-  grid_ = grid_of(positions_.error());
+  move_to({0, 1});
+}
+
+void FastCuller::refit_beginning(const Step& step, double until) {
+  refit(step);
+  if (until < 1 && can_tell_in_between(move_apart())) move_to({0, until});
 }
 
 bool FastCuller::classify(const Step& step) {
   by_signs_ = step.starts_embedded && signs_suffice_;
-  look_at(step.motion);
+  look_at_positions();
   return true;
 }
 
-void FastCuller::look_at(const Motion& motion) {
+void FastCuller::look_at_positions() {
   if (following_) following_->mend(certificates_);
-  if (following_ && tests_ && positions_.known()) following_->follow(motion.start(), *tests_, certificates_);
-  const bool by_caps = options_.complete && !by_signs_;
+  if (following_ && tests_ && positions_.known())
+    following_->follow(motion_->start(), *tests_, certificates_);
+  const bool by_caps = looks_by_caps();
   certificates_.use_contour_test(by_caps);
   certificates_.start(positions_, team_, local_thickness_);
   team_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
                [&](std::size_t first, std::size_t last, std::size_t) {
                  for (std::size_t p = first; p < last; ++p) look(p);
                });
+  unite_bounds();
+  certificates_.finish(team_);
+}
+
+void FastCuller::unite_bounds() {
   cut_.tree.for_each_inner_upwards(team_, [&](std::size_t n, const PatchTree::Node& node) {
     bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
   });
-  certificates_.finish(team_);
   if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
 }
 
@@ -85,30 +97,15 @@ std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
   by_signs_ = false;
   tests_.reset();  // the cover stays as it is within an interval
   refit({.motion = *motion_, .thickness = thickness_});
-  look_at(*motion_);
+  look_at_positions();
   return descend(sink);
 }
 
 // Passes on the pairs of the interval that has been looked at, and returns the number of overlap tests.
 std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
-  if (options_.long_descent != DrvbcFastOptions::kNever && positions_.known()) {
-    const Moved moved = move_apart();
-    if (moved.far() && can_tell_in_between(moved)) {
-      if (!sink.may_close()) {
-        rounding_ = error_in_between();
-        return cull_parts(sink, false);
-      }
-      const std::uint64_t most = options_.long_descent * patch_count();
-      tests_ = run_until_closed(sink, most);
-      const std::uint64_t tests = *tests_;
-      if (sink.closed() || tests <= most) return tests;
-      sink.begin_again();
-      rounding_ = error_in_between();
-      return tests + cull_parts(sink, true);
-    }
-  }
-  const bool may_stop = sink.may_close() && patch_count() >= kWorthStopping;
-  return *(tests_ = may_stop ? run_until_closed(sink) : run(sink));
+  if (sink.looks_for_first()) return descend_to_first(sink);
+  if (moves_far()) return cull_parts(sink);
+  return *(tests_ = run(sink));
 }
 
 std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
@@ -116,37 +113,86 @@ std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
   return descent_.run(bounds_, grid_, sink, most);
 }
 
-std::uint64_t FastCuller::run_until_closed(TrianglePairSink& sink, std::uint64_t most) {
-  pass_on_near(sink);
-  return descent_.run_until_closed(bounds_, grid_, sink, most);
-}
-
 // Passes on the pairs near on the surface of which signs say nothing (certify/tall_rings.h).
 void FastCuller::pass_on_near(TrianglePairSink& sink) const {
   certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { sink.add(a, b); });
 }
 
-// Returns by how much a position in between, start + t (end - start), may be off: it rounds three times.
-double FastCuller::error_in_between() const {
-  return 0x1p-50 * positions_.largest_in_scene();
+// Passes on pairs until the sink needs no others. A long interval is looked at in parts, in the order of
+// time: a part is halved as long as the surface moves far in it and its descent is long, and what is left
+// behind it is the next part.
+std::uint64_t FastCuller::descend_to_first(TrianglePairSink& sink) {
+  const double end = part_.last;
+  std::uint64_t tests = 0;
+  while (true) {
+    const std::uint64_t most = patience();
+    const auto cut = [&] { return cut_short(sink); };
+    SharedDescent::Outcome done;
+    pass_on_near(sink);
+    if (most != SharedDescent::kAnyNumber || patch_count() >= kWorthStopping)
+      done = descent_.run_in_ranges(bounds_, grid_, sink, cut, most);
+    else
+      done.tests = descent_.run(bounds_, grid_, sink);
+    tests_ = done.tests;
+    tests += done.tests;
+    if (done.stopped) {
+      if (part_.first == 0) sink.begin_again();
+      const double share = std::clamp(1 / (done.growth - 1), 1.0 / 8, 1.0 / 2);
+      look_at({part_.first, part_.first + share * (part_.last - part_.first)});
+      continue;
+    }
+    sink.flush();
+    if (part_.last == end || sink.until() <= part_.last || sink.closed()) return tests;
+    if (part_.first == 0) sink.leave_start();
+    look_at({part_.last, std::min({end, sink.until(), 3 * part_.last - 2 * part_.first})});
+  }
+}
+
+// Cuts the part short that is looked at, where the sink needs pairs up to a time alone that lies well before
+// its end. From here on bounds, planes and stars are about what is left of the part. Certificates stay as
+// they are, because what they say of the whole part they say of its beginning too. Those by caps, which lose
+// most where the surface moves far, are made anew there: they prove pairs apart one by one, so that some
+// ranges of a descent may go by one of them and others by the other.
+std::optional<std::uint64_t> FastCuller::cut_short(TrianglePairSink& sink) {
+  const double until = sink.until();
+  const double length = part_.last - part_.first;
+  if (until <= part_.first || until - part_.first > kWorthCutting * length) return std::nullopt;
+  const Moved moved = move_apart();
+  if (!can_tell_in_between(moved)) return std::nullopt;
+  const Part beginning{part_.first, until};
+  if (looks_by_caps() && moved.far()) {
+    look_at(beginning);
+    pass_on_near(sink);
+    return patience();
+  }
+  move_to(beginning);
+  team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
+    for (std::size_t p = first; p < last; ++p) {
+      fetch(p + kAhead);
+      bound(p, load(positions_.records(), cut_.tree.patches[p].vertex));
+    }
+  });
+  unite_bounds();
+  return patience();
+}
+
+// Returns how many overlap tests the descent of a part may take before the part is halved.
+std::uint64_t FastCuller::patience() const {
+  if (part_.last - part_.first <= 1.0 / kFinest || !moves_far()) return SharedDescent::kAnyNumber;
+  return (looks_by_caps() ? kMostByCaps : kMostBySigns) * patch_count();
+}
+
+bool FastCuller::moves_far() const {
+  if (options_.long_descent == DrvbcFastOptions::kNever || !positions_.known()) return false;
+  const Moved moved = move_apart();
+  return moved.far() && can_tell_in_between(moved);
 }
 
 // Far from the origin, positions in between may be off by so much that the grid's steps are wider than
 // patches, and then nothing is proven apart.
 bool FastCuller::can_tell_in_between(const Moved& moved) const {
-  return grid_of(positions_.error_beside(error_in_between())).steps() * moved.width >= 1;
-}
-
-bool FastCuller::can_shorten() const {
-  return options_.long_descent != DrvbcFastOptions::kNever && positions_.known() &&
-         can_tell_in_between(move_apart());
-}
-
-void FastCuller::shorten(double last) {
-  rounding_ = error_in_between();
-  last_ = last;
-  tests_.reset();  // covers stay as they are within an interval
-  begin({0, kFinest});
+  const double off = 0x1p-50 * positions_.largest_in_scene();
+  return grid_of(positions_.error_beside(off)).steps() * moved.width >= 1;
 }
 
 // How far places of the surface move apart, on the average.
@@ -172,51 +218,31 @@ FastCuller::Moved FastCuller::move_apart() const {
   return {way / samples, width / samples};
 }
 
-// The parts pass on a pair of triangles again and again, so pairs are collected first: from all parts, or,
-// where the sink may close, up to the first part after which it needs no more. `is_long` says that the
-// descent of the whole interval is known to be long.
-std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink, bool is_long) {
+// The parts pass on a pair of triangles again and again, so pairs are collected first.
+std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
   found_.pairs.clear();
-  passed_on_ = 0;
-  use_whole_step_ = enough_ = false;
-  const Part whole{0, kFinest};
-  const std::uint64_t tests = is_long ? cull_halves(whole, sink) : cull_part(whole, sink);
+  use_whole_step_ = false;
+  const std::uint64_t tests = cull_part();
   if (use_whole_step_) {
-    if (last_ == 1) rounding_ = 0;  // both ends of the interval are given
-    begin(whole);
-    sink.begin_again();
+    look_at({0, 1});
     return tests + *(tests_ = run(sink));
   }
-  pass_on_new(sink);
+  const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
+  for (TrianglePair& pair : found_.pairs)
+    if (pair.b < pair.a) std::swap(pair.a, pair.b);
+  std::ranges::sort(found_.pairs, {}, ends);
+  const auto repeated = std::ranges::unique(found_.pairs, {}, ends);
+  found_.pairs.erase(repeated.begin(), repeated.end());
+  for (const TrianglePair& pair : found_.pairs) sink.add(pair.a, pair.b);
   return tests;
 }
 
-// Passes on the pairs that were found since the last call and that were not found before. Those that have
-// been passed on are sorted, at the front.
-void FastCuller::pass_on_new(TrianglePairSink& sink) {
-  const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
-  const auto same = [&](const TrianglePair& a, const TrianglePair& b) { return ends(a) == ends(b); };
-  std::vector<TrianglePair>& pairs = found_.pairs;
-  const auto first_new = pairs.begin() + static_cast<std::ptrdiff_t>(passed_on_);
-  std::for_each(first_new, pairs.end(), [](TrianglePair& pair) {
-    if (pair.b < pair.a) std::swap(pair.a, pair.b);
-  });
-  std::ranges::sort(first_new, pairs.end(), {}, ends);
-  pairs.erase(std::unique(first_new, pairs.end(), same), pairs.end());
-  const auto known = [&](const TrianglePair& pair) {
-    return std::ranges::binary_search(pairs.begin(), first_new, ends(pair), {}, ends);
-  };
-  pairs.erase(std::remove_if(first_new, pairs.end(), known), pairs.end());
-  std::for_each(first_new, pairs.end(), [&](const TrianglePair& pair) { sink.add(pair.a, pair.b); });
-  std::ranges::inplace_merge(pairs.begin(), first_new, pairs.end(), {}, ends);
-  passed_on_ = pairs.size();
-}
-
-// Collects the pairs of a part that has been looked at, and returns the number of overlap tests. A part in
+// Collects the pairs of the part that has been looked at, and returns the number of overlap tests. A part in
 // which the surface moves far is halved if its descent and its pairs cost too much.
-std::uint64_t FastCuller::cull_part(const Part& part, TrianglePairSink& sink) {
-  if (use_whole_step_ || enough_) return 0;
-  const bool can_split = part.last - part.first > 1 && move_apart().far();
+std::uint64_t FastCuller::cull_part() {
+  if (use_whole_step_) return 0;
+  const Part part = part_;
+  const bool can_split = part.last - part.first > 1.0 / kFinest && move_apart().far();
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
   found_.restart();
@@ -224,45 +250,48 @@ std::uint64_t FastCuller::cull_part(const Part& part, TrianglePairSink& sink) {
   found_.flush();
   if (!can_split || *tests_ + kTestsOfPair * found_.count() <= most) {
     use_whole_step_ = found_.pairs.size() > kMostCollected;
-    if (sink.may_close() && !use_whole_step_) {
-      pass_on_new(sink);
-      enough_ = sink.is_enough(last_ * part.last / kFinest);
-    }
     return *tests_;
   }
   found_.pairs.resize(before);
-  return std::min(*tests_, most)  // how many more were made depends on the number of threads
-         + cull_halves(part, sink);
-}
-
-std::uint64_t FastCuller::cull_halves(const Part& part, TrianglePairSink& sink) {
-  std::uint64_t tests = 0;
-  tests_.reset();
-  const unsigned middle = (part.first + part.last) / 2;
+  std::uint64_t tests = std::min(*tests_, most);  // how many more were made depends on the number of threads
+  const double middle = (part.first + part.last) / 2;
   for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
-    if (enough_) break;
-    begin(half);
+    look_at(half);
     use_whole_step_ |= !positions_.known();  // every pair of triangles would be collected
-    tests += cull_part(half, sink);
+    tests += cull_part();
   }
   return tests;
 }
 
-// Looks at a part of the interval.
-void FastCuller::begin(const Part& part) {
-  const std::span<const Vec3> start = motion_->start(), end = motion_->end();
-  const auto at = [&](unsigned time, std::vector<Vec3>& positions) {
-    if (time == 0) return start;
-    if (time == kFinest && last_ == 1) return end;
-    positions.resize(start.size());
-    const double t = last_ * time / kFinest;
-    for (std::size_t v = 0; v < start.size(); ++v) positions[v] = start[v] + t * (end[v] - start[v]);
-    return std::span<const Vec3>(positions);
-  };
-  const Motion motion(at(part.first, part_start_), at(part.last, part_end_));
-  positions_.update(motion, team_, rounding_);
+// Looks at a part of the interval. Covers stay as they are within an interval.
+void FastCuller::look_at(const Part& part) {
+  tests_.reset();
+  move_to(part);
+  look_at_positions();
+}
+
+// Takes over the positions of a part of the interval.
+void FastCuller::move_to(const Part& part) {
+  part_ = part;
+  if (part.first == 0 && part.last == 1) {
+    positions_.update(*motion_, team_);
+  } else if (part.first == 0) {
+    positions_.update_beginning(*motion_, part.last, team_);
+  } else {
+    const std::span<const Vec3> start = motion_->start(), end = motion_->end();
+    Eigen::Array3d largest = Eigen::Array3d::Zero();
+    part_start_.resize(start.size()), part_end_.resize(start.size());
+    for (std::size_t v = 0; v < start.size(); ++v) {
+      const Vec3 way = end[v] - start[v];
+      part_start_[v] = start[v] + part.first * way;
+      part_end_[v] = part.last == 1 ? end[v] : start[v] + part.last * way;
+      largest = largest.max(start[v].array().abs()).max(end[v].array().abs());
+    }
+    // A position in between, start + t (end - start), rounds three times.
+    positions_.update(Motion(part_start_, part_end_), team_, 0x1p-50 * largest.maxCoeff());
+  }
+  local_thickness_ = positions_.in_local(thickness_.largest());
   grid_ = grid_of(positions_.error());
-  look_at(motion);
 }
 
 void FastCuller::forget() {
@@ -273,10 +302,14 @@ void FastCuller::forget() {
 void FastCuller::look(std::size_t patch) {
   fetch(patch + kAhead);
   const PatchLanes lanes = load(positions_.records(), cut_.tree.patches[patch].vertex);
+  bound(patch, lanes);
+  certificates_.look(patch, lanes);
+}
+
+inline void FastCuller::bound(std::size_t patch, const PatchLanes& lanes) {
   NodeBounds& bounds = bounds_[static_cast<std::size_t>(cut_.tree.leaf[patch])];
   bounds = grid_.bounds_of(lanes);
   if (!options_.time_linear) bounds = swept(bounds);
-  certificates_.look(patch, lanes);
 }
 
 void FastCuller::fetch(std::size_t patch) const {

@@ -47,6 +47,7 @@ class FastCuller : public Culler {
 
   bool knows_distance() const override { return true; }
   void refit(const Step& step) override;
+  void refit_beginning(const Step& step, double until) override;
   // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded
   // once for its bounds and its orientations. Only a complete culler of a closed and consistently oriented
   // mesh makes use of an embedded start: signs alone certify until something touches, and capped clusters
@@ -54,8 +55,6 @@ class FastCuller : public Culler {
   bool classify(const Step& step) override;
   CullCounts cull(TrianglePairSink& sink) override;
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
-  bool can_shorten() const override;
-  void shorten(double last) override;
   void forget() override;
   // Returns nothing after an exception has broken off a change of clusters, until the next interval.
   std::vector<std::byte> saved_preparation() const override {
@@ -70,11 +69,11 @@ class FastCuller : public Culler {
   std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
 
  private:
-  // A part of the interval that is looked at, from t = last_ first / kFinest to last_ last / kFinest.
+  // A part of the interval, from one time to another.
   struct Part {
-    unsigned first, last;
+    double first = 0, last = 1;
   };
-  static constexpr unsigned kFinest = 64;
+  static constexpr double kFinest = 64;  // parts are not halved further than that
   class Found : public TrianglePairSink {
    public:
     std::vector<TrianglePair> pairs;
@@ -90,20 +89,24 @@ class FastCuller : public Culler {
     bool far() const { return way > width; }
   };
   Moved move_apart() const;
-  double error_in_between() const;
   bool can_tell_in_between(const Moved& moved) const;
+  bool moves_far() const;
+  bool looks_by_caps() const { return options_.complete && !by_signs_; }
   std::uint64_t descend(TrianglePairSink& sink);
+  std::uint64_t descend_to_first(TrianglePairSink& sink);
   std::uint64_t run(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
-  std::uint64_t run_until_closed(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
   void pass_on_near(TrianglePairSink& sink) const;
   Grid grid_of(float error) const { return Grid(error, local_thickness_ / 2); }
-  std::uint64_t cull_parts(TrianglePairSink& sink, bool is_long);
-  std::uint64_t cull_part(const Part& part, TrianglePairSink& sink);
-  std::uint64_t cull_halves(const Part& part, TrianglePairSink& sink);
-  void pass_on_new(TrianglePairSink& sink);
-  void begin(const Part& part);
-  void look_at(const Motion& motion);
+  std::optional<std::uint64_t> cut_short(TrianglePairSink& sink);
+  std::uint64_t patience() const;
+  std::uint64_t cull_parts(TrianglePairSink& sink);
+  std::uint64_t cull_part();
+  void move_to(const Part& part);
+  void look_at(const Part& part);
+  void look_at_positions();
   void look(std::size_t patch);
+  void bound(std::size_t patch, const PatchLanes& lanes);
+  void unite_bounds();
   void fetch(std::size_t patch) const;
 
   const TriangleMesh& mesh_;
@@ -126,14 +129,11 @@ class FastCuller : public Culler {
   std::optional<Motion> motion_;
   Thickness thickness_;
   float local_thickness_ = 0;  // the largest of any pair, in local units
-  double last_ = 1;            // the interval is looked at from t = 0 to this time
+  Part part_;                  // that is looked at
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
-  double rounding_ = 0;          // by how much positions in between are off
   bool use_whole_step_ = false;  // whether the interval has to be looked at as a whole
-  bool enough_ = false;          // whether the sink needs no pairs of later parts
   Found found_;
-  std::size_t passed_on_ = 0;  // of the pairs found, how many the sink has
 };
 
 }  // namespace cscd::fast

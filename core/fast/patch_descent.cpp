@@ -18,6 +18,7 @@ void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid
   most_tests_ = most;
   grid_ = grid;
   tests_ = 0;
+  patch_pairs_ = {};
   triangle_bounds_.start_interval();
   std::fill(star_.begin(), star_.end(), Star::unknown);
 }
@@ -94,6 +95,8 @@ inline void PatchDescent::inside(std::size_t p) {
 // are held against each other.
 inline void PatchDescent::between(std::size_t a, std::size_t b) {
   if (sink_->closed()) return;
+  ++patch_pairs_.all;
+  patch_pairs_.at_start += !apart_at_start(bounds_[a], bounds_[b]);
   std::size_t p = nodes_[a].patch(), q = nodes_[b].patch();
   Certificates::Shared shared = input_.certificates.shared(p, q);
   Mask16 rows = patches_[p].lanes, columns = patches_[q].lanes;

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <new>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -99,6 +101,12 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   void split(NodePair at, std::vector<NodePair>& below);
   // The number of overlap tests in this interval so far.
   std::uint64_t tests() const { return tests_; }
+  // Pairs of patches whose triangles were held against each other, and those of them that overlap at the
+  // start.
+  struct PatchPairs {
+    std::uint64_t all = 0, at_start = 0;
+  };
+  const PatchPairs& patch_pairs() const { return patch_pairs_; }
   // From here on, stops after so many overlap tests of the interval.
   void stop_after(std::uint64_t tests) { most_tests_ = tests; }
 
@@ -144,6 +152,7 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   Waiting for_planes_, for_edges_;  // the latter are those that no triangle's plane parts
   std::vector<NodePair>* split_into_ = nullptr;
   std::uint64_t tests_ = 0, most_tests_ = 0;
+  PatchPairs patch_pairs_;
 };
 
 // A pair of triangles that is passed on to the elementary test costs about as much as so many overlap tests.
@@ -162,12 +171,20 @@ class SharedDescent {
   // of `grid`. A descent that takes more than `most` tests may stop, and has then passed on only some pairs.
   std::uint64_t run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
                     std::uint64_t most = kAnyNumber);
-  // Does what run() does, for a sink that may close: tells it now and then what share of the descent is done,
-  // and stops once it is closed. `most` bounds the number of tests, and counts each pair that is passed on as
-  // kTestsOfPair of them. A descent that would take more stops, and returns more than `most`. What is passed
-  // on, and the number of tests, does not depend on the number of threads.
-  std::uint64_t run_until_closed(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
-                                 std::uint64_t most = kAnyNumber);
+  // Does what run() does in ranges, and calls `cut_short` after each of them: returns true where it has moved
+  // the end of the interval, and `bounds` and `grid` with it. The ranges that are left are then about the new
+  // interval. `patience` bounds what the ranges may be expected to take together, in tests, with each pair
+  // that is passed on as kTestsOfPair of them, where most of it is due to motion. A descent that would take
+  // more stops, and has then passed on only some pairs. What is passed on, and the number of tests, does not
+  // depend on the number of threads.
+  struct Outcome {
+    std::uint64_t tests = 0;
+    bool stopped = false;
+    double growth = 1;  // pairs of patches that overlap during the interval, for each that does at its start
+  };
+  Outcome run_in_ranges(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
+                        const std::function<std::optional<std::uint64_t>()>& cut_short,
+                        std::uint64_t patience);
   static constexpr std::uint64_t kAnyNumber = std::numeric_limits<std::uint64_t>::max();
 
  private:
@@ -194,8 +211,12 @@ class SharedDescent {
   const DescentInput input_;
   const Team& team_;
   std::vector<PatchDescent> by_thread_;
-  std::deque<KeptPairs> kept_;           // [ranges]: the pairs that a range passed on
-  std::vector<std::uint64_t> tests_of_;  // [ranges]: overlap tests, of a descent that may stop
+  std::deque<KeptPairs> kept_;  // [ranges]: the pairs that a range passed on
+  struct RangeWork {
+    std::uint64_t tests;
+    PatchDescent::PatchPairs pairs;
+  };
+  std::vector<RangeWork> work_of_;  // [ranges], of a descent that may stop
   std::vector<NodePair> subtrees_, next_;
   std::uint64_t tests_ = 0;  // overlap tests of the last interval
 };

@@ -20,6 +20,10 @@ std::size_t place_of(std::size_t i) {
   return reversed;
 }
 
+// Where so many pairs of patches overlap during an interval for each that does at its start, its parts take
+// less together.
+constexpr double kWorthParts = 3;
+
 // A descent that made so many tests for each patch has met nearly all patches, and the next descent will too.
 constexpr std::size_t kTestsWhereAllAreMet = 32;
 
@@ -61,43 +65,60 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
   return tests_;
 }
 
-std::uint64_t SharedDescent::run_until_closed(std::span<const NodeBounds> bounds, const Grid& grid,
-                                              TrianglePairSink& sink, std::uint64_t most) {
+SharedDescent::Outcome SharedDescent::run_in_ranges(
+    std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
+    const std::function<std::optional<std::uint64_t>()>& cut_short, std::uint64_t patience) {
   const Team alone;
   const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
-  team.parallel_for(by_thread_.size(), [&](std::size_t i, std::size_t) {
-    by_thread_[i].start_interval(bounds, grid, kAnyNumber);
-  });
+  const auto start = [&] {
+    team.parallel_for(by_thread_.size(), [&](std::size_t i, std::size_t) {
+      by_thread_[i].start_interval(bounds, grid, kAnyNumber);
+    });
+  };
+  start();
   if (kept_.size() < kStops) kept_.resize(kStops);
-  tests_of_.resize(kStops);
+  work_of_.resize(kStops);
   subtrees_.assign(1, {0, 0});
   split_into_subtrees(kStops);
   tests_ = by_thread_[0].tests();
-  std::uint64_t cost = tests_;
-  for (std::size_t first = 0; first < kStops; first += team.threads()) {
-    const std::size_t last = std::min(first + team.threads(), kStops);
+  std::uint64_t cost_of_pairs = 0;
+  PatchDescent::PatchPairs pairs;
+  Outcome out;
+  for (std::size_t done = 0; done < kStops && !out.stopped && !sink.closed();) {
+    const std::size_t first = done, last = std::min(first + team.threads(), kStops);
     team.parallel_for(last - first, [&](std::size_t i, std::size_t thread) {
       const std::size_t range = place_of(first + i);
-      const std::uint64_t before = by_thread_[thread].tests();
-      if (most != kAnyNumber) by_thread_[thread].stop_after(before + most);
-      for (const NodePair pair : subtrees_of(range, kStops)) by_thread_[thread].descend(pair, kept_[range]);
-      tests_of_[range] = by_thread_[thread].tests() - before;
+      PatchDescent& descent = by_thread_[thread];
+      const RangeWork before{descent.tests(), descent.patch_pairs()};
+      if (patience != kAnyNumber) descent.stop_after(before.tests + patience);
+      for (const NodePair pair : subtrees_of(range, kStops)) descent.descend(pair, kept_[range]);
+      work_of_[range] = {descent.tests() - before.tests,
+                         {descent.patch_pairs().all - before.pairs.all,
+                          descent.patch_pairs().at_start - before.pairs.at_start}};
     });
-    for (std::size_t i = first; i < last; ++i) {
-      KeptPairs& kept = kept_[place_of(i)];
-      tests_ += tests_of_[place_of(i)];
-      cost += tests_of_[place_of(i)] + kept.cost();
-      const bool too_long = cost > most;
-      if (!too_long) {
-        pass_on(kept, sink);
-        sink.tell(static_cast<double>(i + 1) / kStops);
-        if (!sink.closed()) continue;
-      }
-      for (; i < last; ++i) kept_[place_of(i)].clear();
-      return tests_ = too_long ? std::max(tests_, most + 1) : tests_;
+    bool cut = false;
+    while (done < last && !cut && !out.stopped && !sink.closed()) {
+      KeptPairs& kept = kept_[place_of(done)];
+      const RangeWork& work = work_of_[place_of(done)];
+      tests_ += work.tests;
+      cost_of_pairs += kept.cost();
+      pairs.all += work.pairs.all, pairs.at_start += work.pairs.at_start;
+      out.growth = static_cast<double>(pairs.all + 1) / static_cast<double>(pairs.at_start + 1);
+      ++done;
+      out.stopped =
+          cost_of_pairs > patience || (tests_ + cost_of_pairs > patience && out.growth > kWorthParts);
+      if (out.stopped) break;
+      pass_on(kept, sink);
+      sink.tell();
+      if (done == kStops) break;
+      if (const auto left = cut_short()) patience = *left, cut = true;
     }
+    // What is left of this round is about the interval before the cut.
+    for (std::size_t i = first; i < last; ++i) kept_[place_of(i)].clear();
+    if (cut) start();
   }
-  return tests_;
+  out.tests = tests_;
+  return out;
 }
 
 // Reads from end to end what a descent asks of pairs of patches that touch.

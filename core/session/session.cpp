@@ -130,6 +130,7 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
     // For the first contact alone there is one look in either case.
     const bool embedded = !options_.ignore_starts && starts_.embedded() && can_follow();
     step.starts_embedded = embedded && (!touched_last_ || first_only());
+    step.any_contact = any_contact_ && first_only();
     out.report = asked.detector->detect(step, out.found);
   } else {
     out.report = starts_.see(*asked.detector, step, out.found);
@@ -172,7 +173,8 @@ void Session::begin(const Motion& motion) {
   require_finite(motion.end(), "end positions");
 }
 
-void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out) {
+void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, bool any_contact) {
+  any_contact_ = any_contact;
   const Stopwatch whole;
   begin(motion);
   try {

@@ -65,8 +65,9 @@ class Session {
 
   // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
   // holds the skeleton at both ends; null for a mesh without a rig. The answer is written into `out`, whose
-  // memory is used again.
-  void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
+  // memory is used again. With `any_contact`, a session that was asked for the first contact may answer with
+  // any contact of a step that is not free.
+  void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, bool any_contact = false);
 
   // Returns what preparing the strategy has found out (StrategyInput::preparation); empty where it saves
   // nothing.
@@ -123,6 +124,7 @@ class Session {
   Crossings rest_;
   RestCrossings left_out_;
   bool touched_last_ = false;  // something did in the step before
+  bool any_contact_ = false;   // one is enough, whichever it is
   bool start_known_ = false;   // what crosses at the start of the step that is being answered is known
 };
 

@@ -49,6 +49,11 @@ inline bool apart(const NodeBounds& a, const NodeBounds& b) {
   return (over & over >> 1 & 0x55555555U) != 0;
 }
 
+// The same of the start of the interval alone.
+inline bool apart_at_start(const NodeBounds& a, const NodeBounds& b) {
+  return (above(a.at, -swapped(b.at)) & 0x55555555U) != 0;
+}
+
 // Returns the triangles in `mask` that are not proven apart from a node, or from triangle `lane` of another
 // patch.
 Mask16 near(const TriangleBounds& triangles, Mask16 mask, const NodeBounds& other);

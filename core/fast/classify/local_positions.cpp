@@ -28,15 +28,33 @@ LocalPositions::LocalPositions(std::span<const Vec3> reference) : scale_(1), rec
 }
 
 void LocalPositions::update(const Motion& motion, const Team& team, double off) {
+  convert_all(motion, team, [](const auto& /*start*/, const auto& end) { return end; });
+  add_error(off);
+}
+
+// A position start + last (end - start) rounds three times. The products are no larger than the difference of
+// two positions in the part, so all roundings together are below 2^-50 times the largest coordinate in it.
+void LocalPositions::update_beginning(const Motion& motion, double last, const Team& team) {
+  convert_all(motion, team, [&](const auto& start, const auto& end) { return start + last * (end - start); });
+  add_error(0x1p-50 * largest_in_scene());
+}
+
+// Converts the start and what at(start, end) makes of the start and the end of four coordinates.
+template <class At>
+void LocalPositions::convert_all(const Motion& motion, const Team& team, const At& at) {
   const std::size_t count = records_.size();
   origin_ = motion.start()[0];
   largest_.resize(team.ranges_of(count, kRange));
   team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
-    largest_[part] = convert(motion, first, last);
+    largest_[part] = convert(motion, first, last, at);
   });
   const auto largest = std::bit_cast<float>(*std::max_element(largest_.begin(), largest_.end()));
-  known_ = largest <= kLargest && off * scale_ <= 0x1p-10 * largest;
+  known_ = largest <= kLargest;
   error_ = 0x1.00002p-24F * largest + 1e-37F;
+}
+
+void LocalPositions::add_error(double off) {
+  known_ = known_ && off * scale_ <= 0x1p14 * double{error_};
   error_ = error_beside(off);
 }
 
@@ -46,7 +64,9 @@ double LocalPositions::largest_in_scene() const {
 
 // Converts a range of vertices and returns the bits of the largest coordinate's size. Bits are ordered as the
 // sizes are, with anything that is not a number above all of them, and their maximum takes one cycle.
-std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last) {
+template <class At>
+std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last,
+                                     const At& at) {
   const Vec3& o = origin_;
   const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
@@ -55,7 +75,7 @@ std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, st
     HalfOf<double> p, q;
     std::memcpy(&p, start, sizeof p);
     std::memcpy(&q, end, sizeof q);
-    const Lane8 both = joined<Lane8>(p, q);
+    const Lane8 both = joined<Lane8>(p, HalfOf<double>(at(p, q)));
     const Float8 f = converted<Float8>((both - origin) * scale);
     std::memcpy(out, &f, sizeof f);
     const Int8 size = reinterpret_cast<Int8>(f) & 0x7fffffff;

@@ -27,6 +27,9 @@ class LocalPositions {
   // Converts the positions of an interval, and finds their error. `off`, in units of the scene, is by how
   // much the coordinates of `motion` may be off themselves.
   void update(const Motion& motion, const Team& team = Team(), double off = 0);
+  // Does the same for the beginning of an interval, from t = 0 to `last`, and accounts for what positions at
+  // that time are off.
+  void update_beginning(const Motion& motion, double last, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
   // Returns where a point of local coordinates lies in the scene.
@@ -46,7 +49,11 @@ class LocalPositions {
   bool known() const { return known_; }
 
  private:
-  std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last);
+  template <class At>
+  void convert_all(const Motion& motion, const Team& team, const At& at);
+  template <class At>
+  std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last, const At& at);
+  void add_error(double off);
 
   double scale_;
   Vec3 origin_ = Vec3::Zero();  // the first vertex at the start of the interval
