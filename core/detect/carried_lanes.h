@@ -8,8 +8,8 @@
 #include "core/mesh/motion.h"
 #include "core/mesh/triangle_mesh.h"
 
-// The fifteen feature pairs that two triangles carry (carried_pairs.h), one a lane, in single precision. Lanes
-// 0 to 5 hold a vertex and a face, the others two edges; the last lane repeats the one before.
+// The fifteen feature pairs that two triangles carry (carried_pairs.h), one a lane, in single precision.
+// Lanes 0 to 5 hold a vertex and a face, the others two edges; the last lane repeats the one before.
 namespace cscd {
 
 // The corners of the first triangle, then those of the second. At each end of the interval, positions are

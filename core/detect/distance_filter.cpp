@@ -70,7 +70,8 @@ CarriedPlaces not_farther_than(double distance, const Motion& motion, const Tria
   if (!(corners.largest >= kSmallest && corners.largest <= kLargest)) return places;
   VectorLanes16 point[3];
   CarriedLanes(corners).seen_from_first(point);
-  const Gaps gaps{point, all_lanes(64 * 0x1p-24F * 2 * corners.largest), all_lanes(float_not_below(distance))};
+  const Gaps gaps{point, all_lanes(64 * 0x1p-24F * 2 * corners.largest),
+                  all_lanes(float_not_below(distance))};
 
   // The points half-way, times two, and the first one at 0. Nearest points of a vertex and a face lie on the
   // face, on an edge or at a corner; those of two edges inside both, or at an end of one or of both.

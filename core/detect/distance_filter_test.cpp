@@ -55,10 +55,12 @@ TEST(DistanceFilter, NothingThatComesNearIsDropped) {
         before_counts += before > 0;
       }
     });
-    for_each_carried(two.mesh, {pair, static_cast<CarriedPlaces>(places & ~kept)}, [&](const FeaturePair& features) {
-      EXPECT_EQ(ask_close(exact, two.mesh, motion, features, r).verdict, Verdict::apart) << "seed " << seed;
-      ++dropped;
-    });
+    for_each_carried(two.mesh, {pair, static_cast<CarriedPlaces>(places & ~kept)},
+                     [&](const FeaturePair& features) {
+                       EXPECT_EQ(ask_close(exact, two.mesh, motion, features, r).verdict, Verdict::apart)
+                           << "seed " << seed;
+                       ++dropped;
+                     });
     left += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(kept)));
   }
   EXPECT_GT(close, 2000u);

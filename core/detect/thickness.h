@@ -10,15 +10,14 @@
 namespace cscd {
 
 // How near two features may come before they count as *close*. A feature pair is close if its distance is at
-// most its thickness at some t in [0, 1]; with thickness 0, close means that the features touch. The thickness
-// of a pair is `all`, and the largest of `of_vertex` among the vertices of either feature on top.
+// most its thickness at some t in [0, 1]; with thickness 0, close means that the features touch. The
+// thickness of a pair is `all`, and the largest of `of_vertex` among the vertices of either feature on top.
 class Thickness {
  public:
   Thickness() = default;
   // Lengths in units of the positions, finite and at least 0. `of_vertex`, [vertices], is empty where all
   // vertices have 0, and must outlive the object.
-  explicit Thickness(double all, std::span<const double> of_vertex = {})
-      : all_(all), of_vertex_(of_vertex) {
+  explicit Thickness(double all, std::span<const double> of_vertex = {}) : all_(all), of_vertex_(of_vertex) {
     largest_ = all;
     if (!of_vertex.empty()) largest_ += 2 * std::max(0.0, *std::ranges::max_element(of_vertex));
   }

@@ -20,7 +20,8 @@ class Interval {
       : mesh_(mesh),
         cut_(cut_surface(mesh, reference, std::vector<std::int32_t>(mesh.triangle_count(), 0))),
         local_(reference),
-        certificates_(cut_.tree, cut_.covers, complete ? capped(reference) : std::vector<CappedClusters>{}),
+        certificates_(mesh, cut_.tree, cut_.covers,
+                      complete ? capped(reference) : std::vector<CappedClusters>{}),
         following_(mesh, reference, cut_) {}
 
   void ask(const Motion& motion) {

@@ -54,7 +54,7 @@ TEST(PatchDescent, NodesCanBeSplitUnlessBothAreLeaves) {
     const CutSurface cut =
         cut_surface(mesh, shape.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
     const LocalPositions local(shape.positions);
-    const Certificates certificates(cut.tree, cut.covers);
+    const Certificates certificates(mesh, cut.tree, cut.covers);
     const PatchDescent descent({cut.tree, local, certificates, nullptr, true, false});
     const std::vector<PatchTree::Node>& nodes = cut.tree.nodes;
     EXPECT_EQ(nodes.size() == 1, mesh.triangle_count() == 8);

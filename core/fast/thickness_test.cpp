@@ -14,13 +14,13 @@ namespace {
 
 // A tube whose vertices come nearer to each other by chance: what is close first is near on the surface. With
 // `bend`, the tube bends until its ends come near, too.
-struct Scene {
+struct ThickTube {
   test::Shape shape;
   TriangleMesh mesh;
   std::vector<Vec3> end;
   double edge = 0;  // the mean length
 
-  Scene(unsigned seed, double noise, double bend)
+  ThickTube(unsigned seed, double noise, double bend)
       : shape(test::uneven_tube(12, 90, 20, [](double x) { return 0.8 + 0.1 * std::sin(3 * x); })),
         mesh(shape.mesh()) {
     std::mt19937 random(seed);
@@ -39,15 +39,16 @@ struct Scene {
   Motion motion() const { return Motion(shape.positions, end); }
 };
 
-ContactSet answer(Detector& detector, const Step& step, Report* report = nullptr) {
+ContactSet answer_of(Detector& detector, const Step& step, Report* report = nullptr) {
   ContactSet found;
   const Report own = detector.detect(step, found);
   if (report != nullptr) *report = own;
   found.sort();
   return found;
 }
-std::size_t of_first_time(const ContactSet& sorted) {
-  return static_cast<std::size_t>(std::ranges::count(sorted.contacts, sorted.contacts.front().time, &Contact::time));
+std::size_t count_of_first_time(const ContactSet& sorted) {
+  return static_cast<std::size_t>(
+      std::ranges::count(sorted.contacts, sorted.contacts.front().time, &Contact::time));
 }
 
 // From clear starts, drvbc_fast keeps a close pair of the earliest time, drvbc_fast_all and
@@ -60,16 +61,16 @@ TEST(Thickness, EveryRowKeepsWhatItPromises) {
   std::uint64_t plain = 0, by_signs = 0, by_caps = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     const double noise = seed % 3 == 0 ? 0.02 : seed % 3 == 1 ? 0.05 : 0.12, bend = seed % 2 == 0 ? 0 : 5.6;
-    const Scene scene(seed, noise, bend);
+    const ThickTube tube(seed, noise, bend);
     std::mt19937 random(seed);
-    const double r = scene.edge * std::exp2(-5 * static_cast<double>(random()) * 0x1p-32);
-    const Step step{.motion = scene.motion(), .thickness = Thickness(r)};
-    const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(scene.setup()), scene.setup());
+    const double r = tube.edge * std::exp2(-5 * static_cast<double>(random()) * 0x1p-32);
+    const Step step{.motion = tube.motion(), .thickness = Thickness(r)};
+    const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(tube.setup()), tube.setup());
     Report report;
-    const ContactSet all = answer(*base, step, &report);
+    const ContactSet all = answer_of(*base, step, &report);
     plain += report.cull.pctp;
-    const ContactSet complete =
-        answer(*make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector, step, &report);
+    const ContactSet complete = answer_of(
+        *make_drvbc_fast(tube.setup(), {.name = "complete", .complete = true}).detector, step, &report);
     by_caps += report.cull.pctp;
     EXPECT_EQ(digest(complete), digest(all)) << "seed " << seed;
     if (!all.contacts.empty() && all.contacts.front().time == 0) continue;
@@ -77,16 +78,16 @@ TEST(Thickness, EveryRowKeepsWhatItPromises) {
     Step known = step;
     known.starts_embedded = true;
     const ContactSet again =
-        answer(*make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector, known);
+        answer_of(*make_drvbc_fast(tube.setup(), {.name = "complete", .complete = true}).detector, known);
     EXPECT_EQ(digest(again), digest(all)) << "seed " << seed;
-    const ContactSet first = answer(*make_drvbc_fast(scene.setup()).detector, step, &report);
+    const ContactSet first = answer_of(*make_drvbc_fast(tube.setup()).detector, step, &report);
     by_signs += report.cull.pctp;
     ASSERT_EQ(first.contacts.empty(), all.contacts.empty()) << "seed " << seed;
-    const ContactSet alone = answer(*make_drvbc_fast(scene.setup(true)).detector, step);
+    const ContactSet alone = answer_of(*make_drvbc_fast(tube.setup(true)).detector, step);
     if (all.contacts.empty()) continue;
     EXPECT_EQ(first.contacts.front().time, all.contacts.front().time) << "seed " << seed;
     EXPECT_EQ(alone.contacts.front().time, all.contacts.front().time) << "seed " << seed;
-    first_missing += of_first_time(all) - of_first_time(first);
+    first_missing += count_of_first_time(all) - count_of_first_time(first);
     near_first += bend == 0;
   }
   EXPECT_GT(clear, 30u);
@@ -97,36 +98,36 @@ TEST(Thickness, EveryRowKeepsWhatItPromises) {
 
 // A thickness by vertex: each pair is held against its own, and the largest bounds what is looked at.
 TEST(Thickness, OfVerticesIsThatOfTheirPairs) {
-  const Scene scene(3, 0.12, 0);
-  std::vector<double> of_vertex(scene.mesh.vertex_count());
+  const ThickTube tube(3, 0.12, 0);
+  std::vector<double> of_vertex(tube.mesh.vertex_count());
   std::mt19937 random(7);
-  for (double& r : of_vertex) r = 0.2 * scene.edge * static_cast<double>(random()) * 0x1p-32;
-  const Step step{.motion = scene.motion(), .thickness = Thickness(0.05 * scene.edge, of_vertex)};
-  const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(scene.setup()), scene.setup());
-  const ContactSet all = answer(*base, step);
-  const auto complete = make_drvbc_fast(scene.setup(), {.name = "complete", .complete = true}).detector;
-  EXPECT_EQ(digest(answer(*complete, step)), digest(all));
-  const Step largest{.motion = scene.motion(), .thickness = Thickness(step.thickness.largest())};
-  const ContactSet more = answer(*complete, largest);
+  for (double& r : of_vertex) r = 0.2 * tube.edge * static_cast<double>(random()) * 0x1p-32;
+  const Step step{.motion = tube.motion(), .thickness = Thickness(0.05 * tube.edge, of_vertex)};
+  const auto base = compose(std::make_unique<PlainCuller<Kdop16>>(tube.setup()), tube.setup());
+  const ContactSet all = answer_of(*base, step);
+  const auto complete = make_drvbc_fast(tube.setup(), {.name = "complete", .complete = true}).detector;
+  EXPECT_EQ(digest(answer_of(*complete, step)), digest(all));
+  const Step largest{.motion = tube.motion(), .thickness = Thickness(step.thickness.largest())};
+  const ContactSet more = answer_of(*complete, largest);
   EXPECT_LT(all.contacts.size(), more.contacts.size());
   EXPECT_GT(all.contacts.size(), 0u);
   for (const Contact& contact : all.contacts) {
-    const double r = step.thickness.of(scene.mesh, contact.pair);
-    EXPECT_EQ(ask_close(*find_elementary_test("exact"), scene.mesh, scene.motion(), contact.pair, r).time,
+    const double r = step.thickness.of(tube.mesh, contact.pair);
+    EXPECT_EQ(ask_close(*find_elementary_test("exact"), tube.mesh, tube.motion(), contact.pair, r).time,
               contact.time);
   }
 }
 
 // What was asked with a thickness before leaves nothing behind.
 TEST(Thickness, DoesNotOutliveItsStep) {
-  const Scene scene(4, 0.1, 5.6);
+  const ThickTube tube(4, 0.1, 5.6);
   for (const bool complete : {false, true}) {
     const DrvbcFastOptions options{.name = "test", .follows = false, .complete = complete};
-    const auto used = make_drvbc_fast(scene.setup(), options).detector;
+    const auto used = make_drvbc_fast(tube.setup(), options).detector;
     for (const double r : {0.0, 0.3, 0.0, 0.05, 0.3, 0.0}) {
-      const Step step{.motion = scene.motion(), .thickness = Thickness(r * scene.edge)};
-      const auto other = make_drvbc_fast(scene.setup(), options).detector;
-      EXPECT_EQ(digest(answer(*used, step)), digest(answer(*other, step))) << r;
+      const Step step{.motion = tube.motion(), .thickness = Thickness(r * tube.edge)};
+      const auto other = make_drvbc_fast(tube.setup(), options).detector;
+      EXPECT_EQ(digest(answer_of(*used, step)), digest(answer_of(*other, step))) << r;
     }
   }
 }

@@ -86,9 +86,10 @@ struct Subject {
     const Motion motion = random.clip.interval(0).motion;
     double least = HUGE_VAL;
     for_each_pair([&](const FeaturePair& pair) {
-      least = std::min(least, pair.kind == FeaturePair::Kind::vertex_face
-                                  ? distance_at(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), 0)
-                                  : distance_at(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), 0));
+      least = std::min(least,
+                       pair.kind == FeaturePair::Kind::vertex_face
+                           ? distance_at(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), 0)
+                           : distance_at(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), 0));
     });
     return least;
   }
@@ -108,7 +109,8 @@ struct Subject {
                triangles = static_cast<std::int32_t>(mesh.triangle_count());
     for (std::int32_t v = 0; v < vertices; ++v)
       for (std::int32_t t = 0; t < triangles; ++t)
-        if (!contains(mesh.corners(TriangleId{t}), VertexId{v})) take(FeaturePair::of(VertexId{v}, TriangleId{t}));
+        if (!contains(mesh.corners(TriangleId{t}), VertexId{v}))
+          take(FeaturePair::of(VertexId{v}, TriangleId{t}));
     for (std::int32_t e = 0; e < edges; ++e)
       for (std::int32_t f = e + 1; f < edges; ++f)
         if (!share_vertex(mesh.ends(EdgeId{e}), mesh.ends(EdgeId{f})))

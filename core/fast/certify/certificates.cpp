@@ -172,7 +172,8 @@ void Certificates::look_at_distance(std::size_t p, const PatchLanes& lanes,
 void Certificates::keep_clear_stars() {
   for (std::size_t p = 0; p < cell_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c)
-      rings_.spoil(p, c, static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
+      rings_.spoil(p, c,
+                   static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
   rings_.find_stars();
   for (std::size_t p = 0; p < cell_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c) {

@@ -17,7 +17,7 @@ class FreshBesideUsed {
   void take(const Motion& motion, const std::vector<bool>& mirrored, std::size_t covers) {
     scene_.local.update(motion);
     look(scene_.certificates, mirrored);
-    Certificates fresh(scene_.tree, scene_.covers);
+    Certificates fresh(scene_.mesh, scene_.tree, scene_.covers);
     fresh.use_covers(covers);
     look(fresh, mirrored);
     for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p)

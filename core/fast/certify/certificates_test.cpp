@@ -247,7 +247,7 @@ TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
   const test::Shape sphere = test::icosphere(3);
   const TriangleMesh mesh = sphere.mesh();
   CutSurface cut = cut_surface(mesh, sphere.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
-  Certificates certificates(cut.tree, cut.covers);
+  Certificates certificates(mesh, cut.tree, cut.covers);
   LocalPositions local(sphere.positions);
   local.update(Motion(sphere.positions, sphere.positions));
   const auto certify = [&] { look_at_all(certificates, cut.tree, local); };

@@ -10,9 +10,9 @@
 
 namespace cscd::fast {
 
-// Which triangles have nothing but tall triangles of one cluster (classify/patch_lanes.h) round them. The first
-// ring of a triangle is all triangles that share a vertex with it, and the second ring all that share a vertex
-// with the first.
+// Which triangles have nothing but tall triangles of one cluster (classify/patch_lanes.h) round them. The
+// first ring of a triangle is all triangles that share a vertex with it, and the second ring all that share a
+// vertex with the first.
 //
 // Two features are *near on the surface* if some triangle has a vertex of both. Then any two triangles that
 // carry them lie in each other's second ring. If all pairs start farther apart than the thickness, and one
@@ -24,8 +24,8 @@ class TallRings {
   // Both must outlive the object.
   TallRings(const TriangleMesh& mesh, const PatchTree& tree) : mesh_(mesh), tree_(tree) {}
 
-  // An interval is one call of `start`, one call of `take` for every patch and cover, from any thread, and one
-  // call of find_stars() or of find_unsettled(). The first `covers` are in use.
+  // An interval is one call of `start`, one call of `take` for every patch and cover, from any thread, and
+  // one call of find_stars() or of find_unsettled(). The first `covers` are in use.
   void start(std::size_t covers);
   // Takes the tall triangles of a patch, none where it is in no cluster.
   void take(std::size_t patch, std::size_t cover, Mask16 tall) {
@@ -33,9 +33,7 @@ class TallRings {
   }
 
   // Takes out triangles that are not clear of others (contour/capped_clusters.h), before find_stars().
-  void spoil(std::size_t patch, std::size_t cover, Mask16 triangles) {
-    spoiled_[patch][cover] |= triangles;
-  }
+  void spoil(std::size_t patch, std::size_t cover, Mask16 triangles) { spoiled_[patch][cover] |= triangles; }
   void find_stars();
   // The triangles of a patch whose first ring is tall and clear.
   Mask16 stars(std::size_t patch, std::size_t cover) const {
@@ -89,14 +87,14 @@ class TallRings {
   bool pairs_known_ = false;                                      // whether these are found
   std::vector<RingBits> inner_rings_;                             // [triangles]: what inner_ says of each
 
-  Masks spoiled_;  // triangles that are not tall, or have such in a ring
+  Masks spoiled_;                                 // triangles that are not tall, or have such in a ring
   Masks fresh_, next_;                            // those of the last ring, and of the next one
   std::vector<std::int32_t> front_, next_front_;  // the patches of these
   std::vector<std::int32_t> spread_over_;         // all patches so far
   std::vector<RingBits> rings_of_;                // [triangles]
-  std::vector<TriangleId> touched_;               // triangles of which the interval says less than the clusters
-  std::vector<std::int32_t> near_offset_;         // [triangles + 1]
-  std::vector<TriangleId> near_;                  // the triangles in the first two rings of each
+  std::vector<TriangleId> touched_;        // triangles of which the interval says less than the clusters
+  std::vector<std::int32_t> near_offset_;  // [triangles + 1]
+  std::vector<TriangleId> near_;           // the triangles in the first two rings of each
 };
 
 }  // namespace cscd::fast

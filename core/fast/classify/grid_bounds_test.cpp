@@ -157,10 +157,11 @@ TEST(GridBounds, WithAMarginApartMeansFartherThanTwiceTheMargin) {
   const test::Patches scene(0.1, 2, {0, 0, 0}, 1, 5);
   const double directions[kDirections][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1},  {1, 1, 0},
                                              {1, 0, 1}, {0, 1, 1}, {1, -1, 0}, {1, 0, -1}};
-  const auto gap = [&](const Patch& a, const Patch& b, std::size_t end, const double (&d)[3]) {
+  const auto gap = [&](const Patch& a, const Patch& b, std::size_t end, const double(&d)[3]) {
     const auto along = [&](std::int32_t vertex) {
       const float* const at = &scene.local.records()[static_cast<std::size_t>(vertex)].at[4 * end];
-      return d[0] * static_cast<double>(at[0]) + d[1] * static_cast<double>(at[1]) + d[2] * static_cast<double>(at[2]);
+      return d[0] * static_cast<double>(at[0]) + d[1] * static_cast<double>(at[1]) +
+             d[2] * static_cast<double>(at[2]);
     };
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (const std::int32_t v : a.vertex) most = std::max(most, along(v));

@@ -36,7 +36,7 @@ struct DistantSigns {
   Mask16 tall[kCovers];
 };
 // Certifies, at every t, signs of triangles whose planes are farther than `margin` from the viewpoint, and
-// heights above `height`. Both lengths are in local units.
+// heights above `height`. Both lengths are in local units, and `margin` is the smaller one.
 void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
                               const Viewpoint* const (&from)[kCovers], float error, float margin,
                               float height, DistantSigns& out);

@@ -199,22 +199,26 @@ TEST(PatchLanes, AtADistancePlanesAndHeightsKeepIt) {
   std::size_t tall = 0, not_tall = 0, with_sign = 0;
   int turn = 0;
   for (const test::Patches& scene : test::patches()) {
-    if (scene.shift.norm() > 10) continue;  // the heights below are computed in doubles, from rounded positions
+    if (scene.shift.norm() > 10)
+      continue;  // the heights below are computed in doubles, from rounded positions
     for (std::size_t p = 0; p < scene.tree.patches.size(); p += 3) {
       const Patch& patch = scene.tree.patches[p];
       const PatchLanes lanes = load(scene.local.records(), patch.vertex);
       Viewpoint from;
       for (std::size_t end = 0; end < 2; ++end)
         for (std::size_t i = 0; i < 3; ++i)
-          from.at[end][i] = lanes.at[end][i][turn % 5] + (i == 0 ? 0.01F : -0.03F) * static_cast<float>(turn % 3);
+          from.at[end][i] =
+              lanes.at[end][i][turn % 5] + (i == 0 ? 0.01F : -0.03F) * static_cast<float>(turn % 3);
       const auto at = [&](std::size_t place, double t) {
         Vec3 out;
         for (std::size_t i = 0; i < 3; ++i)
-          out[static_cast<Eigen::Index>(i)] = (1 - t) * static_cast<double>(lanes.at[0][i][place] - from.at[0][i]) +
-                                              t * static_cast<double>(lanes.at[1][i][place] - from.at[1][i]);
+          out[static_cast<Eigen::Index>(i)] =
+              (1 - t) * static_cast<double>(lanes.at[0][i][place] - from.at[0][i]) +
+              t * static_cast<double>(lanes.at[1][i][place] - from.at[1][i]);
         return out;
       };
-      const float margin = 0.0005F * static_cast<float>(turn % 4), height = 0.002F * static_cast<float>(turn % 7);
+      const float height = 0.002F * static_cast<float>(turn % 7),
+                  margin = height * static_cast<float>(turn % 4) / 3;
       ++turn;
       const Viewpoint* const viewpoints[kCovers] = {&from};
       DistantSigns found;
@@ -229,8 +233,8 @@ TEST(PatchLanes, AtADistancePlanesAndHeightsKeepIt) {
                              at(patch.corner[2][l], k / 16.0)};
           const Vec3 normal = (x[1] - x[0]).cross(x[2] - x[0]);
           const double volume = normal.dot(x[0]), plane = volume / normal.norm();
-          if (positive) EXPECT_GT(plane, margin);
-          if (negative) EXPECT_LT(plane, -margin);
+          EXPECT_GT(positive ? plane : HUGE_VAL, margin);
+          EXPECT_LT(negative ? plane : -HUGE_VAL, -margin);
           if (!is_tall) continue;
           EXPECT_GT(plane, height);
           for (int u = 0; u < 3; ++u) {
@@ -242,7 +246,7 @@ TEST(PatchLanes, AtADistancePlanesAndHeightsKeepIt) {
       });
     }
   }
-  EXPECT_GT(tall, 300u);
+  EXPECT_GT(tall, 200u);
   EXPECT_GT(not_tall, 300u);
   EXPECT_GT(with_sign, tall);
 }
