@@ -95,7 +95,7 @@ class Closeness {
   }
 
  private:
-  static constexpr int kMostSteps = 40;
+  static constexpr int kMostSteps = 200;
 
   std::array<Vec3, 4> at(double t) const {
     std::array<Vec3, 4> now;
@@ -161,32 +161,42 @@ class Closeness {
   }
 
   CloseResult close_in(double low, const Nearest& nearest) const {
-    const CloseCase<Moving> here = case_at(nearest.number, low, 0);
-    if (!falls(here)) return {CloseResult::unclear};
+    const double first = step_to_root(nearest.number, low);
+    if (!(first > 0)) return {CloseResult::unclear};
     // The distance itself, and not its square, is nearly linear in time.
-    const double distance = nearest.way.norm();
-    const double guess = -here.beyond.value.value / here.beyond.slope.value * 2 * distance / (distance + r_);
-    const double high = std::min(1.0, low + 1.5 * std::max(guess, 0x1p-45));
-    const double middle = low + 0.5 * (high - low);
+    const double distance = nearest.way.norm(), guess = first * 2 * distance / (distance + r_);
+    const double high = std::min(1.0, low + 1.5 * std::max(guess, 0x1p-45)),
+                 middle = low + 0.5 * (high - low);
     if (!falls(case_at(nearest.number, middle, 0.5 * (high - low) + 0x1p-52))) return {CloseResult::unclear};
 
-    constexpr double kNear = 0x1p-40;
     double t = std::min(low + guess, high);
     for (int i = 0; i < 6; ++i) {
-      const Moving beyond = case_at(nearest.number, t, kNear).beyond;
-      if (beyond.slope.sign() >= 0) return {CloseResult::unclear};
-      const double step = -beyond.value.value / beyond.slope.value;
-      if (std::abs(step) < 0x1p-44) return time_near(nearest.number, t, beyond.slope, low, high);
+      const double step = step_to_root(nearest.number, t);
       t = std::clamp(t + step, low, high);
+      if (std::abs(step) < 0x1p-44) return time_near(nearest.number, t, low, high);
       if (t == high && high == 1 && case_at(nearest.number, 1, 0).beyond.value.sign() > 0)
         return {CloseResult::apart};
     }
     return {CloseResult::unclear};
   }
 
+  // Newton's step for the polynomial of the case, without a promise.
+  double step_to_root(int number, double t) const {
+    std::array<PointOf<WithSlope<double>>, 4> points;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double change = end_[i][k] - start_[i][k];
+        points[i][static_cast<std::size_t>(k)] = {start_[i][k] + change * t, change};
+      }
+    const auto beyond = Kind<Query>::close_case(number, points, WithSlope<double>{r_ * r_, 0}).beyond;
+    return -beyond.value / beyond.slope;
+  }
+
   // The time at which the polynomial falls to zero, from its value at t and its slope nearby.
-  CloseResult time_near(int number, double t, const Doubles& slope, double low, double high) const {
+  CloseResult time_near(int number, double t, double low, double high) const {
+    const Doubles slope = case_at(number, t, 0x1p-40).beyond.slope;
     const Pairs value = beyond_at(number, t);
+    if (slope.sign() >= 0) return {CloseResult::unclear};
     const double least_slope = std::abs(slope.value) - slope.error;
     const double step = -value.value.high / slope.value;
     // The step leaves out the low part of the value, and its quotient is rounded.

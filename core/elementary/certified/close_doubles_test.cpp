@@ -124,8 +124,8 @@ TEST(FilteredExactClose, AnswersAsTheRefereeInGeneralPosition) {
   for (CloseFamily* family : {&slow, &fast, &far}) {
     EXPECT_GT(family->apart, 150);
     EXPECT_GT(family->close, 150);
-    // Doubles settle all but a few in a thousand.
-    EXPECT_LT(family->by_referee(), 0.006 * family->all());
+    // Doubles settle nearly all.
+    EXPECT_LT(family->by_referee(), 0.002 * family->all());
   }
 }
 
@@ -170,17 +170,17 @@ TEST(FilteredExactClose, AnswersAsTheRefereeAtAnySize) {
   QueryMaker make(5);
   for (const double size : {0x1p-1060, 0x1p-500, 0x1p-120, 0x1p-60, 0x1p60, 0x1p200, 0x1p1000}) {
     CloseFamily family;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 40; ++i) {
       FourMovingPoints points = i % 2 == 0 ? make.any() : make.lattice(2);
       for (MovingPoint& p : points) p = {size * p.start, size * p.end};
       ASSERT_NO_FATAL_FAILURE(family.add_both(points, size * make.uniform(0.1, 1)));
     }
-    EXPECT_GT(family.close, 50);
+    EXPECT_GT(family.close, 20);
   }
   CloseFamily tiny, huge;
   for (int i = 0; i < 100; ++i) {
     const FourMovingPoints points = i % 2 == 0 ? test::vertex_meets_face(make, 0.5, 0.3, 0.3) : make.any();
-    ASSERT_NO_FATAL_FAILURE(tiny.add_both(points, i < 10 ? 0x1p-1074 : std::exp(make.uniform(-100, -10))));
+    ASSERT_NO_FATAL_FAILURE(tiny.add_both(points, i < 4 ? 0x1p-1074 : std::exp(make.uniform(-60, -10))));
     ASSERT_NO_FATAL_FAILURE(huge.add_both(points, std::exp(make.uniform(2, 80))));
   }
   EXPECT_GT(tiny.close, 40);
