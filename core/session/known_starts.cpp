@@ -12,8 +12,9 @@ constexpr std::size_t kMostFollowed = 20'000;
 
 }  // namespace
 
-KnownStarts::KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> reference, bool use_bones)
-    : poses_({mesh, reference}, kMostCrossings), use_bones_(use_bones) {}
+KnownStarts::KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> reference, bool use_bones,
+                         const Thickness& thickness)
+    : poses_({mesh, reference}, kMostCrossings), use_bones_(use_bones), thickness_(thickness) {}
 
 bool KnownStarts::begin(const Motion& motion, bool& finite) {
   return moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
@@ -32,6 +33,7 @@ void KnownStarts::search(std::span<const Vec3> pose, const Rig::Interval* bones,
   } else {
     poses_.find(pose);
   }
+  free_of_close_pairs_ = false;  // the search is about what crosses
   ++searches_;
 }
 
@@ -40,6 +42,7 @@ Report KnownStarts::see(Detector& detector, Step step, ContactSet& found) {
   step.most_crossings = poses_.most();
   const Report report = detector.detect(step, found);
   poses_.know(step.motion.start(), seen_);
+  free_of_close_pairs_ = false;
   return report;
 }
 
@@ -49,10 +52,15 @@ bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bon
   if (!(certainty.all || certainty.whether) || !has_bones || same_bits(unknown_end_, pose)) return false;
   std::optional<Rig::Interval> way;
   if (bones != nullptr) way = Rig::Interval{pose_bones_, bones->start};
-  detector.detect({Motion(poses_.positions(), pose), way ? used(*way) : nullptr, embedded()}, touched_);
+  detector.detect({.motion = Motion(poses_.positions(), pose),
+                   .bones = way ? used(*way) : nullptr,
+                   .starts_embedded = clear(),
+                   .thickness = thickness_},
+                  touched_);
   const bool all_known = touched_.contacts.empty() || certainty.all;
   if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
   poses_.follow(pose, touched_);
+  free_of_close_pairs_ = touched_.contacts.empty();
   return true;
 }
 
@@ -63,6 +71,7 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
   if (!nothing_touched) abandon(motion);
   if (nothing_touched || (certainty.all && found.contacts.size() <= kMostFollowed)) {
     if (!moved_on_) poses_.follow(motion.end(), found);
+    free_of_close_pairs_ = found.contacts.empty();
     unknown_end_.clear();
     if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
   } else {

@@ -13,6 +13,22 @@ constexpr std::size_t kMostLeftOut = 500'000;
 // Preparing the fallback takes about as long as this many plain searches for crossings, or twice as many.
 constexpr std::size_t kPlainSearches = 16;
 
+// Whether something touches, or is close, at t = 0 already, or may be.
+bool has_contact_at_start(const ContactSet& found) {
+  return std::ranges::any_of(found.contacts, [](const Contact& contact) { return contact.time <= 0; });
+}
+
+void require_proof_for_distance(const std::string& name, const StrategyInput& setup, const Strategy& strategy,
+                                const Strategy& fallback) {
+  for (const Strategy* asked : {&strategy, &fallback})
+    if (!asked->knows_distance)
+      throw InputError(name + ": strategy " + std::string(asked->name) +
+                       " has no proof for a thickness above 0; take drvbc_fast or drvbc_fast_complete");
+  if (!setup.elementary.knows_distance())
+    throw InputError(name + ": test " + std::string(setup.elementary.name) +
+                     " knows no thickness above 0; take filtered_exact");
+}
+
 }  // namespace
 
 std::optional<double> StepAnswer::time() const {
@@ -25,7 +41,8 @@ Session::Session(const std::string& name, const StrategyInput& setup, const Stra
     : setup_(setup),
       fallback_strategy_(fallback),
       options_(options),
-      starts_(setup.mesh, setup.reference, setup.rig != nullptr) {
+      starts_(setup.mesh, setup.reference, setup.rig != nullptr, options.thickness) {
+  if (is_thick()) require_proof_for_distance(name, setup, strategy, fallback);
   if (!strategy.sees_start) find_rest_crossings(name, rest);
   const Stopwatch preparing;
   main_ = make(strategy);
@@ -64,8 +81,10 @@ Session::PreparedStrategy& Session::fallback() {
 
 Certainty Session::certainty_of(const Strategy& strategy) const {
   if (strategy.own_test || !can_follow()) return {};
-  return {.all = promises_all(strategy.guarantee, starts_.embedded()) && !first_only(),
-          .whether = starts_.embedded() && strategy.guarantee != Guarantee::heuristic};
+  const bool whether = starts_.clear() ? strategy.guarantee != Guarantee::heuristic
+                                       : strategy.guarantee == Guarantee::complete;
+  return {.all = promises_all(strategy.guarantee, starts_.clear()) && !first_only(),
+          .whether = starts_.embedded() && whether};
 }
 
 // Chooses the strategy that answers a step, and sees to it that what crosses at the start is known, or that
@@ -74,15 +93,17 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
   start_known_ = options_.ignore_starts || starts_.knows(motion.start());
   if (options_.ignore_starts) return main_;
   const bool sees_start = main_.strategy->sees_start;
-  const bool worth_following = !sees_start || signs_pay();
+  // A way from a pose that is not clear proves no other pose clear.
+  const bool worth_following = (!sees_start || signs_pay()) && (!is_thick() || starts_.clear());
   if (!start_known_ && !(worth_following && starts_.follow_to(motion.start(), bones, *main_.detector,
                                                               certainty_of(*main_.strategy)))) {
     if (sees_start) return main_;
-    if (needs_start() && fallback_pays()) return fallback();
+    // With a thickness, no search of the start can spare the fallback.
+    if (needs_start() && (is_thick() ? fallback_strategy_.sees_start : fallback_pays())) return fallback();
     find_crossings(motion.start(), bones);
   }
   start_known_ = true;
-  return needs_start() && !starts_.embedded() ? fallback() : main_;
+  return needs_start() && !starts_.clear() ? fallback() : main_;
 }
 
 bool Session::signs_pay() const {
@@ -122,14 +143,15 @@ void Session::leave_out(StepAnswer& out) const {
 // Asks a strategy, which finds what crosses at the start where that is not known.
 void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Interval* bones,
                   StepAnswer& out) {
-  Step step{motion, setup_.rig != nullptr ? bones : nullptr};
+  Step step{
+      .motion = motion, .bones = setup_.rig != nullptr ? bones : nullptr, .thickness = options_.thickness};
   out.strategy = asked.strategy;
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
     // touches. After a step in which something did, that is likely again, and one look for all is quicker.
     // For the first contact alone there is one look in either case.
-    const bool embedded = !options_.ignore_starts && starts_.embedded() && can_follow();
-    step.starts_embedded = embedded && (!touched_last_ || first_only());
+    const bool clear = !options_.ignore_starts && starts_.clear() && can_follow();
+    step.starts_embedded = clear && (!touched_last_ || first_only());
     step.any_contact = any_contact_ && first_only();
     out.report = asked.detector->detect(step, out.found);
   } else {
@@ -138,16 +160,29 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
     out.embedding_ms += out.report.start_ms;
   }
   touched_last_ = !out.found.contacts.empty();
+  say_start(out);
   if (!options_.ignore_starts) {
-    say_start(out);
     starts_.learn_end(motion, bones, certainty_of(*asked.strategy), out.found);
   }
   leave_out(out);
 }
 
-void Session::say_start(StepAnswer& out) const {
-  out.start = starts_.crossings();
-  out.starts_embedded = out.start.total == 0;
+void Session::say_start(StepAnswer& out) {
+  if (!options_.ignore_starts) {
+    out.start = starts_.crossings();
+    out.starts_embedded = out.start.total == 0;
+  }
+  out.starts_clear = out.starts_embedded;
+  if (is_thick()) {
+    // Whoever lets starts be ignored vouches for them.
+    const bool sees_close_pairs = options_.ignore_starts || (out.strategy->guarantee == Guarantee::complete &&
+                                                             setup_.elementary.apart_is_proof);
+    const bool known = !options_.ignore_starts && starts_.clear();
+    const bool none_close = known || (sees_close_pairs && !has_contact_at_start(out.found));
+    out.starts_clear = out.starts_embedded && none_close;
+    starts_.learn_clear(none_close && can_follow());
+  }
+  if (options_.ignore_starts) return;
   if (setup_.exclusions != nullptr)
     out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
       return setup_.exclusions->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
@@ -200,8 +235,8 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   if (options_.first) keep_first(out.found);
   const Guarantee guarantee = out.strategy->guarantee;
   out.proven =
-      setup_.elementary.apart_is_proof && (promises_all(guarantee, out.starts_embedded) ||
-                                           (guarantee == Guarantee::first_contact && out.starts_embedded &&
+      setup_.elementary.apart_is_proof && (promises_all(guarantee, out.starts_clear) ||
+                                           (guarantee == Guarantee::first_contact && out.starts_clear &&
                                             out.rest_contacts == 0 && out.ignored.contacts.empty()));
   out.wall_ms = whole.milliseconds();
 }

@@ -26,7 +26,10 @@ struct StepAnswer {
   std::vector<CrossingPair> ignored_pairs;  // sorted; those that cross at the start (SessionOptions::ignored)
   ContactSet ignored;                       // sorted; contacts, likewise
   bool starts_embedded = true;              // nothing at all crosses at the start, whether left out or not
-  const Strategy* strategy = nullptr;       // that answered
+  // The start is embedded, and with a thickness it is also proven that no pair is close there. What is close
+  // at the start has time 0 among the contacts. With StrategyInput::exclusions this is about other pairs.
+  bool starts_clear = true;
+  const Strategy* strategy = nullptr;  // that answered
   bool proven = false;  // contacts and time are right by the strategy's guarantee and the elementary test
   Report report;
   double embedding_ms = 0;  // what it took to know which triangles cross at the start
@@ -48,17 +51,25 @@ struct SessionOptions {
   bool ignore_starts = false;
   // Throws InputError for positions that are not finite, before anything is changed.
   bool check_finite = false;
+  // How near features may come before they count as contacts. Above 0, both strategies and the elementary
+  // test have to know distances. What it refers to must outlive the session.
+  Thickness thickness = {};
 };
 
 // Answers one step after another of one surface, from any start. A strategy that promises the first contact
 // of an embedded start answers where the start is embedded, and a complete strategy, the fallback, answers
 // where it is not. What one step proves says which triangles cross at the start of the next (KnownStarts), so
 // steps are best asked for in the order of the motion.
+//
+// With a thickness, contacts are close pairs, and a *clear* start, embedded and without close pairs, takes
+// the place of an embedded one. Whether a start is clear is known from the step before, or from a way to it
+// from a clear pose; where neither says so, a complete strategy answers.
 class Session {
  public:
   // Prepares the strategy. `setup.first_only` is not looked at. With exclusions, give a complete strategy.
   // `rest`, [vertices], is the pose whose crossings are left out. Throws InputError, with `name` before the
-  // text, where the set-up lacks what the strategy needs and where too many triangles cross at rest. The
+  // text, where the set-up lacks what the strategy needs, where a strategy or the test has no proof for the
+  // thickness, and where too many triangles cross at rest. The
   // strategies, and what `setup` refers to, must outlive the session.
   Session(const std::string& name, const StrategyInput& setup, const Strategy& strategy,
           const Strategy& fallback, std::span<const Vec3> rest, const SessionOptions& options);
@@ -94,12 +105,13 @@ class Session {
   PreparedStrategy& fallback();
   // Whether only the contacts of the earliest time are asked of strategies.
   bool first_only() const { return options_.first && left_out_.empty() && options_.ignored == nullptr; }
+  bool is_thick() const { return !options_.thickness.is_zero(); }
   // Whether the contacts of a step say what crosses at its end.
   bool can_follow() const { return setup_.elementary.apart_is_proof && setup_.exclusions == nullptr; }
   // What the strategy's contacts of a motion from the known pose say for sure.
   Certainty certainty_of(const Strategy& strategy) const;
-  // Whether the strategy promises nothing from a start that is not embedded, and the fallback is to answer
-  // there.
+  // Whether the strategy promises nothing from a start that is not embedded, or with a thickness clear, and
+  // the fallback is to answer there.
   bool needs_start() const { return needs_embedded_start(main_.strategy->guarantee) && !options_.unproven; }
   void begin(const Motion& motion);
   PreparedStrategy& choose(const Motion& motion, const Rig::Interval* bones);
@@ -110,7 +122,8 @@ class Session {
   // Finds from nothing which triangles cross in a pose. `bones` holds the skeleton in it, at its start.
   void find_crossings(std::span<const Vec3> pose, const Rig::Interval* bones);
   void ask(PreparedStrategy& asked, const Motion& motion, const Rig::Interval* bones, StepAnswer& out);
-  void say_start(StepAnswer& out) const;
+  // Says what of the start is known before anything is left out of the answer, and remembers it.
+  void say_start(StepAnswer& out);
   void leave_out(StepAnswer& out) const;
 
   StrategyInput setup_;

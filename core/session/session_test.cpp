@@ -26,7 +26,8 @@ const Strategy kPlain{.name = "plain",
                       .needs = Needs::any_mesh,
                       .kind = StrategyKind::fixed,
                       .make = make_plain,
-                      .sees_start = true};
+                      .sees_start = true,
+                      .knows_distance = true};
 
 // One ball rests, and another lies along the x axis where a test puts it.
 class SessionTest : public testing::Test {
@@ -42,9 +43,9 @@ class SessionTest : public testing::Test {
   Session session(const Strategy& strategy, const SessionOptions& options = {}) const {
     return {"test", setup(), strategy, kDrvbcFastComplete, reference_, options};
   }
-  ContactSet contacts_of(const Motion& motion) const {
+  ContactSet contacts_of(const Motion& motion, const Thickness& thickness = {}) const {
     ContactSet out;
-    make_plain(setup()).detector->detect({motion}, out);
+    make_plain(setup()).detector->detect({.motion = motion, .thickness = thickness}, out);
     out.sort();
     return out;
   }
@@ -94,6 +95,76 @@ TEST_F(SessionTest, AnswersAsIfEachStepWereTheFirst) {
       EXPECT_GT(crossed, 5u);
       EXPECT_GT(free, 5u);
     }
+}
+
+// The same with a thickness. A clear start takes the place of an embedded one, and what is close at the start
+// is known to be.
+TEST_F(SessionTest, AnswersCloseStepsAsIfEachWereTheFirst) {
+  const std::vector<double> places = {4,   3,   2.5, 1.85, 1.8, 2.5,  1.2, 0.9,
+                                      1.8, 2.5, 2.6, 1.82, -3,  -2.4, -2.5};
+  const std::vector<double> by_vertex(mesh_.vertex_count(), 0.06);
+  for (const Thickness& thickness : {Thickness(0.2), Thickness(0.05, by_vertex)})
+    for (const Strategy* strategy : {&kPlain, &kDrvbcFast, &kDrvbcFastComplete})
+      for (const bool first : {false, true}) {
+        Session session = this->session(*strategy, {.first = first, .thickness = thickness});
+        std::mt19937 random(5);
+        std::size_t touched = 0, close_at_start = 0, quick = 0;
+        for (std::size_t i = 0; i < 24; ++i) {
+          const std::size_t place = i % 9 == 3 ? random() % (places.size() - 1) : i % (places.size() - 1);
+          const std::vector<Vec3> from = pose(places[place]), to = pose(places[place + 1]);
+          session.step({from, to}, nullptr, answer_);
+          const ContactSet truth = contacts_of({from, to}, thickness);
+          const ContactSet at_start = contacts_of({from, from}, thickness);
+          EXPECT_EQ(answer_.start.pairs, crossings_of(from)) << strategy->name << i;
+          EXPECT_EQ(answer_.starts_clear, answer_.start.total == 0 && at_start.contacts.empty()) << i;
+          EXPECT_TRUE(answer_.proven);
+          ASSERT_EQ(answer_.time().has_value(), !truth.contacts.empty()) << strategy->name << i;
+          if (answer_.time()) {
+            EXPECT_EQ(*answer_.time(), truth.contacts.front().time) << strategy->name << i;
+          }
+          EXPECT_EQ(std::ranges::count(answer_.found.contacts, 0.0, &Contact::time),
+                    static_cast<std::ptrdiff_t>(at_start.contacts.size()));
+          if (!first && answer_.strategy->guarantee == Guarantee::complete) {
+            EXPECT_EQ(digest(answer_.found), digest(truth)) << strategy->name << i;
+          }
+          quick += answer_.strategy == &kDrvbcFast;
+          touched += !truth.contacts.empty();
+          close_at_start += !at_start.contacts.empty();
+        }
+        EXPECT_GT(touched, 5u);
+        EXPECT_GT(close_at_start, 5u);
+        EXPECT_EQ(quick > 5, strategy == &kDrvbcFast) << quick;
+      }
+}
+
+// After a step without a close pair, the next one is told that its start is clear. Where the start is not
+// known, the way to it from the clear pose is asked about.
+TEST_F(SessionTest, KnowsTheEndOfAClearStepToBeClear) {
+  Session session = this->session(kDrvbcFast, {.first = true, .thickness = Thickness(0.2)});
+  const std::vector<Vec3> far = pose(4), near = pose(2.5), close = pose(1.75), between = pose(2.2);
+  session.step({far, near}, nullptr, answer_);
+  EXPECT_EQ(answer_.strategy, &kDrvbcFastComplete) << "nothing is known of the first start";
+  EXPECT_TRUE(answer_.starts_clear);
+  session.step({near, close}, nullptr, answer_);
+  EXPECT_EQ(answer_.strategy, &kDrvbcFast);
+  EXPECT_TRUE(answer_.time());
+  session.step({between, far}, nullptr, answer_);
+  EXPECT_EQ(answer_.strategy, &kDrvbcFast) << "the way from `near` is clear";
+  session.step({close, far}, nullptr, answer_);
+  EXPECT_EQ(answer_.strategy, &kDrvbcFastComplete) << "embedded, and not clear";
+  EXPECT_TRUE(answer_.starts_embedded);
+  EXPECT_FALSE(answer_.starts_clear);
+  EXPECT_EQ(answer_.time(), 0.0);
+}
+
+TEST_F(SessionTest, RefusesAThicknessThatNoProofCovers) {
+  Strategy blind = kPlain;
+  blind.knows_distance = false;
+  EXPECT_THROW(session(blind, {.thickness = Thickness(0.1)}), InputError);
+  const StrategyInput cubic{mesh_, reference_, nullptr, *find_elementary_test("cubic")};
+  EXPECT_THROW(Session("test", cubic, kPlain, kDrvbcFastComplete, reference_, {.thickness = Thickness(0.1)}),
+               InputError);
+  EXPECT_NO_THROW(session(blind));
 }
 
 TEST_F(SessionTest, LeavesOutWhatCrossesAtRest) {
