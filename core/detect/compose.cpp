@@ -10,6 +10,7 @@
 #include "core/base/team.h"
 #include "core/detect/distance_filter.h"
 #include "core/detect/exclusions.h"
+#include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
 #include "core/detect/no_contact_before.h"
@@ -57,7 +58,9 @@ class PairTester : public TrianglePairSink {
         options_(std::move(options)),
         team_(options_.threads),
         clock_(clock),
-        plain_sign_(setup.pipeline == Pipeline::published) {}
+        plain_sign_(setup.pipeline == Pipeline::published) {
+    if (options_.owners && exclusions_ == nullptr) owners_.emplace(mesh_);
+  }
 
   void start_interval(const Step& step, ContactSet& out) {
     restart();
@@ -80,6 +83,8 @@ class PairTester : public TrianglePairSink {
     test_left();
   }
   void forget() { remembered_.clear(); }
+  // Whether every pair of triangles that is not passed on from here on carries no contact.
+  void trust_owners(bool trust) { by_owners_ = owners_ && trust && thickness_.is_zero(); }
   // Tests what is left of the interval.
   void finish_interval() {
     flush();
@@ -242,14 +247,15 @@ class PairTester : public TrianglePairSink {
   }
 
   void take_all_carried(const TrianglePair& pair) {
-    const CarriedPlaces places = carried_by(mesh_.corners(pair.a), mesh_.corners(pair.b));
+    CarriedPlaces places = carried_by(mesh_.corners(pair.a), mesh_.corners(pair.b));
     const bool adjacent = places != kAllCarried;
     counts_.adjacent_pctp += adjacent;
     if (!adjacent && options_.relative_boxes && thickness_.is_zero() && relative_boxes_apart(pair)) {
       ++counts_.relative_dropped;
       return;
     }
-    carried_.push_back({pair, places});
+    if (by_owners_) places &= owners_->owned_by(pair);
+    if (places != 0) carried_.push_back({pair, places});
   }
 
   bool relative_boxes_apart(const TrianglePair& pair) const {
@@ -317,8 +323,10 @@ class PairTester : public TrianglePairSink {
   std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
   FeaturePairSet met_;                           // feature pairs met in this interval
-  std::vector<FeaturePair> remembered_;          // those that touched first in an earlier step
-  Tests<MovingVertexFace> vertex_faces_;         // those left that are met for the first time
+  std::optional<FeatureOwners> owners_;
+  bool by_owners_ = false;
+  std::vector<FeaturePair> remembered_;   // those that touched first in an earlier step
+  Tests<MovingVertexFace> vertex_faces_;  // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;
   double earliest_ = 1;  // contact so far
   std::vector<Bounded> order_;
@@ -355,10 +363,12 @@ class ComposedDetector : public Detector {
       culler_->refit_beginning(step, tester_.until());
       clock_.enter(Stage::classify);
       classified = culler_->classify(known);
+      tester_.trust_owners(culler_->keeps_all());
       clock_.enter(Stage::traversal);
       report.cull = culler_->cull(tester_);
       tester_.finish_interval();
     }
+    tester_.trust_owners(true);
     if (!out.contacts.empty() && !first_only_)
       if (const auto rest = culler_->cull_rest(tester_)) {
         *report.cull.bvot += *rest;

@@ -21,6 +21,9 @@ struct PairOptions {
   // Where the first contact alone is wanted, a step is tested first for a few feature pairs that touched in
   // the step before, and the culler looks no further than they touch. Counters then depend on earlier steps.
   bool remembers = false;
+  // A pair of triangles is tested for the feature pairs that it owns alone (feature_owners.h), where the
+  // culler says that this is enough.
+  bool owners = false;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy

@@ -90,6 +90,9 @@ class Culler {
   // because it looked for the first contact alone. Returns the number of overlap tests; nothing where cull()
   // has kept all contacts. Stage `traversal`.
   virtual std::optional<std::uint64_t> cull_rest(TrianglePairSink& /*sink*/) { return std::nullopt; }
+  // Whether every pair of triangles that cull() does not pass on carries no contact until the sink's last
+  // time. Asked after classify() and after cull(); cull_rest() always passes on all others.
+  virtual bool keeps_all() const { return false; }
   // Forgets all intervals (Detector::forget).
   virtual void forget() {}
   // Returns what preparation has found out (Detector::saved_preparation).

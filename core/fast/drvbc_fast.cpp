@@ -32,7 +32,8 @@ Prepared make_drvbc_fast(const StrategyInput& setup, const DrvbcFastOptions& opt
   return {compose(std::move(best.culler), setup,
                   {.threads = setup.threads,
                    .starts_embedded = options.starts_embedded,
-                   .remembers = options.follows}),
+                   .remembers = options.follows,
+                   .owners = options.complete}),
           preparation};
 }
 

@@ -55,6 +55,7 @@ class FastCuller : public Culler {
   bool classify(const Step& step) override;
   CullCounts cull(TrianglePairSink& sink) override;
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
+  bool keeps_all() const override { return looks_by_caps(); }
   void forget() override;
   // Returns nothing after an exception has broken off a change of clusters, until the next interval.
   std::vector<std::byte> saved_preparation() const override {
