@@ -25,7 +25,7 @@ class BruteCuller : public Culler {
 }  // namespace
 
 Prepared make_base(const StrategyInput& setup) {
-  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), {}};
+  return {compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup, {.owners = true}), {}};
 }
 
 // Idea: a box has three pairs of planes. It takes half the memory of a 16-DOP and is quicker to refit and to
@@ -42,7 +42,7 @@ Prepared make_base(const StrategyInput& setup) {
 //
 // A dropped pair is proven apart, because its swept boxes are disjoint.
 Prepared make_aabb(const StrategyInput& setup) {
-  return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup), {}};
+  return {compose(std::make_unique<PlainCuller<Aabb>>(setup), setup, {.owners = true}), {}};
 }
 
 Prepared make_brute(const StrategyInput& setup) {

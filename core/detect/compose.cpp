@@ -59,7 +59,7 @@ class PairTester : public TrianglePairSink {
         team_(options_.threads),
         clock_(clock),
         plain_sign_(setup.pipeline == Pipeline::published) {
-    if (options_.owners && exclusions_ == nullptr) owners_.emplace(mesh_);
+    if (options_.owners && exclusions_ == nullptr && !plain_sign_) owners_.emplace(mesh_);
   }
 
   void start_interval(const Step& step, ContactSet& out) {
@@ -84,7 +84,7 @@ class PairTester : public TrianglePairSink {
   }
   void forget() { remembered_.clear(); }
   // Whether every pair of triangles that is not passed on from here on carries no contact.
-  void trust_owners(bool trust) { by_owners_ = owners_ && trust && thickness_.is_zero(); }
+  void trust_owners(bool trust) { by_owners_ = owners_ && trust; }
   // Tests what is left of the interval.
   void finish_interval() {
     flush();
