@@ -18,6 +18,9 @@
 // number for the share and for the step. A certified filter stands in front. A limit on the number of steps
 // ends in `undecided`, where the paper runs on.
 //
+// At a distance r, the paper's minimum separation, the distance less r takes the place of the distance, and
+// no filter stands in front.
+//
 // An "apart" would be a proof in exact arithmetic. It is none here, because the distances of nearly
 // degenerate features may be rounded upwards. A "contact" may be false: it may be features that come to
 // within the share of their starting distance.
@@ -48,17 +51,18 @@ double approach(const MovingEdgeEdge& q) {
 }
 
 template <class Query>
-Answer additive(const Query& given, const TestParameters& parameters) {
-  if (never_coplanar(given)) return {Verdict::apart, 0};
+Answer additive(const Query& given, double r, const TestParameters& parameters) {
+  if (r == 0 && never_coplanar(given)) return {Verdict::apart, 0};
   const Query query = relative(in_range(given));
-  double distance = distance_at(query, 0);
-  if (distance == 0) return {Verdict::contact, 0};
+  r = std::ldexp(r, range_exponent(given));
+  double distance = distance_at(query, 0) - r;
+  if (distance <= 0) return {Verdict::contact, 0};
   const double speed = approach(query), near = parameters.tolerance * distance;
   double time = 0, step = (1 - parameters.tolerance) * distance / speed;
   for (std::int64_t i = 0; i < parameters.steps; ++i) {
     const double next = time + std::min(step, kStep * distance / speed);
     if (!(next <= 1)) return {Verdict::apart, 0};  // `next` is infinite or NaN if nothing moves
-    distance = distance_at(query, next);
+    distance = distance_at(query, next) - r;
     if (distance <= near) return {Verdict::contact, time};
     time = next;
     step = kStep * distance / speed;
@@ -69,10 +73,16 @@ Answer additive(const Query& given, const TestParameters& parameters) {
 }  // namespace
 
 Answer additive_vertex_face(const MovingVertexFace& query, const TestParameters& parameters) {
-  return additive(query, parameters);
+  return additive(query, 0, parameters);
 }
 Answer additive_edge_edge(const MovingEdgeEdge& query, const TestParameters& parameters) {
-  return additive(query, parameters);
+  return additive(query, 0, parameters);
+}
+Answer additive_vertex_face_close(const MovingVertexFace& query, double r, const TestParameters& parameters) {
+  return additive(query, r, parameters);
+}
+Answer additive_edge_edge_close(const MovingEdgeEdge& query, double r, const TestParameters& parameters) {
+  return additive(query, r, parameters);
 }
 
 }  // namespace cscd

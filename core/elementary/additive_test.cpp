@@ -2,6 +2,7 @@
 
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/published.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {
@@ -54,6 +55,21 @@ TEST(Additive, ContactAtTheStartAndStandingStill) {
   EXPECT_EQ(touching.verdict, Verdict::contact);
   EXPECT_EQ(touching.time, 0);
   EXPECT_EQ(additive_vertex_face(against_triangle({9, 9, 0}, {9, 9, 0}), kUsual).verdict, Verdict::apart);
+}
+
+// The vertex falls from 1 to 0.3 above the face. At r = 0.5 it leaves 0.5 at the start, so 0.55 counts as
+// close.
+TEST(Additive, AtADistanceTheToleranceIsAShareOfTheDistanceBeyondIt) {
+  const MovingVertexFace query = against_triangle({1, 1, 1}, {1, 1, 0.3});
+  const Answer close = additive_vertex_face_close(query, 0.5, kUsual);
+  ASSERT_EQ(close.verdict, Verdict::contact);
+  EXPECT_LE(close.time, 0.5 / 0.7);
+  EXPECT_EQ(additive_vertex_face_close(query, 0.2, kUsual).verdict, Verdict::apart);
+  EXPECT_EQ(additive_vertex_face_close(query, 1.5, kUsual).time, 0);
+  // Coordinates are scaled, and the distance with them.
+  const MovingVertexFace tiny = scaled(query, {-500, -500, -500});
+  EXPECT_EQ(additive_vertex_face_close(tiny, 0.5 * 0x1p-500, kUsual).verdict, Verdict::contact);
+  EXPECT_EQ(additive_vertex_face_close(tiny, 0.2 * 0x1p-500, kUsual).verdict, Verdict::apart);
 }
 
 TEST(Additive, StopsAtTheLimitWithoutAnAnswer) {

@@ -97,6 +97,8 @@ constexpr std::array kTests = {
         .ask_edge_edges = one_by_one<inclusion_edge_edge>,
         .parameters = {.tolerance = 1e-6, .steps = 20'000},
         .tolerance = "distance that counts as touching, along each axis, in extents of the query",
+        .close_vertex_faces = close_one_by_one<inclusion_vertex_face_close>,
+        .close_edge_edges = close_one_by_one<inclusion_edge_edge_close>,
     },
     ElementaryTest{
         .name = "additive",
@@ -107,6 +109,8 @@ constexpr std::array kTests = {
         .ask_edge_edges = one_by_one<additive_edge_edge>,
         .parameters = {.tolerance = 0.1, .steps = 10'000},
         .tolerance = "share of the starting distance that counts as touching",
+        .close_vertex_faces = close_one_by_one<additive_vertex_face_close>,
+        .close_edge_edges = close_one_by_one<additive_edge_edge_close>,
     },
 };
 

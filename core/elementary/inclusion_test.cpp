@@ -1,6 +1,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/published.h"
 #include "core/elementary/question/query_scale.h"
@@ -67,6 +68,31 @@ TEST(Inclusion, StopsAtTheLimitWithoutAnAnswer) {
   const Answer cut = inclusion_vertex_face(grazing, {1e-12, 10});
   EXPECT_EQ(cut.verdict, Verdict::undecided);
   EXPECT_LE(cut.time, 0.25);
+}
+
+// At a distance, the test's balls are cubes: what passes a corner at a distance of sqrt(2) r along two axes
+// may be called close, what passes it farther along some axis is apart.
+TEST(Inclusion, AtADistanceLosesNothingAndCallsCubesClose) {
+  const TestParameters usual{1e-6, 20'000};
+  const MovingVertexFace falling = against_triangle({1, 1, 1}, {1, 1, 0});
+  const Answer close = inclusion_vertex_face_close(falling, 0.5, usual);
+  ASSERT_EQ(close.verdict, Verdict::contact);
+  EXPECT_LE(close.time, 0.5);
+  EXPECT_EQ(inclusion_vertex_face_close(falling, 1.5, {1e-6, 200}).time, 0);
+  const MovingVertexFace passing = against_triangle({-1, -0.99, -3}, {-1, -0.99, 3});
+  ASSERT_FALSE(exact::first_closeness(passing, 1));
+  EXPECT_EQ(inclusion_vertex_face_close(passing, 1, usual).verdict, Verdict::contact);
+  EXPECT_EQ(inclusion_vertex_face_close(passing, 0.99, usual).verdict, Verdict::apart);
+  QueryMaker make{8};
+  for (int i = 0; i < 500; ++i) {
+    const auto query = query_of<MovingEdgeEdge>(make.any());
+    const double r = make.uniform(0, 0.3);
+    if (const auto truth = exact::first_closeness(query, r)) {
+      const Answer answer = inclusion_edge_edge_close(query, r, usual);
+      ASSERT_NE(answer.verdict, Verdict::apart);
+      ASSERT_LE(answer.time, truth->hi);
+    }
+  }
 }
 
 // Mutation: an error bound that grows with min(1, x), x being the distance from the origin, loses a tenth

@@ -28,11 +28,19 @@ Answer cubic_edge_edge(const MovingEdgeEdge& query, const TestParameters& parame
 // extents of the query.
 Answer inclusion_vertex_face(const MovingVertexFace& query, const TestParameters& parameters);
 Answer inclusion_edge_edge(const MovingEdgeEdge& query, const TestParameters& parameters);
+// The same at a distance r > 0: `apart` proves that the features are never close. `contact` says that at some
+// such t the features are within sqrt(3) times the sum of r and the tolerance.
+Answer inclusion_vertex_face_close(const MovingVertexFace& query, double r, const TestParameters& parameters);
+Answer inclusion_edge_edge_close(const MovingEdgeEdge& query, double r, const TestParameters& parameters);
 
 // Additive continuous collision detection (Li et al. 2021). `tolerance` is the share of the distance at t = 0
 // that counts as touching, in (0, 1). The time is early by as much as the features need for that share.
 // Features that touch at t = 0 are in contact then.
 Answer additive_vertex_face(const MovingVertexFace& query, const TestParameters& parameters);
 Answer additive_edge_edge(const MovingEdgeEdge& query, const TestParameters& parameters);
+// The same at a distance r > 0. `tolerance` is the share of the distance beyond r at t = 0 that counts as
+// close.
+Answer additive_vertex_face_close(const MovingVertexFace& query, double r, const TestParameters& parameters);
+Answer additive_edge_edge_close(const MovingEdgeEdge& query, double r, const TestParameters& parameters);
 
 }  // namespace cscd

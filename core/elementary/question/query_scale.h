@@ -100,12 +100,20 @@ Query axes_scaled_to_unit(const Query& query) {
                 {exponent_to_unit(largest[0]), exponent_to_unit(largest[1]), exponent_to_unit(largest[2])});
 }
 
+// The exponent of the power of two by which in_range scales: 0 unless the largest coordinate is very small or
+// very large.
+template <class Query>
+int range_exponent(const Query& query) {
+  constexpr double small = 0x1p-64, large = 0x1p64;
+  const double largest = largest_coordinates(query).maxCoeff();
+  return (largest >= small && largest <= large) || largest == 0 ? 0 : exponent_to_unit(largest);
+}
+
 // Scales to unit a query whose largest coordinate is very small or very large, and leaves others as they are.
 template <class Query>
 Query in_range(const Query& query) {
-  constexpr double small = 0x1p-64, large = 0x1p64;
-  const double largest = largest_coordinates(query).maxCoeff();
-  return (largest >= small && largest <= large) || largest == 0 ? query : scaled_to_unit(query);
+  const int e = range_exponent(query);
+  return e == 0 ? query : scaled(query, {e, e, e});
 }
 
 }  // namespace cscd
