@@ -35,9 +35,8 @@ function(cscd_compile_together target)
   endif()
 endfunction()
 
-# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it. So is each
-# file of scenes/effects, because a program that lists some effects alone (scenes/alone) must be able to leave out the others.
-set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$|^scenes/effects$")
+# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
+set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
 # Rooms that run once for each command. Optimising these takes longer than it saves.
 set(CSCD_BRIEF_ROOMS "^bench/(tables|compare)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/command_line|query/view|query/options|measure/record)$")
 
