@@ -24,14 +24,6 @@ void write_without_bones(const fs::path& file, std::uint64_t seed, std::size_t o
   writer.finish();
 }
 
-nlohmann::json answer_of(const Scratch& scratch, const std::string& file, const std::string& strategy = "") {
-  std::vector<std::string> arguments = {"query", file, "--force", "--json", scratch / "out.json"};
-  if (!strategy.empty()) arguments.insert(arguments.end(), {"--strategy", strategy});
-  const Outcome outcome = cscd(arguments);
-  EXPECT_EQ(outcome.code, 0) << outcome.errors;
-  return nlohmann::json::parse(read(scratch / "out.json"));
-}
-
 // Features and times of an answer's contacts.
 std::set<std::pair<std::string, double>> contacts_in(const nlohmann::json& interval) {
   std::set<std::pair<std::string, double>> contacts;
@@ -47,7 +39,8 @@ TEST(Boneless, QueryTakesTheBestStrategyAndFindsEveryContact) {
   std::size_t at_stake = 0;
   for (std::uint64_t seed = 1; seed <= 22; ++seed) {
     write_without_bones(file, seed);
-    const nlohmann::json answer = answer_of(scratch, file), truth = answer_of(scratch, file, "brute");
+    const nlohmann::json answer = document_of({"query", file}),
+                         truth = document_of({"query", file, "--strategy", "brute"});
     EXPECT_EQ(answer["strategy"], "drvbc_fast_all") << seed;
     const nlohmann::json &own = answer["intervals"][0], &judge = truth["intervals"][0];
     EXPECT_TRUE(own["proven"]) << seed;
@@ -64,9 +57,7 @@ TEST(Boneless, InspectSaysWhoTakesThem) {
   const std::string file = scratch / "soft.h5";
   for (const std::size_t open : {std::size_t{0}, std::size_t{1}}) {
     write_without_bones(file, 11, open);
-    const Outcome outcome = cscd({"inspect", file, "--force", "--json", scratch / "out.json"});
-    ASSERT_EQ(outcome.code, 0) << outcome.errors;
-    const nlohmann::json document = nlohmann::json::parse(read(scratch / "out.json"));
+    const nlohmann::json document = document_of({"inspect", file});
     for (const nlohmann::json& row : document["together"]["strategies"]) {
       const std::string name = row["name"];
       if (name == "drvbc") {
@@ -77,7 +68,7 @@ TEST(Boneless, InspectSaysWhoTakesThem) {
         EXPECT_EQ(row["can"], true) << row;
       }
     }
-    EXPECT_EQ(answer_of(scratch, file)["strategy"], open == 0 ? "drvbc_fast_all" : "drvbc_fast_complete");
+    EXPECT_EQ(document_of({"query", file})["strategy"], open == 0 ? "drvbc_fast_all" : "drvbc_fast_complete");
   }
 }
 

@@ -55,8 +55,7 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
   const Known& known = GetParam();
   const std::string file = kFolder / known.file;
   const Scratch scratch;
-  ASSERT_EQ(refusal({"inspect", file, "--component", "auto", "--json", scratch / "i.json"}), "");
-  const auto facts = nlohmann::json::parse(read(scratch / "i.json"));
+  const auto facts = document_of({"inspect", file, "--component", "auto"});
   ASSERT_EQ(facts["clips"].size(), known.clips);
   EXPECT_EQ(facts["clips"][0]["frames"], known.frames);
   ASSERT_EQ(facts["components"].size(), known.components);
@@ -68,10 +67,8 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
   EXPECT_EQ((*chosen)["bones"], known.bones);
   EXPECT_EQ((*chosen)["closed"], known.closed);
 
-  ASSERT_EQ(refusal({"query", file, "--clip", "0", "--component", "auto", "--strategy", "base", "--json",
-                     scratch / "base.json"}),
-            "");
-  const auto base = nlohmann::json::parse(read(scratch / "base.json"))["intervals"];
+  const auto base =
+      document_of({"query", file, "--clip", "0", "--component", "auto", "--strategy", "base"})["intervals"];
   EXPECT_EQ(base.size(), known.frames - 1);
   EXPECT_EQ(std::any_of(base.begin(), base.end(),
                         [](const nlohmann::json& interval) { return interval["collides"].get<bool>(); }),

@@ -69,19 +69,12 @@ TEST(FirstOnly, ARowIsHeldToWhatItWasAskedFor) {
 
 TEST(FirstOnly, QueryReportsTheEarliestTimeAloneAndRefusesWhatMayBeWrong) {
   const Scratch scratch;
-  const std::string file = scratch / "ball.h5", out = scratch / "out.json";
+  const std::string file = scratch / "ball.h5";
   scenes::RandomInterval random = scenes::make_random_interval(11);
   scenes::PointCacheWriter writer(file, random.clip.header(), false);
   scenes::copy_frames(random.clip, writer);
   writer.finish();
-  const auto answer = [&](std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"query", file, "--force", "--json", out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = cscd(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.errors;
-    return nlohmann::json::parse(read(out));
-  };
-  const nlohmann::json all = answer({}), first = answer({"--first"});
+  const nlohmann::json all = document_of({"query", file}), first = document_of({"query", file, "--first"});
   EXPECT_EQ(first["first_only"], true);
   const nlohmann::json &from = all["intervals"][0], &left = first["intervals"][0];
   ASSERT_EQ(from["collides"], true);
@@ -91,8 +84,7 @@ TEST(FirstOnly, QueryReportsTheEarliestTimeAloneAndRefusesWhatMayBeWrong) {
     if (contact["time"] == from["time"]) expected.push_back(contact);
   EXPECT_EQ(left["contacts"], expected);
 
-  const Outcome refused =
-      cscd({"query", file, "--first", "--elementary", "newton", "--force", "--json", out});
+  const Outcome refused = cscd({"query", file, "--first", "--elementary", "newton"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.errors.find("newton"), std::string::npos) << refused.errors;
 }

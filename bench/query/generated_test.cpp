@@ -10,16 +10,9 @@ namespace {
 
 class Generated : public testing::Test {
  protected:
-  nlohmann::json inspected(const std::string& file) {
-    const Outcome looked = cscd({"inspect", file, "--json", scratch / "i.json", "--force"});
-    EXPECT_EQ(looked.code, 0) << looked.errors;
-    return nlohmann::json::parse(read(scratch / "i.json"));
-  }
-  nlohmann::json queried(const std::string& file, std::vector<std::string> options) {
-    options.insert(options.begin(), {"query", file, "--json", scratch / "q.json", "--force"});
-    const Outcome asked = cscd(options);
-    EXPECT_EQ(asked.code, 0) << asked.errors;
-    return nlohmann::json::parse(read(scratch / "q.json"));
+  static nlohmann::json queried(const std::string& file, std::vector<std::string> options) {
+    options.insert(options.begin(), {"query", file});
+    return document_of(options);
   }
   // The closed body alone, which every strategy takes.
   nlohmann::json queried_body(const std::string& file, std::vector<std::string> options) {
@@ -64,7 +57,7 @@ TEST_F(Generated, TheFigureTouchesItselfInOneClipOfTwo) {
 
 // Eyes that cross the head and an open shirt: told apart by inspect, answered completely where asked for.
 TEST_F(Generated, EyesAndShirtAreComponentsOfTheirOwn) {
-  const auto facts = inspected(figure);
+  const auto facts = document_of({"inspect", figure});
   const auto& parts = facts["components"];
   ASSERT_EQ(parts.size(), 4u);
   EXPECT_EQ(parts[0]["triangles"], 2272);

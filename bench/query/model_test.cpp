@@ -101,31 +101,17 @@ INSTANTIATE_TEST_SUITE_P(Generated, Characters,
 
 // The program itself: what it says of the character, and that drvbc finds in it what base does.
 TEST_P(Characters, AreInspectedAndQueried) {
-  const Outcome looked = cscd({"inspect", file, "--json", scratch / "i.json"});
-  ASSERT_EQ(looked.code, 0) << looked.errors;
-  const auto facts = nlohmann::json::parse(read(scratch / "i.json"));
+  const auto facts = document_of({"inspect", file});
   EXPECT_EQ(facts["components"][0]["facing"], "outward");
   EXPECT_EQ(facts["components"][0]["embedding"][0]["embedded"], true);
   EXPECT_EQ(facts["components"][0]["embedding"].size(), 1 + facts["clips"].size());
   nlohmann::json answer[2];
   const char* strategy[] = {"base", "drvbc"};
   for (std::size_t s = 0; s < 2; ++s) {
-    std::vector<std::string> words{"query",
-                                   file,
-                                   "--from-bind-pose",
-                                   "--component",
-                                   "auto",
-                                   "--fps",
-                                   "30",
-                                   "--frames=-15:-3",
-                                   "--strategy",
-                                   strategy[s],
-                                   "--json",
-                                   scratch / (strategy[s] + std::string(".json"))};
+    std::vector<std::string> words{"query", file, "--from-bind-pose", "--component", "auto",
+                                   "--fps", "30", "--frames=-15:-3",  "--strategy",  strategy[s]};
     if (!facts["clips"].empty()) words.insert(words.end(), {"--clip", "0"});
-    const Outcome asked = cscd(words);
-    ASSERT_EQ(asked.code, 0) << asked.errors;
-    answer[s] = nlohmann::json::parse(read(scratch / (strategy[s] + std::string(".json"))));
+    answer[s] = document_of(words);
   }
   std::size_t embedded = 0;
   for (std::size_t i = 0; i < 12; ++i) {
@@ -209,9 +195,7 @@ scenes::Character motley() {
 TEST(Models, InspectTellsComponentsApart) {
   const Scratch scratch;
   write(scratch.path / "motley.gltf", scenes::to_gltf(motley()));
-  const Outcome looked = cscd({"inspect", scratch / "motley.gltf", "--json", scratch / "i.json"});
-  ASSERT_EQ(looked.code, 0) << looked.errors;
-  const auto parts = nlohmann::json::parse(read(scratch / "i.json"))["components"];
+  const auto parts = document_of({"inspect", scratch / "motley.gltf"})["components"];
   ASSERT_EQ(parts.size(), 3u);
   const auto can = [](const nlohmann::json& part, std::string_view name) {
     for (const auto& row : part["strategies"])
@@ -239,13 +223,10 @@ TEST(Models, OptionsChooseAndMend) {
   const Scratch scratch;
   write(scratch.path / "motley.gltf", scenes::to_gltf(motley()));
   const auto import = [&](std::vector<std::string> options, const std::string& strategy = "base") {
-    std::vector<std::string> words{
-        "query",  scratch / "motley.gltf", "--strategy", strategy, "--frames", "0:1",
-        "--json", scratch / "q.json",      "--force"};
+    std::vector<std::string> words{"query", scratch / "motley.gltf", "--strategy", strategy, "--frames",
+                                   "0:1"};
     words.insert(words.end(), options.begin(), options.end());
-    const Outcome asked = cscd(words);
-    EXPECT_EQ(asked.code, 0) << asked.errors;
-    return nlohmann::json::parse(read(scratch / "q.json"))["import"];
+    return document_of(words)["import"];
   };
   EXPECT_EQ(import({})["chosen_components"], nlohmann::json::array({0, 1, 2}));
   EXPECT_EQ(import({"--component", "auto"})["chosen_components"], nlohmann::json::array({0}));
@@ -259,10 +240,8 @@ TEST(Models, OptionsChooseAndMend) {
 TEST(Models, RunReplaysThem) {
   const Scratch scratch;
   write(scratch.path / "tube.gltf", scenes::to_gltf(scenes::bending_tube()));
-  const Outcome ran = cscd({"run", "--smoke", "--input", scratch / "tube.gltf", "--from-bind-pose",
-                            "--strategy", "base,drvbc", "--json", scratch / "run.json"});
-  ASSERT_EQ(ran.code, 0) << ran.errors;
-  const auto record = nlohmann::json::parse(read(scratch / "run.json"));
+  const auto record = document_of(
+      {"run", "--smoke", "--input", scratch / "tube.gltf", "--from-bind-pose", "--strategy", "base,drvbc"});
   EXPECT_EQ(record["scene"]["bones"], 2);
   EXPECT_EQ(record["scene"]["frames"], 46);
   EXPECT_NE(record["command"].dump().find("--from-bind-pose"), std::string::npos);
@@ -302,16 +281,12 @@ TEST(Models, WhatCannotBeDoneIsSaidInOneLine) {
 TEST(Models, QueryAndInspectAnswerInJson) {
   if (absent("fox_khronos.glb")) GTEST_SKIP();
   const Scratch scratch;
-  const Outcome asked = cscd({"query", model("fox_khronos.glb"), "--clip", "Walk", "--fps", "10",
-                              "--from-bind-pose", "--json", scratch / "q.json"});
-  ASSERT_EQ(asked.code, 0) << asked.errors;
-  const auto answer = nlohmann::json::parse(read(scratch / "q.json"));
+  const auto answer =
+      document_of({"query", model("fox_khronos.glb"), "--clip", "Walk", "--fps", "10", "--from-bind-pose"});
   EXPECT_EQ(answer["intervals"].size(), 13u);  // 8 frames of 0.708 s and its end after 5 of the lead-in
   EXPECT_EQ(answer["import"]["clips"].size(), 3u);
   EXPECT_EQ(answer["import"]["clip"], 1);
-  const Outcome looked = cscd({"inspect", model("fox_khronos.glb"), "--json", scratch / "i.json"});
-  ASSERT_EQ(looked.code, 0) << looked.errors;
-  const auto facts = nlohmann::json::parse(read(scratch / "i.json"));
+  const auto facts = document_of({"inspect", model("fox_khronos.glb")});
   ASSERT_EQ(facts["components"].size(), 1u);
   EXPECT_EQ(facts["components"][0]["triangles"], 576);
   EXPECT_EQ(facts["components"][0]["closed"], true);
@@ -386,10 +361,7 @@ TEST(Models, DefectiveOnesSayWhy) {
   EXPECT_EQ(refusal("nonclosed/spider.glb", "base"), "");
 
   // Each of the 28 pieces is sound; together they poke into each other.
-  const Outcome outcome =
-      cscd({"inspect", model("nonclosed/shark_28_components.glb"), "--json", scratch / "s.json"});
-  ASSERT_EQ(outcome.code, 0) << outcome.errors;
-  const auto shark = nlohmann::json::parse(read(scratch / "s.json"));
+  const auto shark = document_of({"inspect", model("nonclosed/shark_28_components.glb")});
   EXPECT_EQ(shark["components"].size(), 28u);
   for (const auto& piece : shark["components"]) EXPECT_EQ(piece["closed"], true);
   EXPECT_EQ(shark["together"]["embedding"][0]["embedded"], false);

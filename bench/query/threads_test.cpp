@@ -18,22 +18,17 @@ class Threads : public testing::Test {
     for (const std::size_t frame : {std::size_t{0}, std::size_t{1}}) writer.append(random.clip.frame(frame));
     writer.finish();
   }
-  nlohmann::json answer(std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--force", "--json", out});
-    const Outcome outcome = cscd(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.errors;
-    return nlohmann::json::parse(read(out));
-  }
   const Scratch scratch;
   const std::string file = scratch / "ball.h5", out = scratch / "out.json";
 };
 
 TEST_F(Threads, ChangeNoAnswer) {
-  const nlohmann::json alone = answer({"query", file, "--strategy", "drvbc_fast"});
+  const nlohmann::json alone = document_of({"query", file, "--strategy", "drvbc_fast"});
   EXPECT_EQ(alone["threads"], 1);
   EXPECT_EQ(alone["intervals"][0]["collides"], true);
   for (const char* threads : {"2", "7"}) {
-    const nlohmann::json shared = answer({"query", file, "--strategy", "drvbc_fast", "--threads", threads});
+    const nlohmann::json shared =
+        document_of({"query", file, "--strategy", "drvbc_fast", "--threads", threads});
     EXPECT_EQ(shared["threads"], std::stoi(threads));
     EXPECT_EQ(shared["intervals"][0]["contacts"], alone["intervals"][0]["contacts"]);
     EXPECT_EQ(shared["intervals"][0]["counts"], alone["intervals"][0]["counts"]);
@@ -41,9 +36,9 @@ TEST_F(Threads, ChangeNoAnswer) {
 }
 
 TEST_F(Threads, AreSaidForEveryStrategy) {
-  EXPECT_EQ(answer({"query", file, "--strategy", "base", "--threads", "2"})["threads"], 1);
+  EXPECT_EQ(document_of({"query", file, "--strategy", "base", "--threads", "2"})["threads"], 1);
   const nlohmann::json record =
-      answer({"run", "--input", file, "--strategy", "drvbc_fast,base", "--smoke", "--threads", "2"});
+      document_of({"run", "--input", file, "--strategy", "drvbc_fast,base", "--smoke", "--threads", "2"});
   EXPECT_EQ(record["strategies"][0]["threads"], 2);
   EXPECT_EQ(record["strategies"][1]["threads"], 1);
 }

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -62,5 +64,14 @@ struct Scratch : test::Folder {
 };
 using test::read;
 using test::write;
+
+// The document that a command writes with --json; expects that the command succeeds.
+inline nlohmann::json document_of(std::vector<std::string> arguments) {
+  const Scratch scratch;
+  arguments.insert(arguments.end(), {"--json", scratch / "document.json"});
+  const Outcome outcome = cscd(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.errors;
+  return outcome.code == 0 ? nlohmann::json::parse(read(scratch / "document.json")) : nlohmann::json();
+}
 
 }  // namespace cscd::bench
