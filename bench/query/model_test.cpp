@@ -105,6 +105,7 @@ TEST_P(Characters, AreInspectedAndQueried) {
   EXPECT_EQ(facts["components"][0]["facing"], "outward");
   EXPECT_EQ(facts["components"][0]["embedding"][0]["embedded"], true);
   EXPECT_EQ(facts["components"][0]["embedding"].size(), 1 + facts["clips"].size());
+  EXPECT_EQ(facts["components"][0]["strategies"].size(), strategies().size());
   nlohmann::json answer[2];
   const char* strategy[] = {"base", "drvbc"};
   for (std::size_t s = 0; s < 2; ++s) {
@@ -276,29 +277,6 @@ TEST(Models, WhatCannotBeDoneIsSaidInOneLine) {
     EXPECT_FALSE(fs::exists(out)) << what;
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(scratch.path), {}), 2);
-}
-
-TEST(Models, QueryAndInspectAnswerInJson) {
-  if (absent("fox_khronos.glb")) GTEST_SKIP();
-  const Scratch scratch;
-  const auto answer =
-      document_of({"query", model("fox_khronos.glb"), "--clip", "Walk", "--fps", "10", "--from-bind-pose"});
-  EXPECT_EQ(answer["intervals"].size(), 13u);  // 8 frames of 0.708 s and its end after 5 of the lead-in
-  EXPECT_EQ(answer["import"]["clips"].size(), 3u);
-  EXPECT_EQ(answer["import"]["clip"], 1);
-  const auto facts = document_of({"inspect", model("fox_khronos.glb")});
-  ASSERT_EQ(facts["components"].size(), 1u);
-  EXPECT_EQ(facts["components"][0]["triangles"], 576);
-  EXPECT_EQ(facts["components"][0]["closed"], true);
-  EXPECT_EQ(facts["components"][0]["embedding"].size(), 4u);
-  EXPECT_EQ(facts["components"][0]["strategies"].size(), strategies().size());
-  // A point cache refuses the options that only model files have.
-  const Outcome exported = cscd({"export", model("fox_khronos.glb"), scratch / "fox.h5"});
-  ASSERT_EQ(exported.code, 0) << exported.errors;
-  EXPECT_EQ(cscd({"inspect", scratch / "fox.h5"}).code, 0);
-  const Outcome wrong = cscd({"inspect", scratch / "fox.h5", "--fps", "10"});
-  EXPECT_EQ(wrong.code, 2);
-  EXPECT_NE(wrong.errors.find("is no model file"), std::string::npos);
 }
 
 TEST(Models, LeaveNothingBehind) {

@@ -17,7 +17,7 @@
 #include "core/elementary/catalogue.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/catalog/shapes.h"
-#include "scenes/catalog/test_tracked.h"
+#include "scenes/catalog/test_scenes.h"
 
 namespace cscd::scenes {
 namespace {

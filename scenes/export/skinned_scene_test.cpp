@@ -5,7 +5,6 @@
 
 #include "core/base/test_refusal.h"
 #include "scenes/catalog/test_scenes.h"
-#include "scenes/catalog/test_tracked.h"
 #include "scenes/clip/digest.h"
 #include "scenes/export/test_round_trip.h"
 
