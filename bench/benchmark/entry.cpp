@@ -6,7 +6,7 @@
 
 #include "bench/compare/statistics/statistics.h"
 #include "bench/measure/record/environment.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "core/fast/drvbc_fast.h"
 

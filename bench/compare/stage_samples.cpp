@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/compare/shared_intervals.h"
+#include "bench/compare/side.h"
 #include "bench/compare/statistics/statistics.h"
 
 namespace cscd::bench {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "bench/cli/output/data.h"
-#include "bench/compare/shared_intervals.h"
 #include "bench/compare/side.h"
 #include "bench/compare/stage_samples.h"
 #include "bench/measure/record/shortfall.h"

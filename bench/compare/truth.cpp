@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/compare/shared_intervals.h"
+#include "bench/compare/side.h"
 
 namespace cscd::bench {
 namespace {

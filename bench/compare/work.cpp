@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "bench/cli/output/data.h"
-#include "bench/compare/shared_intervals.h"
 #include "bench/compare/side.h"
 #include "bench/compare/statistics/statistics.h"
 

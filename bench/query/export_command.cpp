@@ -4,7 +4,6 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
-#include "bench/cli/output/output_format.h"
 #include "bench/cli/output/progress.h"
 #include "bench/query/export_files.h"
 #include "bench/query/input/input.h"

@@ -7,10 +7,10 @@
 
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
-#include "bench/query/answer/clip_moment.h"
+#include "bench/query/answer/clip_answer.h"
 #include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"

@@ -5,8 +5,8 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
-#include "bench/cli/output/report_json.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/cli/output/json_text.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
 #include "bench/query/options/model_options.h"

@@ -13,7 +13,7 @@
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/answer_json.h"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/radial/nearest_point.h"
-#include "core/radial/surface_box.h"
 
 // Makes the discrete signed distance field of a closed surface in three steps.
 //

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -9,6 +10,14 @@
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd::radial {
+
+// Returns the box of the triangles. Vertices that no triangle uses do not count.
+inline Eigen::AlignedBox3d surface_box(const TriangleMesh& mesh, std::span<const Vec3> positions) {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : mesh.triangles())
+    for (const VertexId v : t) box.extend(positions[+v]);
+  return box;
+}
 
 // Signed distance to a surface at the centres of the cells of a regular grid; negative inside.
 struct DistanceField {

@@ -10,7 +10,6 @@
 
 #include "core/mesh/test_shapes.h"
 #include "core/radial/nearest_point.h"
-#include "core/radial/surface_box.h"
 
 namespace cscd::radial {
 namespace {

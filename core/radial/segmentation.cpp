@@ -9,7 +9,6 @@
 #include "core/radial/distance_field.h"
 #include "core/radial/heat_weights.h"
 #include "core/radial/smoothing.h"
-#include "core/radial/surface_box.h"
 #include "core/radial/visible_bones.h"
 
 // Each triangle goes to the bone that heats it most (Wong, Lin, Wang, Hung, Huang, "Dynamic Radial View Based

@@ -15,7 +15,6 @@
 #include "scenes/exchange/mesh_sequence.h"
 #include "scenes/import/convert.h"
 #include "scenes/import/read_model.h"
-#include "scenes/import/sequence_import.h"
 
 namespace {
 

@@ -3,6 +3,8 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "scenes/base/output_target.h"
@@ -42,5 +44,10 @@ class OutputFile {
 
 // Whether an output's name stands for standard output.
 bool is_standard_output(const std::filesystem::path& path);
+
+// The extension of an output's name decides the format that is written. Returns it in lower case with its
+// dot, one of `known` (".h5", ".glb", ...). Throws InputError, which lists the known ones, for any other
+// extension and for a name without one.
+std::string require_format(const std::filesystem::path& output, std::span<const std::string_view> known);
 
 }  // namespace cscd::bench

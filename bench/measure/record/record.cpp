@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "bench/cli/output/gzip.h"
-#include "bench/cli/output/report_json.h"
+#include "bench/cli/output/json_text.h"
 #include "bench/cli/output/schema.h"
 #include "core/base/error.h"
 #include "scenes/catalog/plain_name.h"

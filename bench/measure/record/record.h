@@ -50,7 +50,7 @@ struct Footprint {
 struct StrategyRecord {
   std::string name, source, guarantee;
   int threads = 1;
-  // So many intervals are played to the strategy before each measured one (bench/measure/replay/lead.h); 0
+  // So many intervals are played to the strategy before each measured one (bench/measure/replay/contestant.h); 0
   // for a strategy whose counters do not depend on what it was asked before.
   std::size_t lead = 0;
   PreparationRecord preparation;

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/applicable.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -88,6 +88,16 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
       add(row);
     }
   return chosen;
+}
+
+void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval) {
+  if (strategy.kind != StrategyKind::adaptive) return;
+  detector.forget();
+  ContactSet ignored;
+  for (std::size_t i = interval - std::min(interval, kLead); i < interval; ++i) {
+    const scenes::ClipInterval before = clip.load(i);
+    detector.detect({before.motion, before.bones ? &*before.bones : nullptr}, ignored);
+  }
 }
 
 }  // namespace cscd::bench

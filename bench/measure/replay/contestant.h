@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/input/input.h"
 #include "core/detect/strategy.h"
+#include "scenes/clip/clip.h"
 
 namespace cscd::bench {
 
@@ -40,5 +42,15 @@ std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& 
 // is named and would be left out of a group.
 std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::string> texts,
                                      Pipeline pipeline = Pipeline::vectorised);
+
+// What a strategy that follows the surface counts depends on the intervals before. So that every measurement
+// of an interval is one of the same thing, such a detector forgets everything and is then asked the kLead
+// intervals before that one, or as many as there are. This is its state in a simulation that goes on from
+// step to step.
+inline constexpr std::size_t kLead = 24;
+
+// Warms up strategies that adapt to the surface (Strategy::follows), and does nothing for the others. Load
+// the interval again afterwards, because the clip then holds another one.
+void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval);
 
 }  // namespace cscd::bench

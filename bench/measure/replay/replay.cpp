@@ -7,7 +7,6 @@
 #include "bench/measure/replay/contestant.h"
 #include "bench/measure/replay/footprint.h"
 #include "bench/measure/replay/interval_choice.h"
-#include "bench/measure/replay/lead.h"
 #include "bench/measure/replay/timing.h"
 #include "bench/measure/replay/verification.h"
 #include "bench/measure/strategies/catalogue.h"

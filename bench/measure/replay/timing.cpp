@@ -11,7 +11,7 @@
 #endif
 
 #include "bench/cli/output/progress.h"
-#include "bench/measure/replay/lead.h"
+#include "bench/measure/replay/contestant.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "bench/cli/output/progress.h"
-#include "bench/measure/replay/lead.h"
+#include "bench/measure/replay/contestant.h"
 #include "bench/measure/strategies/catalogue.h"
 
 namespace cscd::bench {

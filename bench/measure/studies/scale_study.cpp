@@ -11,7 +11,7 @@
 #include "bench/measure/record/record.h"
 #include "bench/measure/replay/footprint.h"
 #include "bench/measure/replay/timing.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

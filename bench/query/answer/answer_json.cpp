@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/cli/output/report_json.h"
+#include "bench/cli/output/json_text.h"
 #include "bench/query/answer/answer_text.h"
 #include "core/detect/contact_geometry.h"
 

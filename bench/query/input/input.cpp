@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/applicable.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
