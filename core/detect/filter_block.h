@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,18 +23,14 @@ void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const Carr
 // (core/elementary/question/filter.h) cannot prove apart. The six vertices are loaded once; what fifteen
 // pairs need are permutations of registers.
 CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places);
-// Single-precision version of not_filtered(), by which tests hold the filter below to its scalar twins.
-// Evaluates all fifteen feature pairs of two triangles side by side, with bounds on what single precision
-// loses. Returns nothing if rounding leaves any of them undecided; the caller then asks not_filtered().
+// Drops more, in single precision: evaluates all fifteen feature pairs of two triangles side by side, with
+// bounds on what single precision loses, and looks along directions in the plane only for the part of the
+// interval in which a feature pair may be coplanar, because most pairs that come into one plane are far apart
+// at that moment. What is left may depend on which triangles carry a feature pair. Asks not_filtered() where
+// single precision leaves signs open.
 //
 // With `last` below 1, in (0, 1], looks at the interval from t = 0 to that time alone: drops a feature pair
 // only if the pair certainly does not touch until then, and keeps what it cannot decide.
-std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
-                                                    const Triangle& b, CarriedPlaces places, double last = 1);
-// Drops more: looks along directions in the plane only for the part of the interval in which a feature pair
-// may be coplanar, because most pairs that come into one plane are far apart at that moment. What is left may
-// depend on which triangles carry a feature pair. Asks not_filtered() where single precision leaves signs
-// open.
 CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
                                          CarriedPlaces places, double last);
 

@@ -5,11 +5,9 @@
 #include "core/detect/carried_lanes.h"
 #include "core/detect/filter_block.h"
 
-// Whatever a look at the whole interval finds certain, the filter finds in double precision too. A sign that
-// exceeds its bound here exceeds the much smaller bound there; and if two coefficients certainly have
-// opposite signs here, the cubic has no certain sign there. So the result does not depend on the points from
-// which vectors start or on the order of two edges, as long as the cubics and directions are the same up to
-// their sign.
+// Where a cubic certainly has no root by its signs, the filter finds that in double precision too: a sign
+// that exceeds its bound here exceeds the much smaller bound there. If two coefficients certainly have
+// opposite signs here, the cubic has no certain sign there, so that nothing is gained by asking.
 namespace cscd {
 namespace {
 
@@ -39,13 +37,7 @@ Float16 alike(const Triangle& a, const Triangle& b) {
   return out;
 }
 
-// Results of the test in sideways.h for sixteen pairs: pairs that it certainly finds apart, and pairs that it
-// certainly does not find apart.
-struct Sideways {
-  Mask16 apart, kept;
-};
-
-// Single-precision version of apart_sideways() for sixteen pairs.
+// Single-precision version of apart_sideways() for sixteen pairs. Returns those that are certainly apart.
 //
 // Rounding. Let u = 2^-24. d = `error` is at least u times the largest coordinate, so a difference of two
 // coordinates is off by at most D = 4 d; let S be the longest such difference. Twice its mean is off by 3 D.
@@ -60,7 +52,7 @@ struct Sideways {
 // For two projections and their difference, using u A B <= u (A + B)^2 / 4, u (A + B) <= 0.22 e and X <= 6 S,
 // the sum is less than 35 e S (X (A + B) + A B). Here A, B, S and X include their own errors. The factor 36
 // also pays for the roundings of the bound itself.
-Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
+Mask16 sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
   const Float16 slack = all_lanes(56 * error);
   Float16 along[3][3];
   for (int i = 0; i < 3; ++i) {
@@ -81,12 +73,12 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
       larger(larger(largest_component(p[0]), largest_component(p[1])), largest_component(p[2]));
   const Float16 scale = 36 * slack * (most + slack);
 
-  unsigned apart = 0, kept = 0xffff;
+  unsigned apart = 0;
   for (const Float16(&edge)[3] : along) {
     Float16 m[3];
     cross(normal, edge, m);
     const Float16 bound = scale * (size(edge) * (a + b) + a * b);
-    unsigned above_all = 0xffff, below_all = 0xffff, not_above = 0, not_below = 0;
+    unsigned above_all = 0xffff, below_all = 0xffff;
     for (int end = 0; end < 2; ++end) {
       const auto at = [&](int k) {
         const Float16(&x)[3] = p[k].at[end];
@@ -97,13 +89,10 @@ Sideways sideways(const VectorLanes16 (&p)[3], Float16 alike, float error) {
       const Float16 over = smaller(in_second, z) - larger(larger(zero, x), in_first);
       const Float16 under = smaller(smaller(zero, x), in_first) - larger(in_second, z);
       above_all &= above(over, bound), below_all &= above(under, bound);
-      not_above |= above(-bound, over), not_below |= above(-bound, under);
     }
-    const unsigned known = above(bound, all_lanes(1e-30F));
-    apart |= (above_all | below_all) & known;
-    kept &= not_above & not_below & known;
+    apart |= (above_all | below_all) & above(bound, all_lanes(1e-30F));
   }
-  return {static_cast<Mask16>(apart), static_cast<Mask16>(kept)};
+  return static_cast<Mask16>(apart);
 }
 
 // The part of the interval in which each cubic may have a root. Lanes without a root may have their `low`
@@ -166,19 +155,12 @@ VectorLanes16 between(const VectorLanes16& x, const PartWithRoots& part) {
   return out;
 }
 
-// What a look at the fifteen feature pairs of two triangles finds. Unless `certain`, double precision may
-// drop more of those left.
-struct Looked {
-  CarriedPlaces left;
-  bool certain;
-};
+}  // namespace
 
-// Looks at the interval from t = 0 to `last`. If `narrowed`, looks along directions in the plane only for the
-// part of it in which the points of a feature pair may be coplanar.
-template <bool narrowed>
-Looked look(const Motion& motion, const Triangle& a, const Triangle& b, CarriedPlaces places, double last) {
+CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
+                                         CarriedPlaces places, double last) {
   const Corners c = corners_of(motion, a, b, last);
-  if (!(c.largest <= kLargest && c.beyond <= kLargest)) return {places, false};
+  if (!(c.largest <= kLargest && c.beyond <= kLargest)) return not_filtered(motion, a, b, places);
   const float error = c.error();
   const CarriedLanes lanes(c);
   const VectorLanes16 &p = lanes.p, &q = lanes.q, &r = lanes.r;
@@ -187,39 +169,19 @@ Looked look(const Motion& motion, const Triangle& a, const Triangle& b, CarriedP
   const TripleProducts16 products =
       triple_products(normal, r, rounding_of(largest_component(p), largest_component(q), error), error);
   const unsigned never = products.positive() | products.negative();
-  const bool whole = last == 1;
-  bool certain = !whole || (places & ~(never | products.mixed())) == 0;
   unsigned left = places & ~never;
-  if (left == 0) return {0, certain};
+  if (left == 0) return 0;
 
+  const PartWithRoots part(products);
   VectorLanes16 seen[3];
   lanes.seen_from_first(seen);
-  if (narrowed) {
-    const PartWithRoots part(products);
-    for (VectorLanes16& x : seen) x = between(x, part);
-  }
-  const auto [apart, kept] = sideways(seen, alike(a, b), narrowed ? 3 * error : error);
-  if (narrowed)
-    left &= ~(apart & products.known);
-  else {
-    certain = certain && (!whole || (left & ~(apart | kept)) == 0);
-    left &= ~apart;
-  }
-  return {static_cast<CarriedPlaces>(left), certain};
-}
-
-}  // namespace
-
-std::optional<CarriedPlaces> not_filtered_in_single(const Motion& motion, const Triangle& a,
-                                                    const Triangle& b, CarriedPlaces places, double last) {
-  const Looked found = look<false>(motion, a, b, places, last);
-  return found.certain ? std::optional(found.left) : std::nullopt;
-}
-
-CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
-                                         CarriedPlaces places, double last) {
-  const Looked found = look<true>(motion, a, b, places, last);
-  return found.certain || found.left == 0 ? found.left : not_filtered(motion, a, b, found.left);
+  for (VectorLanes16& x : seen) x = between(x, part);
+  left &= ~(sideways(seen, alike(a, b), 3 * error) & products.known);
+  // Double precision may drop more of what is left unless each cubic certainly has two signs. It looks at the
+  // whole interval.
+  const bool certain = last < 1 || (places & ~(never | products.mixed())) == 0;
+  const auto kept = static_cast<CarriedPlaces>(left);
+  return certain || kept == 0 ? kept : not_filtered(motion, a, b, kept);
 }
 
 }  // namespace cscd
