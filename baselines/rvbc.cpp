@@ -33,7 +33,8 @@ class RvbcCuller : public Culler {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }
 
-  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
+  bool knows_distance() const override { return true; }
+  void refit(const Step& step) override { hierarchy_.refit(step.motion, step.thickness.largest()); }
 
   bool classify(const Step& step) override {
     table_.update(step.motion);
@@ -43,6 +44,7 @@ class RvbcCuller : public Culler {
       observers_.push_back(radial::observer(kinds_[c], step.bones->start[bone], step.bones->end[bone]));
       table_.classify(c, observers_.back(), hierarchy_.classes(c));
     }
+    if (!step.thickness.is_zero()) hierarchy_.keep_distant(step.motion, unmerged_, observers_);
     radial_ = hierarchy_.finish_classes();
     radial_.clusters = kinds_.size();
     return true;

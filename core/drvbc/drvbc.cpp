@@ -35,11 +35,13 @@ class DrvbcCuller : public Culler {
         table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
-  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
+  bool knows_distance() const override { return true; }
+  void refit(const Step& step) override { hierarchy_.refit(step.motion, step.thickness.largest()); }
 
   bool classify(const Step& step) override {
     table_.update(step.motion);
     mega_.regrow(table_, *step.bones, hierarchy_);
+    if (!step.thickness.is_zero()) hierarchy_.keep_distant(step.motion, mega_.labels(), mega_.observers());
     radial_ = hierarchy_.finish_classes();
     radial_.clusters = mega_.count();
     return true;

@@ -28,6 +28,27 @@ ClusterHierarchy::ClusterHierarchy(const TriangleMesh& mesh, std::span<const Vec
   }
 }
 
+void ClusterHierarchy::keep_distant(const Motion& motion, std::span<const std::int32_t> merged,
+                                    std::span<const Observer> observers) {
+  if (!near_) {
+    near_.emplace(mesh_);
+    leaf_of_.resize(mesh_.triangle_count());
+    for (std::size_t n = 0; n < tree_.node_count(); ++n)
+      if (const auto node = static_cast<NodeIndex>(n); tree_.is_leaf(node))
+        leaf_of_[+tree_.triangle(node)] = node;
+  }
+  for (std::size_t c = 0; c < groups_.size(); ++c) {
+    const Observer& observer = observers[static_cast<std::size_t>(merged[c])];
+    const std::span<Orientation> classes = this->classes(c);
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      const Triangle& t = mesh_.corners(groups_[c][i]);
+      if (observer.is_segment ||
+          !plane_is_distant({motion[t[0]], motion[t[1]], motion[t[2]]}, observer.head, thickness_ / 2))
+        classes[i] = Orientation::uncertain;
+    }
+  }
+}
+
 RadialCounts ClusterHierarchy::finish_classes() {
   std::size_t leaf = class_of_leaf_.size();
   for (auto node = static_cast<NodeIndex>(tree_.node_count()) - 1; node >= 0; --node) {
@@ -70,10 +91,23 @@ CullCounts ClusterHierarchy::cull(std::span<const std::int32_t> merged, Triangle
     tests += label(a) == label(b) ? pair_descent(tree_, bounds_, a, b, is_leaf, same_sign, emit)
                                   : pair_descent(tree_, bounds_, a, b, is_leaf, never, emit);
   };
+  if (thickness_ > 0) tests += pass_on_near(sink);
   const std::uint64_t global_tests = self_descent(tree_, bounds_, 0, is_cluster, never, cluster_pair);
   CullCounts counts;
   counts.bvot = tests + global_tests;
   return counts;
+}
+
+std::uint64_t ClusterHierarchy::pass_on_near(TrianglePairSink& sink) const {
+  std::uint64_t tests = 0;
+  for (std::size_t t = 0; t < leaf_of_.size(); ++t)
+    for (const TriangleId b : near_->of(TriangleId{static_cast<std::int32_t>(t)})) {
+      if (+b < t) continue;
+      ++tests;
+      if (overlap(bounds_[leaf_of_[t]], bounds_[leaf_of_[+b]]))
+        sink.add(TriangleId{static_cast<std::int32_t>(t)}, b);
+    }
+  return tests;
 }
 
 RadialView ClusterHierarchy::view(std::span<const std::int32_t> merged,

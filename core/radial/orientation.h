@@ -42,6 +42,9 @@ enum class SegmentTest { all_corners, first_corner };
 Orientation orientation(const MovingPoint (&corner)[3], const Observer& observer,
                         SegmentTest test = SegmentTest::all_corners);
 
+// Whether the plane of a triangle is certainly farther from a moving point than a distance, at every t.
+bool plane_is_distant(const MovingPoint (&corner)[3], const MovingPoint& from, double distance);
+
 // Everything that the orientation of a triangle needs, gathered once an interval: the control vectors of its
 // normal, one corner, and a bound on the rounding of the normal. Triangles are grouped by cluster in blocks
 // of eight lanes, so that an observer is tried on a whole cluster in vector code.

@@ -83,4 +83,17 @@ void OrientationTable::classify_one_by_one(std::size_t first, const Observer& ob
   }
 }
 
+// The normal is at most as long as the square of the longest edge, at every t.
+bool plane_is_distant(const MovingPoint (&corner)[3], const MovingPoint& from, double distance) {
+  const BernsteinCubic volume = triple_product(normal_of(corner), between(from, corner[0]));
+  const int sign = certain_sign(volume);
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const MovingVector edge = between(corner[k], corner[(k + 1) % 3]);
+    longest = std::max({longest, edge.start.squaredNorm(), edge.end.squaredNorm()});
+  }
+  const double least = volume.error + (1 + 1e-9) * distance * longest;
+  return sign != 0 && std::ranges::all_of(volume.c, [&](double c) { return sign * c > least; });
+}
+
 }  // namespace cscd::radial

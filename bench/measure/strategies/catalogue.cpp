@@ -107,6 +107,7 @@ constexpr std::array kStrategies = {
         .needs = Needs::closed_mesh_with_bones,
         .kind = StrategyKind::published,
         .make = [](const StrategyInput& setup) { return make_rvbc(setup); },
+        .knows_distance = true,
     },
     Strategy{
         .name = "drvbc",
@@ -115,6 +116,7 @@ constexpr std::array kStrategies = {
         .needs = Needs::closed_mesh_with_bones,
         .kind = StrategyKind::published,
         .make = [](const StrategyInput& setup) { return make_drvbc(setup); },
+        .knows_distance = true,
     },
     kDrvbcFast,
     kDrvbcFastComplete,

@@ -1,9 +1,5 @@
 #include "core/fast/certify/tall_rings.h"
 
-#include <algorithm>
-
-#include "core/mesh/adjacency.h"
-
 namespace cscd::fast {
 
 void TallRings::start(std::size_t covers) {
@@ -140,7 +136,7 @@ void TallRings::clear_rings(unsigned ring) {
 }
 
 void TallRings::find_never_settled() {
-  if (near_offset_.empty()) find_near();
+  if (!near_) near_.emplace(mesh_);
   inner_rings_.assign(mesh_.triangle_count(), 0);
   for (std::size_t p = 0; p < tree_.patches.size(); ++p)
     for (std::size_t c = 0; c < covers_; ++c)
@@ -153,26 +149,8 @@ void TallRings::find_never_settled() {
   never_settled_.clear();
   for (std::size_t t = 0; t < inner_rings_.size(); ++t) {
     const TriangleId a{static_cast<std::int32_t>(t)};
-    for (const TriangleId b : near(a))
+    for (const TriangleId b : near_->of(a))
       if (t < +b && !settled(inner_rings_[t], inner_rings_[+b])) never_settled_.emplace_back(a, b);
-  }
-}
-
-void TallRings::find_near() {
-  const std::size_t count = mesh_.triangle_count();
-  near_offset_.assign(1, 0);
-  std::vector<std::int32_t> seen(count, -1);
-  for (std::size_t t = 0; t < count; ++t) {
-    const auto stamp = static_cast<std::int32_t>(t);
-    seen[t] = stamp;
-    const auto take = [&](TriangleId b) {
-      if (seen[+b] != stamp) near_.push_back(b);
-      seen[+b] = stamp;
-    };
-    const std::size_t first = near_.size();
-    for_each_neighbour(mesh_, TriangleId{stamp}, take);
-    for (std::size_t i = first, end = near_.size(); i < end; ++i) for_each_neighbour(mesh_, near_[i], take);
-    near_offset_.push_back(static_cast<std::int32_t>(near_.size()));
   }
 }
 

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "core/fast/prepare/patches.h"
-#include "core/mesh/triangle_mesh.h"
+#include "core/mesh/near_triangles.h"
 
 namespace cscd::fast {
 
@@ -47,7 +47,7 @@ class TallRings {
   void for_each_unsettled_pair(const Take& take) const {
     for (const auto& [a, b] : never_settled_) take(a, b);
     for (const TriangleId a : touched_)
-      for (const TriangleId b : near(a))
+      for (const TriangleId b : near_->of(a))
         if (!(b < a && is_touched(b)) && !settled(rings_of_[+a], rings_of_[+b])) take(a, b);
   }
 
@@ -70,14 +70,8 @@ class TallRings {
   void shrink(const Masks& from, Masks& to) const;
   void begin_spread();
   void spread_ring();
-  void find_near();
   void find_never_settled();
   void clear_rings(unsigned ring);
-  std::span<const TriangleId> near(TriangleId a) const {
-    const auto first = static_cast<std::size_t>(near_offset_[+a]);
-    return std::span(near_).subspan(first, static_cast<std::size_t>(near_offset_[+a + 1]) - first);
-  }
-
   const TriangleMesh& mesh_;
   const PatchTree& tree_;
   std::size_t covers_ = 0;
@@ -92,9 +86,8 @@ class TallRings {
   std::vector<std::int32_t> front_, next_front_;  // the patches of these
   std::vector<std::int32_t> spread_over_;         // all patches so far
   std::vector<RingBits> rings_of_;                // [triangles]
-  std::vector<TriangleId> touched_;        // triangles of which the interval says less than the clusters
-  std::vector<std::int32_t> near_offset_;  // [triangles + 1]
-  std::vector<TriangleId> near_;           // the triangles in the first two rings of each
+  std::vector<TriangleId> touched_;    // triangles of which the interval says less than the clusters
+  std::optional<NearTriangles> near_;  // made when first needed
 };
 
 }  // namespace cscd::fast
