@@ -71,14 +71,6 @@ double off_by_ulps(double x, int ulps, Random& random) {
   return x + steps * (0x1p-53 * x);
 }
 
-// A generator whose seed is a hash of the arguments.
-Random random_of(const Family& family, Kind kind, std::size_t number, std::uint64_t seed) {
-  std::uint64_t hash = digest_of(std::as_bytes(std::span(family.name)), kDigestOfNothing ^ seed);
-  hash = digest_step(hash, static_cast<std::uint64_t>(kind));
-  hash = digest_step(hash, number + 1);
-  return Random(hash ^ (hash >> 29));
-}
-
 }  // namespace
 
 Query disturbed(Query query, Kind kind, const Disturbance& by, Random& random) {
@@ -106,15 +98,22 @@ Disturbance suite_disturbance(std::size_t number, Random& random) {
   return by;
 }
 
+Random random_of(std::string_view family, Kind kind, std::size_t number, std::uint64_t seed) {
+  std::uint64_t hash = digest_of(std::as_bytes(std::span(family)), kDigestOfNothing ^ seed);
+  hash = digest_step(hash, static_cast<std::uint64_t>(kind));
+  hash = digest_step(hash, number + 1);
+  return Random(hash ^ (hash >> 29));
+}
+
 Query suite_query(const Family& family, Kind kind, std::size_t number, std::uint64_t seed) {
-  Random random = random_of(family, kind, number, seed);
+  Random random = random_of(family.name, kind, number, seed);
   const Query query = family.make(kind, random);
   const Disturbance by = suite_disturbance(number, random);
   return disturbed(query, kind, by, random);
 }
 
 Query random_query(const Family& family, Kind kind, double hardness, std::size_t number, std::uint64_t seed) {
-  Random random = random_of(family, kind, number, seed + 1);
+  Random random = random_of(family.name, kind, number, seed + 1);
   Disturbance by;
   by.turn = Turn::rounded;
   by.share = hardness;

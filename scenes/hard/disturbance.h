@@ -27,6 +27,9 @@ Query disturbed(Query query, Kind kind, const Disturbance& by, Random& random);
 // the number of the query; scales are random, and features are permuted.
 Disturbance suite_disturbance(std::size_t number, Random& random);
 
+// A generator whose seed is a hash of the arguments.
+Random random_of(std::string_view family, Kind kind, std::size_t number, std::uint64_t seed);
+
 // The query of a family in the suite with the given number. It depends on the arguments alone.
 Query suite_query(const Family& family, Kind kind, std::size_t number, std::uint64_t seed);
 // A query that is off its lattice by up to the share `hardness` of its extent, and turned by any angle. A
