@@ -134,6 +134,7 @@ class SelfCollision::Engine {
       throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
                        std::to_string(kMostThreads));
     check_labels();
+    thickness_ = checked_thickness();
     options_.obstacles.clear();
     if (beside_)
       obstacles_.emplace(mesh_, reference_, beside_->mesh, beside_->positions, beside_->first_vertex,
@@ -142,6 +143,7 @@ class SelfCollision::Engine {
     if (beside_) all.insert(all.end(), beside_->positions.begin(), beside_->positions.end());
     exclusions_ = exclusions_of(obstacles_ ? obstacles_->together() : mesh_, all, options_.exclude);
     if (obstacles_ && !exclusions_.empty()) obstacles_->leave_out(exclusions_);
+    if (obstacles_) obstacles_->thicken(thickness_);
     // Preparing here, and not in the first step, finds what is wrong with the input where it is given.
     plain(first_);
   }
@@ -241,6 +243,27 @@ class SelfCollision::Engine {
                        std::to_string(kMostLabels) + ", such as one for each bone");
   }
 
+  Thickness checked_thickness() const {
+    const auto require_length = [](double length, const std::string& name) {
+      if (!(length >= 0) || !std::isfinite(length))
+        throw InputError("options: " + name + " is " + std::to_string(length) +
+                         "; give a finite length of at least 0");
+    };
+    require_length(options_.thickness, "thickness");
+    const std::vector<double>& by_vertex = options_.vertex_thickness;
+    if (by_vertex.empty()) return Thickness(options_.thickness);
+    const std::size_t vertices = mesh_.vertex_count() + (beside_ ? beside_->positions.size() : 0);
+    if (by_vertex.size() != vertices)
+      throw InputError("options: vertex_thickness has " + std::to_string(by_vertex.size()) + " entries for " +
+                       std::to_string(vertices) +
+                       " vertices of the mesh and of obstacles; give one a vertex");
+    for (std::size_t v = 0; v < by_vertex.size(); ++v)
+      require_length(by_vertex[v], "vertex_thickness of vertex " + std::to_string(v));
+    require_length(Thickness(options_.thickness, by_vertex).largest(), "thickness of a pair of vertices");
+    return Thickness(options_.thickness, by_vertex);
+  }
+  bool is_thick() const { return !thickness_.is_zero(); }
+
   static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
   StrategyInput setup(bool first, const cscd::Exclusions* exclusions) const {
     return {.mesh = mesh_,
@@ -259,24 +282,31 @@ class SelfCollision::Engine {
     const SessionOptions options{.first = first,
                                  .keep_rest_crossings = true,
                                  .ignore_starts = !options_.check_start,
-                                 .check_finite = options_.check_positions};
+                                 .check_finite = options_.check_positions,
+                                 .thickness = thickness_};
     return wanted.emplace("reference positions", setup(first, exclusions), strategy, kDrvbcFastComplete,
                           reference_, options);
   }
   // The session of a complete strategy finds out how a step starts, and tells the strategy where nothing
   // crosses, which makes that step quick. With check_start off, a session finds out and tells nothing. Then
   // the strategy that promises the first contact is right, because it takes every start for free of crossings
-  // as the caller does. With exclusions, though, a caller may let excluded pairs cross.
+  // as the caller does. With exclusions, though, a caller may let excluded pairs cross, and with a thickness
+  // pairs may be close at the start.
+  //
+  // With a thickness, pairs are excluded that are close in every step, such as neighbours, and the one
+  // session knows of them.
   Session& plain(Question& question) {
-    const bool for_granted = !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty();
+    const bool for_granted =
+        !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty() && !is_thick();
     return made(question.plain, question.first,
-                question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete, nullptr);
+                question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete,
+                is_thick() && !exclusions_.empty() ? &exclusions_ : nullptr);
   }
 
   void step_itself(Question& question, const Motion& motion, bool any_contact) {
     if (question.filtered_steps == 0) {
       plain(question).step(motion, nullptr, answer_, any_contact && exclusions_.empty());
-      if (exclusions_.empty()) return;
+      if (exclusions_.empty() || is_thick()) return;
       const std::size_t left_out = leave_out();
       if (left_out > 0) question.filtered_steps = kFilteredSteps;
       if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
@@ -310,8 +340,9 @@ class SelfCollision::Engine {
         out.edge_edge.push_back(indices_of(mesh, pair));
   }
 
-  static Contact written(const TriangleMesh& mesh, const cscd::Contact& contact, const Motion& motion) {
-    const ContactGeometry geometry = contact_geometry(mesh, motion, contact.pair, contact.time);
+  Contact written(const TriangleMesh& mesh, const cscd::Contact& contact, const Motion& motion) const {
+    const ContactGeometry geometry =
+        contact_geometry(mesh, motion, contact.pair, contact.time, thickness_.of(mesh, contact.pair) > 0);
     const bool edges = contact.pair.kind == FeaturePair::Kind::edge_edge;
     return {edges,
             indices_of(mesh, contact.pair),
@@ -328,6 +359,7 @@ class SelfCollision::Engine {
   TriangleMesh mesh_;
   std::unique_ptr<Beside> beside_;
   std::optional<Obstacles> obstacles_;
+  Thickness thickness_;          // of vertices of the mesh, and behind them of obstacles
   cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
   Question first_{.first = true}, all_{.first = false};
   std::optional<CandidateSearch> search_;

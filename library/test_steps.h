@@ -151,16 +151,17 @@ using Key = std::tuple<bool, std::array<int, 4>, int>;
 using Truth = std::map<Key, double>;  // the time of each contact
 
 // Returns all contacts that are not excluded, found among all feature pairs with the exact test.
-inline Truth truth_of(const SceneStep& step, const Exclusions& exclusions) {
+inline Truth truth_of(const SceneStep& step, const Exclusions& exclusions, const Thickness& thickness = {}) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");
   Truth truth;
   for_each_feature_pair(step.mesh, step.motion(), [&](const FeaturePair& pair, const Box& a, const Box& b) {
-    if (!a.intersects(b) || exclusions.excludes(step.mesh, pair)) return;
+    const double thick = thickness.of(step.mesh, pair);
+    if (a.exteriorDistance(b) > thick * (1 + 1e-12) || exclusions.excludes(step.mesh, pair)) return;
     if (std::ranges::all_of(carriers(step.mesh, pair), [&](const CrossingPair& triangles) {
           return exclusions.excludes(step.mesh, TrianglePair{triangles.first, triangles.second});
         }))
       return;
-    const cscd::Answer answer = ask(exact, step.mesh, step.motion(), pair);
+    const cscd::Answer answer = ask_close(exact, step.mesh, step.motion(), pair, thick);
     const bool edges = pair.kind == FeaturePair::Kind::edge_edge;
     if (answer.verdict == Verdict::contact)
       truth.emplace(Key{edges, indices_of(step.mesh, pair), edges ? -1 : pair.b}, answer.time);
@@ -176,8 +177,9 @@ inline Truth found(const SelfCollision::Answer& answer) {
 }
 
 // Holds every promise of the library about one step to the search of all feature pairs.
-inline void expect_right(const SceneStep& step, SelfCollision& body, const Exclusions& exclusions) {
-  const Truth truth = truth_of(step, exclusions);
+inline void expect_right(const SceneStep& step, SelfCollision& body, const Exclusions& exclusions,
+                         const Thickness& thickness = {}) {
+  const Truth truth = truth_of(step, exclusions, thickness);
   Crossings crossings = EmbeddingTest(step.mesh, step.motion().start())
                             .find_all(step.motion().start(), step.mesh.triangle_count() * 100);
   std::erase_if(crossings.pairs, [&](const CrossingPair& pair) {
@@ -193,10 +195,14 @@ inline void expect_right(const SceneStep& step, SelfCollision& body, const Exclu
     EXPECT_EQ(all.start_crossings[i][0], static_cast<int>(crossings.pairs[i].first));
     EXPECT_EQ(all.start_crossings[i][1], static_cast<int>(crossings.pairs[i].second));
   }
+  const auto at_start = static_cast<std::size_t>(
+      std::ranges::count_if(truth, [](const auto& contact) { return contact.second == 0; }));
+  EXPECT_EQ(all.close_at_start(), at_start);
   const auto earliest =
       std::ranges::min_element(truth, {}, [](const Truth::value_type& contact) { return contact.second; });
   const SelfCollision::Answer first = body.first_contact(step.start, step.end);
   ASSERT_EQ(first.contacts.empty(), truth.empty());
+  EXPECT_EQ(first.close_at_start(), at_start);
   for (const SelfCollision::Contact& contact : first.contacts) {
     EXPECT_EQ(contact.time, earliest->second);
     EXPECT_TRUE(truth.contains({contact.edges, contact.vertices, contact.face}));

@@ -65,6 +65,16 @@ std::array<double, 2> nearest_shares(const Vec3& p, const Vec3& q, const Vec3& r
   return {first, second};
 }
 
+// The normal of features that are apart leads along their nearest points. Returns whether there is one.
+bool set_normal_between(const Located& first, const Located& second, ContactGeometry& out) {
+  const Vec3 way = first.at - second.at;
+  const double length = way.stableNorm();
+  if (!(length > 0) || !std::isfinite(length)) return false;
+  out.normal = way / length;
+  out.relative_speed = out.normal->dot(first.velocity - second.velocity);
+  return true;
+}
+
 // Sets the normal and the relative speed. The normal points to the side from which the first feature came:
 // that is against its motion, or, if it does not move along `direction`, to where it stood at the start. If
 // `direction` is too short for its `scale`, the line between the starting points is taken instead.
@@ -90,7 +100,7 @@ void set_normal(Vec3 direction, double scale, const Located& first, const Locate
   out.relative_speed = speed;
 }
 
-ContactGeometry of(const MovingVertexFace& q, double time) {
+ContactGeometry of(const MovingVertexFace& q, double time, bool at_distance) {
   const Vec3 p = q.vertex.at(time), a = q.corner[0].at(time), b = q.corner[1].at(time),
              c = q.corner[2].at(time);
   ContactGeometry out;
@@ -101,11 +111,12 @@ ContactGeometry of(const MovingVertexFace& q, double time) {
   const Located first = weighted(&q.vertex, &whole, 1, time);
   const Located second = weighted(q.corner, out.weights.data(), 3, time);
   const double longest = std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()});
+  if (at_distance && set_normal_between(first, second, out)) return out;
   set_normal((b - a).cross(c - a), longest * longest, first, second, out);
   return out;
 }
 
-ContactGeometry of(const MovingEdgeEdge& q, double time) {
+ContactGeometry of(const MovingEdgeEdge& q, double time, bool at_distance) {
   const Vec3 p = q.first[0].at(time), u = q.first[1].at(time) - p;
   const Vec3 r = q.second[0].at(time), v = q.second[1].at(time) - r;
   const std::array<double, 2> shares = nearest_shares(p, p + u, r, r + v);
@@ -115,6 +126,7 @@ ContactGeometry of(const MovingEdgeEdge& q, double time) {
   const double on_first[2] = {1 - shares[0], shares[0]}, on_second[2] = {1 - shares[1], shares[1]};
   const Located first = weighted(q.first, on_first, 2, time), second = weighted(q.second, on_second, 2, time);
   out.point = first.at;
+  if (at_distance && set_normal_between(first, second, out)) return out;
   set_normal(u.cross(v), u.norm() * v.norm(), first, second, out);
   return out;
 }
@@ -131,10 +143,10 @@ std::array<VertexId, 4> vertices_of(const TriangleMesh& mesh, const FeaturePair&
 }
 
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
-                                 double time) {
+                                 double time, bool at_distance) {
   if (pair.kind == FeaturePair::Kind::vertex_face)
-    return of(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), time);
-  return of(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), time);
+    return of(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), time, at_distance);
+  return of(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), time, at_distance);
 }
 
 }  // namespace cscd

@@ -34,8 +34,10 @@ struct ContactGeometry {
 // then those of edge `b`.
 std::array<VertexId, 4> vertices_of(const TriangleMesh& mesh, const FeaturePair& pair);
 
-// Returns the geometry of one contact of a moving mesh. `time` is the time of the contact, in [0, 1].
+// Returns the geometry of one contact of a moving mesh. `time` is the time of the contact, in [0, 1]. With
+// `at_distance` the features are close instead of touching: `point` and `weights` are those of nearest
+// points, and the normal leads from the one on the second feature to the one on the first.
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
-                                 double time);
+                                 double time, bool at_distance = false);
 
 }  // namespace cscd

@@ -202,7 +202,8 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
   start.pairs.clear();
   start.total = 0;
   bring_up_to_date();
-  if (!pairs_->near(box_of(own))) {  // the start is apart as well
+  const Aabb box = thickness_.is_zero() ? box_of(own) : thickened(box_of(own), thickness_.largest());
+  if (!pairs_->near(box)) {  // the start is apart as well
     free_ = false;
     return;
   }
@@ -217,7 +218,7 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
         return exclusions_->excludes(together_, TrianglePair{pair.first, pair.second});
       });
   }
-  (first ? first_ : all_)->detect({motion()}, found);
+  (first ? first_ : all_)->detect({.motion = motion(), .thickness = thickness_}, found);
   found.sort();
   if (first) keep_first(found);
   // With exclusions two triangles may come to cross by a contact that is left out.

@@ -34,6 +34,9 @@ class Obstacles {
 
   // Leaves out what the exclusions name, which refer to together() and must outlive the object.
   void leave_out(const Exclusions& exclusions);
+  // Counts close pairs as contacts from the next step on. The thickness is about together(), and what it
+  // refers to must outlive the object.
+  void thicken(const Thickness& thickness) { thickness_ = thickness; }
 
   // The number of vertices of one obstacle.
   std::size_t vertex_count(std::size_t obstacle) const;
@@ -64,13 +67,14 @@ class Obstacles {
   TriangleMesh together_;
   const ElementaryTest& elementary_;
   const Exclusions* exclusions_ = nullptr;
+  Thickness thickness_;
   std::vector<std::size_t> first_vertex_;  // in together(), and the number of all vertices at the end
   std::vector<Vec3> start_, end_;          // [vertices of together()], of the last step that came near
   std::vector<bool> follows_;  // [obstacles]: its next start is where the last step left it, bit for bit
   std::vector<bool> moved_;    // [obstacles]: has been moved since the last step
   std::vector<bool> at_rest_;  // [obstacles]: starts where it ends
   bool stale_ = false;         // some obstacle's bounds are those of another motion
-  bool free_ = false;          // the last step was near, started without crossings and met nothing
+  bool free_ = false;          // the last step was near, started without crossings and had no contact
   std::unique_ptr<ObstaclePairs> pairs_;
   std::unique_ptr<Detector> first_, all_;
   EmbeddingTest start_test_;

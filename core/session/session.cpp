@@ -152,7 +152,8 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
     // For the first contact alone there is one look in either case.
     const bool clear = !options_.ignore_starts && starts_.clear() && can_follow();
     step.starts_embedded = clear && (!touched_last_ || first_only());
-    step.any_contact = any_contact_ && first_only();
+    // Where it is not known whether the start is clear, the first contact says so, and no other does.
+    step.any_contact = any_contact_ && first_only() && (!is_thick() || clear);
     out.report = asked.detector->detect(step, out.found);
   } else {
     out.report = starts_.see(*asked.detector, step, out.found);

@@ -81,7 +81,8 @@ PYBIND11_MODULE(_cscd, module) {
                     "The vertex and the corners of the face, or the ends of both edges.")
       .def_readonly("face", &SelfCollision::Contact::face, "The face, or -1.")
       .def_readonly("time", &SelfCollision::Contact::time, "The earliest time of the contact, in [0, 1].")
-      .def_readonly("point", &SelfCollision::Contact::point, "Where the two touch at that time, [3].")
+      .def_readonly("point", &SelfCollision::Contact::point,
+                    "Where the two touch at that time, on the first feature, [3].")
       .def_readonly("normal", &SelfCollision::Contact::normal,
                     "Unit vector from the second feature towards where the first came from, [3]; or zero.")
       .def_readonly("weights", &SelfCollision::Contact::weights,
@@ -92,6 +93,8 @@ PYBIND11_MODULE(_cscd, module) {
   py::class_<SelfCollision::Answer>(module, "Answer", "What is known of one step.")
       .def_readonly("contacts", &SelfCollision::Answer::contacts, "List of Contact, by time.")
       .def_property_readonly("free", &SelfCollision::Answer::free, "Whether nothing touches or crosses.")
+      .def_property_readonly("close_at_start", &SelfCollision::Answer::close_at_start,
+                             "How many pairs touch, or with a thickness are close, at the start already.")
       .def_property_readonly("time", &SelfCollision::Answer::time, "Of the earliest contact, or None.")
       .def_property_readonly("intersects_at_start", &SelfCollision::Answer::intersects_at_start)
       .def_property_readonly(
@@ -145,9 +148,17 @@ PYBIND11_MODULE(_cscd, module) {
   py::class_<SelfCollision>(module, "SelfCollision")
       .def(py::init([](const Table<int>& faces, const Reals& reference, int threads, bool check_positions,
                        bool check_start, const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
-                       const std::string& preparation, std::vector<int> labels) {
-             SelfCollision::Options options{threads, check_positions,  check_start, exclude, {},
-                                            {},      std::move(labels)};
+                       const std::string& preparation, std::vector<int> labels, double thickness,
+                       std::vector<double> vertex_thickness) {
+             SelfCollision::Options options{threads,
+                                            check_positions,
+                                            check_start,
+                                            exclude,
+                                            {},
+                                            {},
+                                            std::move(labels),
+                                            thickness,
+                                            std::move(vertex_thickness)};
              const auto* const bytes = reinterpret_cast<const std::byte*>(preparation.data());
              options.preparation.assign(bytes, bytes + preparation.size());
              for (const auto& [corners, positions] : obstacles)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,9 +41,11 @@ class LocalPositions {
   float error() const { return error_; }
   // The same, if the positions of a part of the motion are off by `off`, in units of the scene, on top.
   float error_beside(double off) const { return error_ + 1.0001F * static_cast<float>(off * scale_); }
-  // A length of the scene in local units, rounded up.
+  // A length of the scene in local units, rounded up. Where positions are known, any two are less than 4e9
+  // apart, and a length that exceeds this may be any other that does.
   float in_local(double length) const {
-    return length > 0 ? 1.000001F * static_cast<float>(length * scale_) + 1e-37F : 0;
+    constexpr double kMost = 1e10;
+    return length > 0 ? 1.000001F * static_cast<float>(std::min(length * scale_, kMost)) + 1e-37F : 0;
   }
   // False where the motion leaves the range in which errors are known. Nothing may be concluded from the
   // positions then.

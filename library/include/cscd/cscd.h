@@ -31,6 +31,11 @@
 //   - all_contacts() gives all contacts;
 //   - up to largest_step() nothing touches, unless something touches or crosses at the start already;
 //   - candidates() holds every pair of features that comes within the radius.
+// With a thickness (Options::thickness) above 0, all of this is about pairs of features that come within it:
+// wherever a comment says "touches" or "contact", the distance of the two is at most the thickness. Then
+//   - is_free() is true only if nothing comes within the thickness and nothing crosses at the start;
+//   - up to largest_step() everything stays farther apart than the thickness.
+//
 // Nothing is sampled, and no tolerance decides. The proofs are in core/soundness.md of the project.
 //
 // What it costs: preparing a character takes as long as some hundreds of steps without contacts, at times a
@@ -109,6 +114,15 @@ class CSCD_EXPORT SelfCollision {
     // joints which its reference positions do not show, such as a hand, is then answered in fewer tests;
     // preparing takes two to three times as long. Answers are the same. Empty, or one entry a vertex.
     std::vector<int> labels;
+    // How near features may come before they count as contacts, in the unit of the positions: finite and at
+    // least 0. Two features that share no vertex and are not excluded are a contact if their distance is at
+    // most the thickness at some t in [0, 1]. Where edges are shorter than that, neighbours are close by
+    // construction; Exclusions::rings and Exclusions::rest_distance leave them out. With exclusions and a
+    // thickness, every question takes the time of a complete search.
+    double thickness = 0;
+    // More thickness for each vertex, finite and at least 0: a pair has `thickness`, and the sum of the
+    // largest of either feature on top. Empty, or one entry a vertex, of the mesh and then of obstacles.
+    std::vector<double> vertex_thickness;
   };
 
   struct Contact {
@@ -117,9 +131,9 @@ class CSCD_EXPORT SelfCollision {
     std::array<int, 4> vertices;
     int face;               // the face, or -1
     double time;            // the earliest time at which the two touch, in [0, 1]
-    Eigen::Vector3d point;  // where, at that time
-    // The unit vector from the second feature towards the side from which the first came; zero where the
-    // features leave no direction.
+    Eigen::Vector3d point;  // where, at that time, on the first feature
+    // The unit vector from the second feature towards the side from which the first came, and at a distance,
+    // from the nearest point of the second to that of the first; zero where the features leave no direction.
     Eigen::Vector3d normal;
     // The weights of the face's corners, which sum to 1; or the shares of the way along the first and along
     // the second edge, and zero.
@@ -135,6 +149,13 @@ class CSCD_EXPORT SelfCollision {
 
     bool intersects_at_start() const { return !start_crossings.empty(); }
     bool free() const { return contacts.empty() && start_crossings.empty(); }
+    // The number of pairs that touch, or with a thickness are close, at the start already. The first contacts
+    // hold all of them, too.
+    std::size_t close_at_start() const {
+      std::size_t count = 0;
+      while (count < contacts.size() && contacts[count].time <= 0) ++count;
+      return count;
+    }
     std::optional<double> time() const {
       return contacts.empty() ? std::nullopt : std::optional(contacts.front().time);
     }
@@ -184,7 +205,8 @@ class CSCD_EXPORT SelfCollision {
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
   // Returns 1 for a free step, otherwise `safety`, in (0, 1], times the earliest time, rounded down; 0 if
-  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t].
+  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t], so
+  // that with a thickness the shorter step ends with everything farther apart than that.
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`

@@ -76,6 +76,10 @@ class SelfCollision(_cscd.SelfCollision):
     labels: [vertices] int, the part that each vertex belongs to, such as the bone that it follows most; at most 1000
         different ones. They help the engine with a closed mesh that bends at joints which `reference` does not show, such
         as a hand, and cost time in preparing. Answers are the same.
+    thickness: how near features may come before they count as contacts, in the unit of the positions, finite and at least
+        0. Neighbours that are closer than that by construction are left out by `rings` or `rest_distance` of Exclusions.
+    vertex_thickness: [vertices of the mesh and of obstacles] float, at least 0; a pair of features has `thickness`, and the
+        sum of the largest of either feature on top. Empty for none.
 
     A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
     the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
@@ -83,7 +87,7 @@ class SelfCollision(_cscd.SelfCollision):
     """
 
     def __init__(self, faces, reference, *, threads=1, check_positions=True, check_start=True, exclude=None, obstacles=(),
-                 preparation=b"", labels=()):
+                 preparation=b"", labels=(), thickness=0.0, vertex_thickness=()):
         if exclude is not None and not isinstance(exclude, Exclusions):
             raise ValueError("exclude: give an object of cscd.Exclusions")
         if not isinstance(preparation, (bytes, bytearray, memoryview)):
@@ -97,7 +101,9 @@ class SelfCollision(_cscd.SelfCollision):
                          flag(check_start, "check_start"), Exclusions() if exclude is None else exclude,
                          [(_faces(corners, f"obstacle {i}, faces"), _positions(where, f"obstacle {i}, positions"))
                           for i, (corners, where) in enumerate(surfaces)], bytes(preparation),
-                         numbers(labels, "labels", INDEX, "vertices").tolist())
+                         numbers(labels, "labels", INDEX, "vertices").tolist(),
+                         float(numbers(thickness, "thickness", REAL)),
+                         numbers(vertex_thickness, "vertex_thickness", REAL, "vertices").tolist())
 
     def place_obstacle(self, obstacle, positions):
         """Places an obstacle, counted from 0, where it rests in the steps from then on."""
@@ -108,7 +114,10 @@ class SelfCollision(_cscd.SelfCollision):
         super().move_obstacle(int(numbers(obstacle, "obstacle", INDEX)), *_step(start, end))
 
     def is_free(self, start, end):
-        """Returns whether the step is free of contacts, and starts without crossings."""
+        """Returns whether the step is free of contacts, and starts without crossings.
+
+        With a thickness, whatever comes within it is a contact.
+        """
         return super().is_free(*_step(start, end))
 
     def first_contact(self, start, end):

@@ -1,0 +1,139 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include "library/test_steps.h"
+
+// Holds the answers at a thickness to a search of all feature pairs.
+namespace cscd {
+namespace {
+
+using namespace test;
+using Options = SelfCollision::Options;
+
+// A thickness for a random step: one for all, or drawn for each vertex, from less than an edge to more.
+void draw_thickness(std::uint64_t seed, std::size_t vertices, Options& options) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> share(0, 1);
+  const double length = 0.3 * std::pow(share(random), 3);
+  if (seed % 3 != 0) options.thickness = length;
+  if (seed % 3 == 1) return;
+  for (std::size_t v = 0; v < vertices; ++v) options.vertex_thickness.push_back(0.5 * length * share(random));
+}
+
+// Excludes what is close by construction, every second time.
+void draw_exclusions(std::uint64_t seed, const SceneStep& step, Options& options, Exclusions& expected) {
+  if (seed % 4 == 1) {
+    options.exclude.rings = 1;
+    expected.exclude_rings(step.mesh, 1);
+  } else if (seed % 4 == 3) {
+    options.exclude.rest_distance = 0.2;
+    expected.exclude_near(step.all_start, 0.2);
+  }
+}
+
+// Mutations: obstacles do not grow; a start that is embedded is taken for clear; the boxes of obstacles grow
+// by half; the plain session answers where pairs are excluded.
+TEST(Thickness, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {
+  std::size_t free = 0, close_at_start = 0, close_later = 0;
+  for (std::uint64_t seed = 1; seed <= intervals() / 2; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    SceneStep step = seed % 5 == 0 ? beside(seed) : SceneStep(seed);
+    const bool obstacle = step.own() < step.mesh.vertex_count();
+    Exclusions exclusions = obstacle ? obstacle_against_obstacle(step) : Exclusions();
+    Options options;
+    if (obstacle) options.obstacles.push_back(obstacle_of(step, step.beside(step.all_start)));
+    draw_thickness(seed, step.mesh.vertex_count(), options);
+    draw_exclusions(seed, step, options, exclusions);
+    const Thickness thickness(options.thickness, options.vertex_thickness);
+    SelfCollision body(step.faces, step.start, options);
+    if (obstacle) body.move_obstacle(0, step.beside(step.all_start), step.beside(step.all_end));
+    expect_right(step, body, exclusions, thickness);
+    const SelfCollision::Answer all = body.all_contacts(step.start, step.end);
+    free += all.free();
+    close_at_start += all.close_at_start() > 0;
+    close_later += all.close_at_start() < all.contacts.size();
+    for (const SelfCollision::Contact& contact : all.contacts) EXPECT_TRUE(contact.point.allFinite());
+    if (!obstacle) {  // and back again
+      std::swap(step.all_start, step.all_end), std::swap(step.start, step.end);
+      expect_right(step, body, exclusions, thickness);
+    }
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(free, intervals() / 40);
+  EXPECT_GT(close_at_start, intervals() / 10);
+  EXPECT_GT(close_later, intervals() / 10);
+}
+
+const FaceRows kTwoFaces{{0, 1, 2}, {3, 4, 5}};
+// One triangle lies two above another, and comes as near as 0.5.
+const Rows kApart{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 2}, {2, 1, 2}, {1, 2, 2}};
+Rows after() {
+  Rows out = kApart;
+  out.bottomRows(3).col(2).setConstant(0.5);
+  return out;
+}
+
+Options thick(double thickness, std::vector<double> by_vertex = {}) {
+  Options out;
+  out.thickness = thickness;
+  out.vertex_thickness = std::move(by_vertex);
+  return out;
+}
+
+TEST(Thickness, SaysWhereFeaturesAreNearest) {
+  SelfCollision body(kTwoFaces, kApart, thick(1));
+  EXPECT_FALSE(body.is_free(kApart, after()));
+  const SelfCollision::Answer first = body.first_contact(kApart, after());
+  ASSERT_FALSE(first.contacts.empty());
+  EXPECT_NEAR(*first.time(), 2.0 / 3, 1e-15);
+  for (const SelfCollision::Contact& contact : first.contacts) {
+    EXPECT_NEAR(std::abs(contact.normal.z()), 1, 1e-12);
+    EXPECT_NEAR(contact.normal_velocity, -1.5, 1e-12) << "the two approach";
+  }
+  const double t = body.largest_step(kApart, after(), 1);
+  EXPECT_GT(t, 2.0 / 3 - 1e-14);
+  const Rows end = kApart + t * (after() - kApart);
+  EXPECT_TRUE(body.is_free(kApart, end));
+  EXPECT_TRUE(SelfCollision(kTwoFaces, kApart, thick(0.499)).is_free(kApart, after()));
+  EXPECT_EQ(SelfCollision(kTwoFaces, kApart, thick(3)).largest_step(kApart, after()), 0);
+}
+
+// From less than the square of what a double holds to more than the mesh measures.
+TEST(Thickness, ExtremeLengthsAreAnswered) {
+  Rows touching = after();
+  touching.bottomRows(3).col(2).setConstant(0);
+  for (const double length : {std::numeric_limits<double>::denorm_min(), 1e-300, 1e-170}) {
+    SelfCollision body(kTwoFaces, kApart, thick(length));
+    EXPECT_TRUE(body.is_free(kApart, after())) << length;
+    EXPECT_FALSE(body.is_free(kApart, touching)) << length;
+    EXPECT_NEAR(body.first_contact(kApart, touching).time().value_or(0), 1, 1e-15) << length;
+  }
+  for (const double length : {10.0, 1e4, 1e8, 1e12, 1e30, 1e39, 1e41, 1e200, 1e300, std::numeric_limits<double>::max()}) {
+    SelfCollision body(kTwoFaces, kApart, thick(length));
+    EXPECT_EQ(body.all_contacts(kApart, after()).close_at_start(), 15u) << length;
+    EXPECT_EQ(body.largest_step(kApart, after()), 0) << length;
+  }
+}
+
+TEST(Thickness, IsRefusedWhereItIsNoLength) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const auto refused = [](const Options& options, const std::string& text) {
+    try {
+      SelfCollision(kTwoFaces, kApart, options);
+      ADD_FAILURE() << text;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    }
+  };
+  for (const double wrong : {nan, inf, -inf, -1.0, -std::numeric_limits<double>::denorm_min()}) {
+    refused(thick(wrong), "thickness is");
+    refused(thick(0, {0, 0, 0, 0, wrong, 0}), "vertex_thickness of vertex 4 is");
+  }
+  refused(thick(0, {0, 0, 0, 0, 0}), "5 entries for 6 vertices");
+  refused(thick(0, std::vector<double>(6, 1e308)), "thickness of a pair of vertices is inf");
+}
+
+}  // namespace
+}  // namespace cscd
