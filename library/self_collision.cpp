@@ -212,10 +212,10 @@ class SelfCollision::Engine {
     if (!(radius >= 0) || !std::isfinite(radius))
       throw InputError("candidates: radius " + std::to_string(radius) + "; give a length of at least 0");
     if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
-    search_->find(motion, radius, found_);
+    search_->find(motion, Thickness(radius), found_);
     append(mesh_, out);
     if (!obstacles_) return;
-    obstacles_->find_candidates(motion, radius, found_);
+    obstacles_->find_candidates(motion, Thickness(radius), found_);
     append(obstacles_->together(), out);
   }
 

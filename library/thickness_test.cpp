@@ -110,7 +110,8 @@ TEST(Thickness, ExtremeLengthsAreAnswered) {
     EXPECT_FALSE(body.is_free(kApart, touching)) << length;
     EXPECT_NEAR(body.first_contact(kApart, touching).time().value_or(0), 1, 1e-15) << length;
   }
-  for (const double length : {10.0, 1e4, 1e8, 1e12, 1e30, 1e39, 1e41, 1e200, 1e300, std::numeric_limits<double>::max()}) {
+  for (const double length :
+       {10.0, 1e4, 1e8, 1e12, 1e30, 1e39, 1e41, 1e200, 1e300, std::numeric_limits<double>::max()}) {
     SelfCollision body(kTwoFaces, kApart, thick(length));
     EXPECT_EQ(body.all_contacts(kApart, after()).close_at_start(), 15u) << length;
     EXPECT_EQ(body.largest_step(kApart, after()), 0) << length;

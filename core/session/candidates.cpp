@@ -6,7 +6,6 @@
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
 #include "core/fast/trial.h"
-#include "core/hierarchy/overlap_descent.h"
 
 namespace cscd {
 namespace {
@@ -40,7 +39,9 @@ bool within(const Box& a, const Box& b, double radius) {
   return true;
 }
 
-bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair, double radius) {
+bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
+            const Thickness& thickness) {
+  const double radius = thickness.of(mesh, pair);
   if (pair.kind == FeaturePair::Kind::vertex_face)
     return within(box_of(motion, std::array{VertexId{pair.a}}),
                   box_of(motion, mesh.corners(TriangleId{pair.b})), radius);
@@ -49,50 +50,30 @@ bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& p
 
 }  // namespace
 
-void CandidateSet::take(const Motion& motion, double radius, const TrianglePair& pair,
+void CandidateSet::take(const Motion& motion, const Thickness& thickness, const TrianglePair& pair,
                         std::vector<FeaturePair>& out) {
   if (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair)) return;
   for_each_carried(mesh_, pair, [&](const FeaturePair& features) {
-    if (!within(mesh_, motion, features, radius) || !met_.insert(features)) return;
+    if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
     if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
   });
 }
 
-void CandidateSearch::find(const Motion& motion, double radius, std::vector<FeaturePair>& out) {
+// A complete culler passes on every triangle pair of which features come within the thickness.
+void CandidateSearch::find(const Motion& motion, const Thickness& thickness, std::vector<FeaturePair>& out) {
   out.clear();
   set_.start_step();
-  if (radius == 0)
-    find_touching(motion, out);
-  else
-    find_near(motion, radius, out);
-}
-
-// What comes within a radius of 0 touches, and a complete culler passes on every triangle pair of which
-// features touch.
-void CandidateSearch::find_touching(const Motion& motion, std::vector<FeaturePair>& out) {
   if (!culler_) {
     StageClock clock;
     clock.enter(Stage::decomposition);
     culler_ = fast::best_trial_culler(setup_, {.name = "candidates", .complete = true}, clock).culler;
   }
-  CandidateSink sink(set_, motion, 0, out);
-  culler_->refit({motion});
-  culler_->classify({motion});
+  const Step step{.motion = motion, .thickness = thickness};
+  CandidateSink sink(set_, motion, thickness, out);
+  culler_->refit(step);
+  culler_->classify(step);
   culler_->cull(sink);
   sink.flush();
-}
-
-void CandidateSearch::find_near(const Motion& motion, double radius, std::vector<FeaturePair>& out) {
-  if (!tree_) {
-    tree_ = build_tree(setup_.mesh, setup_.reference);
-    bounds_.emplace(setup_.mesh, *tree_);
-  }
-  bounds_->refit(motion, radius / 2);
-  const auto is_leaf = [&](NodeIndex node) { return tree_->is_leaf(node); };
-  const auto skip_none = [](NodeIndex, NodeIndex) { return false; };
-  self_descent(*tree_, *bounds_, 0, is_leaf, skip_none, [&](NodeIndex a, NodeIndex b) {
-    set_.take(motion, radius, {tree_->triangle(a), tree_->triangle(b)}, out);
-  });
 }
 
 }  // namespace cscd

@@ -227,16 +227,17 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
   follows_ = at_rest_;
 }
 
-void Obstacles::find_candidates(const Motion& own, double radius, std::vector<FeaturePair>& out) {
+void Obstacles::find_candidates(const Motion& own, const Thickness& thickness,
+                                std::vector<FeaturePair>& out) {
   out.clear();
   candidates_->start_step();
   bring_up_to_date();
-  if (!pairs_->near(thickened(box_of(own), radius))) return;
+  if (!pairs_->near(thickened(box_of(own), thickness.largest()))) return;
   free_ = false;  // the positions of the last step are written over
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
-  pairs_->refit_own(own, radius);
-  CandidateSink sink(*candidates_, motion(), radius, out);
+  pairs_->refit_own(own, thickness.largest());
+  CandidateSink sink(*candidates_, motion(), thickness, out);
   pairs_->cull(sink);
   sink.flush();
 }

@@ -53,8 +53,8 @@ class Obstacles {
   Motion motion() const { return {start_, end_}; }
 
   // Replaces the content of `out` by the feature pairs of a feature of the deforming surface and a feature of
-  // an obstacle that CandidateSet takes.
-  void find_candidates(const Motion& own, double radius, std::vector<FeaturePair>& out);
+  // an obstacle that CandidateSet takes. The thickness is about together().
+  void find_candidates(const Motion& own, const Thickness& thickness, std::vector<FeaturePair>& out);
 
  private:
   class ObstaclePairs;

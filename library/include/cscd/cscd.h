@@ -210,9 +210,9 @@ class CSCD_EXPORT SelfCollision {
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`
-  // of each other at some t in [0, 1]. Some that do not come that near are among them: with a radius above 0,
-  // all are returned whose boxes come within the radius along each axis; with radius 0, those among them that
-  // are not proven apart. For a solver that runs a narrow phase of its own.
+  // of each other at some t in [0, 1]. Some that do not come that near may be among them. The radius is a
+  // length, at least 0 and finite; Options::thickness has no part in it. For a solver that runs a narrow
+  // phase of its own.
   Candidates candidates(const Positions& start, const Positions& end, double radius);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
