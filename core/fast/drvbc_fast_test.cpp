@@ -172,10 +172,61 @@ TEST(CutShort, FindsTheSameFirstContactForLess) {
       EXPECT_EQ(on_two.cull.pctp, cut.cull.pctp);
       EXPECT_EQ(on_two.pairs.elementary_tests, cut.pairs.elementary_tests);
       short_tests += *cut.cull.bvot;
-      whole_tests += *whole.cull.bvot;
+      whole_tests += *all.cull.bvot;
     }
   }
   EXPECT_LT(2 * short_tests, whole_tests);
+}
+
+// A tube that goes from pose to pose, with jumps, steps that are asked again and steps back. Mutations:
+// feature pairs that touched in the step before are taken for contacts without a test; the step is looked at
+// until a little before the earliest of them touches; any contact is enough where the first one is asked for.
+TEST(Remembered, ChangesNoFirstContact) {
+  const test::Shape shape = test::uneven_tube(24, 60, 15, [](double) { return 0.8; });
+  const TriangleMesh mesh = shape.mesh();
+  std::mt19937 random(57);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  StrategyInput setup{mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")};
+  setup.first_only = true;
+  for (const bool complete : {false, true}) {
+    const DrvbcFastOptions options{.complete = complete};
+    const std::unique_ptr<Detector> seasoned = make_drvbc_fast(setup, options).detector;
+    const std::unique_ptr<Detector> fresh = make_drvbc_fast(setup, options).detector;
+    const auto first = [&](Detector& detector, const Motion& motion, Report& report) {
+      ContactSet contacts;
+      report = detector.detect({.motion = motion, .starts_embedded = true}, contacts);
+      contacts.sort();
+      keep_first(contacts);
+      return contacts;
+    };
+    std::vector<Vec3> pose = shape.positions, before = pose, trial = pose;
+    std::uint64_t tests = 0, fresh_tests = 0;
+    int touched = 0;
+    for (int i = 0; i < 60; ++i) {
+      SCOPED_TRACE(i);
+      if (i % 5 == 4) pose = shape.positions;  // a jump
+      if (i % 7 == 6)
+        trial = before;     // a step back
+      else if (i % 3 != 2)  // another step, or one to the same end again
+        for (std::size_t v = 0; v < pose.size(); ++v)
+          trial[v] = pose[v] + (i % 4 == 0 ? 0.02 : 0.5) * Vec3(unit(random), unit(random), unit(random));
+      const Motion motion(pose, trial);
+      Report report, other;
+      const ContactSet found = first(*seasoned, motion, report);
+      fresh->forget();
+      EXPECT_EQ(digest(found), digest(first(*fresh, motion, other)));
+      tests += *report.cull.bvot, fresh_tests += *other.cull.bvot;
+      ContactSet any;
+      seasoned->detect({.motion = motion, .starts_embedded = true, .any_contact = true}, any);
+      EXPECT_EQ(any.contacts.empty(), found.contacts.empty());
+      touched += !any.contacts.empty();
+      before = pose;  // the next pose is embedded, too
+      const double share = found.contacts.empty() ? 1 : found.contacts[0].time / 2;
+      for (std::size_t v = 0; v < pose.size(); ++v) pose[v] += share * (trial[v] - pose[v]);
+    }
+    EXPECT_GT(touched, 20);
+    EXPECT_LT(tests, fresh_tests);
+  }
 }
 
 }  // namespace
