@@ -11,6 +11,7 @@ class BruteCuller : public Culler {
   explicit BruteCuller(std::int32_t triangles) : triangles_(triangles) {}
 
   bool knows_distance() const override { return true; }
+  bool keeps_all() const override { return true; }
   void refit(const Step&) override {}
   CullCounts cull(TrianglePairSink& sink) override {
     for (std::int32_t a = 0; a < triangles_; ++a)
@@ -47,7 +48,7 @@ Prepared make_aabb(const StrategyInput& setup) {
 
 Prepared make_brute(const StrategyInput& setup) {
   auto culler = std::make_unique<BruteCuller>(static_cast<std::int32_t>(setup.mesh.triangle_count()));
-  return {compose(std::move(culler), setup), {}};
+  return {compose(std::move(culler), setup, {.owners = true}), {}};
 }
 
 }  // namespace cscd

@@ -32,6 +32,7 @@ class CgalBoxesCuller : public Culler {
   explicit CgalBoxesCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), of_vertex_(mesh_.vertex_count()), boxes_(mesh_.triangle_count()) {}
 
+  bool keeps_all() const override { return true; }
   void refit(const Step& step) override {
     swept_vertex_bounds(step.motion, std::span(of_vertex_));
     pointers_.clear();
@@ -65,7 +66,7 @@ class CgalBoxesCuller : public Culler {
 }  // namespace
 
 Prepared make_cgal_boxes(const StrategyInput& setup) {
-  return {compose(std::make_unique<CgalBoxesCuller>(setup), setup), {}};
+  return {compose(std::make_unique<CgalBoxesCuller>(setup), setup, {.owners = true}), {}};
 }
 
 }  // namespace cscd

@@ -68,6 +68,7 @@ class EmbreeCuller : public Culler {
     rtcReleaseDevice(device_);
   }
 
+  bool keeps_all() const override { return true; }
   void refit(const Step& step) override {
     swept_vertex_bounds(step.motion, std::span(of_vertex_));
     for (std::size_t t = 0; t < box_.size(); ++t)
@@ -121,7 +122,7 @@ class EmbreeCuller : public Culler {
 }  // namespace
 
 Prepared make_embree(const StrategyInput& setup) {
-  return {compose(std::make_unique<EmbreeCuller>(setup), setup), {}};
+  return {compose(std::make_unique<EmbreeCuller>(setup), setup, {.owners = true}), {}};
 }
 
 }  // namespace cscd

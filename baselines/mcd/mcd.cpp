@@ -50,6 +50,7 @@ class McdCuller : public Culler {
         discs_(mesh_, tree_),
         cones_(mesh_, tree_, setup.pipeline) {}
 
+  bool keeps_all() const override { return true; }
   void refit(const Step& step) override { bounds_.refit(step.motion); }
 
   bool classify(const Step& step) override {
@@ -93,7 +94,7 @@ class McdCuller : public Culler {
 }  // namespace
 
 Prepared make_mcd(const StrategyInput& setup) {
-  return {compose(std::make_unique<McdCuller>(setup), setup), {}};
+  return {compose(std::make_unique<McdCuller>(setup), setup, {.owners = true}), {}};
 }
 
 }  // namespace cscd
