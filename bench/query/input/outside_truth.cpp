@@ -116,7 +116,7 @@ std::shared_ptr<const OutsideTruth> outside_truth(const std::filesystem::path& c
   }
   for (std::vector<VerticesOfPair>* list : {&out->contacts, &apart}) {
     std::ranges::sort(*list);
-    list->erase(std::ranges::unique(*list).begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
   }
   out->pairs = out->contacts.size() + apart.size();
   const auto both = std::ranges::find_if(
