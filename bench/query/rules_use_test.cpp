@@ -8,11 +8,11 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/verify.h"
 #include "bench/testing/rule_case.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "core/detect/start/embedding.h"
-#include "core/detect/verify.h"
 #include "scenes/clip/clip.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"

@@ -29,6 +29,7 @@ LIB = ROOT / "scripts" / "lib"
 # Files and folders that have moved since records and reasons were written.
 MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
+    "core/detect/verify": "bench/measure/strategies/verify",
     "core/base/bring_near": "core/base/warm_cache", "core/detect/carried_filter": "core/detect/double_filter",
     "core/detect/carried_look": "core/detect/single_filter", "core/fast/cut/decided_cut": "core/fast/prepare/carried_cut",
     "core/fast/cut/observer": "core/fast/prepare/cluster_observer", "core/fast/cut/": "core/fast/prepare/",

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/measure/strategies/verify.h"
 #include "core/base/pipeline.h"
 #include "core/detect/detector.h"
-#include "core/detect/verify.h"
 #include "scenes/catalog/generate.h"
 
 // What one run of the harness keeps (schema cscd.run/2): every raw sample of every stage of every interval of
@@ -50,8 +50,9 @@ struct Footprint {
 struct StrategyRecord {
   std::string name, source, guarantee;
   int threads = 1;
-  // So many intervals are played to the strategy before each measured one (bench/measure/replay/contestant.h); 0
-  // for a strategy whose counters do not depend on what it was asked before.
+  // So many intervals are played to the strategy before each measured one
+  // (bench/measure/replay/contestant.h); 0 for a strategy whose counters do not depend on what it was asked
+  // before.
   std::size_t lead = 0;
   PreparationRecord preparation;
   Footprint footprint;

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/verify.h"
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
-#include "core/detect/verify.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/random/random_interval.h"
 

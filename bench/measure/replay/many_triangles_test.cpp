@@ -1,8 +1,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "bench/measure/strategies/verify.h"
 #include "bench/testing/rule_case.h"
-#include "core/detect/verify.h"
 #include "core/fast/prepare/coarse_surface.h"
 #include "core/fast/trial.h"
 

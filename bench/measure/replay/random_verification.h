@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/measure/strategies/strategy_row.h"
-#include "core/detect/verify.h"
+#include "bench/measure/strategies/verify.h"
 
 namespace cscd::bench {
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "bench/measure/strategies/verify.h"
 #include "bench/testing/rule_case.h"
-#include "core/detect/verify.h"
 #include "scenes/random/surface.h"
 
 // Rules any-carrier, three-vertices, component and fair-comparison: what a cluster may drop.

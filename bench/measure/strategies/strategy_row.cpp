@@ -38,12 +38,12 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, const
                     bool starts_embedded) {
   const Guarantee guarantee = row.strategy->guarantee;
   if (!row.first || !promises_all(guarantee, starts_embedded))
-    return cscd::verify(reference, answer, guarantee, starts_embedded);
-  const Verification in_time = cscd::verify(reference, answer, Guarantee::first_contact, true);
+    return verify(reference, answer, guarantee, starts_embedded);
+  const Verification in_time = verify(reference, answer, Guarantee::first_contact, true);
   if (!in_time.ok) return in_time;
   ContactSet earliest = reference;
   keep_first(earliest);
-  return cscd::verify(earliest, answer, guarantee, starts_embedded);
+  return verify(earliest, answer, guarantee, starts_embedded);
 }
 
 std::optional<std::string> why_not(const Strategy& strategy, const TriangleMesh& mesh, bool has_bones) {

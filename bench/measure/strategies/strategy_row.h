@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/measure/strategies/verify.h"
 #include "core/base/pipeline.h"
 #include "core/detect/strategy.h"
-#include "core/detect/verify.h"
 
 namespace cscd::bench {
 

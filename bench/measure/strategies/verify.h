@@ -9,7 +9,7 @@
 #include "core/detect/contact.h"
 #include "core/detect/strategy.h"
 
-namespace cscd {
+namespace cscd::bench {
 
 // How a strategy did on one interval against a complete reference, both with an elementary test that is
 // always right. Comparing numbers of contacts would be wrong, because a strategy may report fewer where its
@@ -46,4 +46,4 @@ struct Difference {
 };
 std::vector<Difference> differences(const ContactSet& referee, const ContactSet& test);
 
-}  // namespace cscd
+}  // namespace cscd::bench

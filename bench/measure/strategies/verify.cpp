@@ -1,10 +1,10 @@
-#include "core/detect/verify.h"
+#include "bench/measure/strategies/verify.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-namespace cscd {
+namespace cscd::bench {
 namespace {
 
 bool by_pair(const Contact& x, const Contact& y) {
@@ -26,20 +26,6 @@ std::string describe(const Contact& contact) {
 }
 
 }  // namespace
-
-std::string_view to_string(Guarantee guarantee) {
-  switch (guarantee) {
-    case Guarantee::complete:
-      return "complete";
-    case Guarantee::first_contact:
-      return "first_contact";
-    case Guarantee::all_from_embedded:
-      return "all_from_embedded";
-    case Guarantee::heuristic:
-      return "heuristic";
-  }
-  return "";
-}
 
 Verification verify(const ContactSet& reference, const ContactSet& answer, Guarantee guarantee,
                     bool starts_embedded) {
@@ -123,4 +109,4 @@ std::vector<Difference> differences(const ContactSet& referee, const ContactSet&
   return result;
 }
 
-}  // namespace cscd
+}  // namespace cscd::bench

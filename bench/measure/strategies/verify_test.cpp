@@ -1,8 +1,8 @@
-#include "core/detect/verify.h"
+#include "bench/measure/strategies/verify.h"
 
 #include <gtest/gtest.h>
 
-namespace cscd {
+namespace cscd::bench {
 namespace {
 
 Contact vf(std::int32_t vertex, std::int32_t triangle, double time, Verdict verdict = Verdict::contact) {
@@ -167,4 +167,4 @@ TEST(Differences, NameThePairWhatWasSaidAndWhatIsTrue) {
 }
 
 }  // namespace
-}  // namespace cscd
+}  // namespace cscd::bench
