@@ -144,6 +144,7 @@ TEST_F(View, IgnoresWhatItIsToldTo) {
   EXPECT_EQ(row["summary"]["ignored"], query["summary"]["ignored"]);
   EXPECT_NE(row["details"].get<std::string>().find("(--ignore-neighbours 1)"), std::string::npos)
       << row["details"];
+  EXPECT_NE(row["details"].get<std::string>().find(". Answered by "), std::string::npos) << row["details"];
 }
 
 TEST_F(View, RefusesWhatItCannotShow) {
