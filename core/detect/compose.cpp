@@ -8,12 +8,10 @@
 #include "core/base/error.h"
 #include "core/base/stage_clock.h"
 #include "core/base/team.h"
-#include "core/detect/distance_filter.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
-#include "core/detect/no_contact_before.h"
 #include "core/elementary/exact/triangles_meet.h"
 #include "core/elementary/question/relative_box.h"
 

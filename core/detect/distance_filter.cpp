@@ -1,7 +1,6 @@
-#include "core/detect/distance_filter.h"
-
 #include "core/base/rounding.h"
 #include "core/detect/carried_lanes.h"
+#include "core/detect/filter_block.h"
 
 namespace cscd {
 namespace {

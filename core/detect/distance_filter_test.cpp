@@ -1,10 +1,8 @@
-#include "core/detect/distance_filter.h"
-
 #include <bit>
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/detect/no_contact_before.h"
+#include "core/detect/filter_block.h"
 #include "core/elementary/catalogue.h"
 
 namespace cscd {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "core/detect/carried_pairs.h"
+#include "core/detect/culler.h"
+#include "core/geometry/simd_floats.h"
 #include "core/mesh/motion.h"
 
 namespace cscd {
@@ -33,6 +36,22 @@ CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triang
 // only if the pair certainly does not touch until then, and keeps what it cannot decide.
 CarriedPlaces not_filtered_when_coplanar(const Motion& motion, const Triangle& a, const Triangle& b,
                                          CarriedPlaces places, double last);
+
+// Returns the feature pairs of two triangles, among those at some places, that may come within a distance of
+// each other, finite and above 0. Each pair is held against the directions between nearest points that its
+// features may have half-way through the interval. Points move in straight lines, so where the gap along a
+// fixed direction exceeds the distance at both ends, it does so at every t.
+CarriedPlaces not_farther_than(double distance, const Motion& motion, const Triangle& a, const Triangle& b,
+                               CarriedPlaces places);
+
+// Returns, for each of up to sixteen pairs of triangles, a time before which the two certainly do not touch,
+// or do not come within a distance of each other: 0 where nothing is known, more than 1 where they never do.
+// Along a direction, the gap between two triangles is at least what lies on the straight line between the
+// gaps at both ends, so they do not touch before that line meets 0, and are farther apart until it meets the
+// distance. The result is the latest such time over several directions: three axes, the normals of both
+// triangles at both ends, and the way from one triangle to the other.
+std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Motion& motion,
+                                              std::span<const TrianglePair> pairs, double distance = 0);
 
 // Drops feature pairs by the signs of rounded coefficients without their error bounds, as published (Tang
 // et al. 2010), one pair at a time. This is the filter of the pipeline `published`. It may drop features that

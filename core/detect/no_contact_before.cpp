@@ -1,9 +1,8 @@
-#include "core/detect/no_contact_before.h"
-
 #include <algorithm>
 #include <cstring>
 
 #include "core/base/rounding.h"
+#include "core/detect/filter_block.h"
 #include "core/geometry/triple_product16.h"
 
 namespace cscd {

@@ -1,9 +1,8 @@
-#include "core/detect/no_contact_before.h"
-
 #include <gtest/gtest.h>
 #include <random>
 
 #include "core/detect/compose.h"
+#include "core/detect/filter_block.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
