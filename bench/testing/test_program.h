@@ -60,6 +60,7 @@ inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& lim
 
 // A folder whose files are named by texts.
 struct Scratch : test::Folder {
+  Scratch() {}  // clang 14 takes no other constructor for a constant member of a fixture
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 using test::read;
