@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/query/answer/clip_answer.h"
 #include "bench/testing/test_generated.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
@@ -73,6 +74,18 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
 
 std::size_t count(const std::array<std::size_t, 4>& verdicts, IntervalVerdict verdict) {
   return verdicts[static_cast<std::size_t>(verdict)];
+}
+
+TEST(AnswerSummary, TakesRoundingForNoMotion) {
+  const test::Shape ball = test::icosphere(1);
+  for (const double by : {1e-11, 1e-6}) {
+    Input input = input_of(ball, {ball.positions, moved_part(ball, 0, {by, 0, 0})});
+    const SurfaceNames names(input);
+    Answerer answerer(input, strategy_named("base"), exact(), {});
+    AnswerSummary summary;
+    summary.add(answerer.answer(0), input.clip->load(0).motion, names);
+    EXPECT_EQ(summary.moves, by > 1e-9) << by;
+  }
 }
 
 class Answers : public testing::TestWithParam<const char*> {};
