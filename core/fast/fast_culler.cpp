@@ -231,8 +231,8 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
   for (TrianglePair& pair : found_.pairs)
     if (pair.b < pair.a) std::swap(pair.a, pair.b);
   std::ranges::sort(found_.pairs, {}, ends);
-  const auto repeated = std::ranges::unique(found_.pairs, {}, ends);
-  found_.pairs.erase(repeated.begin(), repeated.end());
+  const auto same = [&](const TrianglePair& a, const TrianglePair& b) { return ends(a) == ends(b); };
+  found_.pairs.erase(std::unique(found_.pairs.begin(), found_.pairs.end(), same), found_.pairs.end());
   for (const TrianglePair& pair : found_.pairs) sink.add(pair.a, pair.b);
   return tests;
 }
