@@ -26,8 +26,8 @@ struct AccuracyOptions {
   std::vector<std::string> scenes;
   std::string set, elementary = "all", sweep, output;
   std::vector<double> hardnesses;
-  std::size_t every = 1, scene_queries = 0, open_queries = 0, hard_queries = 0, random_queries = 0,
-              sweep_queries = 0;
+  std::size_t every = 1, scene_queries = 0, open_queries = 0, hard_queries = 0, close_queries = 0,
+              random_queries = 0, sweep_queries = 0;
   int passes = 3;
   std::uint64_t seed = 1;
   bool smoke = false, force = false;
@@ -42,6 +42,7 @@ void choose_size(AccuracyOptions& options) {
   number(options.scene_queries, 1000, 10'000'000);
   number(options.open_queries, 200, 10'000'000);
   number(options.hard_queries, 60, 20'000);
+  number(options.close_queries, 60, 20'000);
   number(options.random_queries, 20, 2000);
   number(options.sweep_queries, 20, 2000);
   if (options.hardnesses.empty())
@@ -72,6 +73,7 @@ std::vector<std::string> command_line(const AccuracyOptions& o) {
   add("--scene-queries", std::to_string(o.scene_queries));
   add("--open-queries", std::to_string(o.open_queries));
   add("--hard-queries", std::to_string(o.hard_queries));
+  add("--close-queries", std::to_string(o.close_queries));
   add("--random-queries", std::to_string(o.random_queries));
   add("--hardness", joined(o.hardnesses));
   add("--passes", std::to_string(o.passes));
@@ -99,43 +101,54 @@ class Study {
     if (!options.sweep.empty())
       for (const ElementaryTest* test : elementary_tests_named(options.sweep)) tests_.push_back(test);
     totals_.resize(tests_.size());
+    close_totals_.resize(tests_.size());
   }
 
   void run(Workload& workload) {
+    const bool at_distance = workload.at_distance();
     std::vector<Tally> tallies(tests_.size());
+    // At a distance, tests that know none are left out.
+    std::vector<const ElementaryTest*> asked;
     std::vector<Tally*> places;
-    for (Tally& tally : tallies) places.push_back(&tally);
-    std::vector<Query> block;
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < tests_.size(); ++i) {
+      if (at_distance && !tests_[i]->knows_distance()) continue;
+      asked.push_back(tests_[i]), places.push_back(&tallies[i]);
+      if (i < whole_) whole = asked.size();
+    }
+    std::vector<Question> block;
     std::vector<Truth> truths;
     std::array<std::size_t, 3> nearness{};
     std::array<std::size_t, kStageNames.size()> stages{};
     std::size_t queries = 0;
     for (workload.next(block); !block.empty(); workload.next(block)) {
       truths.clear();
-      for (const Query& query : block) {
-        truths.push_back(truth_of(query, workload.kind));
+      for (const Question& question : block) {
+        truths.push_back(truth_of(question, workload.kind));
         ++nearness[static_cast<std::size_t>(truths.back().nearness)];
-        ++stages[static_cast<std::size_t>(stage_of(query, workload.kind))];
-        published_ += query.truth.has_value();
-        contradicted_ += query.truth && *query.truth != truths.back().contact.has_value();
+        ++stages[static_cast<std::size_t>(stage_of(question, workload.kind))];
+        const std::optional<bool>& published = question.query.truth;
+        published_ += published.has_value();
+        contradicted_ += published && *published != truths.back().contact.has_value();
       }
       // The rows of the sweep are many and slow: they see the first queries alone, of what has no parameter
       // of its own.
       const bool all = !workload.hardness && queries < options_.sweep_queries;
-      const std::size_t rows = all ? tests_.size() : whole_;
+      const std::size_t rows = all ? asked.size() : whole;
       const std::size_t seen = all ? std::min(block.size(), options_.sweep_queries - queries) : block.size();
       const auto part = [&](std::size_t first, std::size_t count, std::size_t row_count) {
         if (count > 0)
           measure(std::span(block).subspan(first, count), std::span(truths).subspan(first, count),
-                  workload.kind, std::span(tests_).first(row_count), options_.passes, random_,
+                  workload.kind, std::span(asked).first(row_count), options_.passes, random_,
                   std::span(places).first(row_count));
       };
       part(0, seen, rows);
-      part(seen, block.size() - seen, whole_);
+      part(seen, block.size() - seen, whole);
       queries += block.size();
     }
     ordered_json rows = ordered_json::array();
     for (std::size_t i = 0; i < tests_.size(); ++i) {
+      if (at_distance && !tests_[i]->knows_distance()) continue;
       const Tally& tally = tallies[i];
       ordered_json row = {{"row", tests_[i]->name}};
       row.update(tally.json());
@@ -145,7 +158,7 @@ class Study {
                           kind_name(workload.kind) + ": " + std::to_string(tally.false_negatives) +
                           " false negatives, " + std::to_string(tally.false_positives) +
                           " false positives, latest time by " + ordered_json(tally.largest_late).dump());
-      totals_[i].add(tally);
+      (at_distance ? close_totals_ : totals_)[i].add(tally);
     }
     ordered_json out = {
         {"group", workload.group}, {"name", workload.name}, {"kind", kind_name(workload.kind)}};
@@ -155,7 +168,7 @@ class Study {
     for (std::size_t k = 0; k < stages.size(); ++k) out["stages"][kStageNames[k]] = stages[k];
     out["rows"] = std::move(rows);
     workloads_.push_back(std::move(out));
-    keep_pairs(workload, tallies);
+    if (!at_distance) keep_pairs(workload, tallies);
   }
 
   bool kept() const { return broken_.empty() && contradicted_ == 0; }
@@ -183,18 +196,22 @@ class Study {
   }
 
   void print() const {
-    std::printf("%-24s %6s %10s %9s %9s %9s %10s %9s %9s %9s\n", "test", "proof", "queries", "contacts",
-                "false neg", "false pos", "undecided", "far ns", "near ns", "contact");
+    std::printf("%-24s %6s %10s %9s %9s %9s %10s %9s %9s %9s %10s %9s\n", "test", "proof", "queries",
+                "contacts", "false neg", "false pos", "undecided", "far ns", "near ns", "contact",
+                "at r wrong", "at r ns");
     for (std::size_t i = 0; i < tests_.size(); ++i) {
-      const Tally& t = totals_[i];
+      const Tally &t = totals_[i], &close = close_totals_[i];
       const auto ns = [&](std::size_t k) { return t.ns[k].empty() ? 0.0 : mean(t.ns[k]); };
-      std::printf("%-24s %6s %10zu %9zu %9zu %9zu %10zu %9.0f %9.0f %9.0f\n",
+      std::printf("%-24s %6s %10zu %9zu %9zu %9zu %10zu %9.0f %9.0f %9.0f",
                   std::string(tests_[i]->name).c_str(),
                   tests_[i]->contact_is_proof ? "both"
                   : tests_[i]->apart_is_proof ? "apart"
                                               : "",
                   t.queries, t.contacts, t.false_negatives, t.false_positives,
                   t.undecided_contacts + t.undecided_apart, ns(0), ns(1), ns(2));
+      if (close.queries > 0)
+        std::printf(" %10zu %9.0f", close.false_negatives + close.false_positives, ns_of_all(close));
+      std::printf("\n");
     }
     for (const ordered_json& ratio : ratios())
       if (!ratio.contains("name"))
@@ -206,6 +223,16 @@ class Study {
   }
 
  private:
+  // The mean time of a query over all classes.
+  static double ns_of_all(const Tally& tally) {
+    double sum = 0, queries = 0;
+    for (std::size_t k = 0; k < tally.ns.size(); ++k) {
+      if (tally.ns[k].empty()) continue;
+      sum += mean(tally.ns[k]) * static_cast<double>(tally.timed[k]);
+      queries += static_cast<double>(tally.timed[k]);
+    }
+    return sum / queries;
+  }
   static const char* kind_name(Kind kind) { return kind == Kind::vertex_face ? "vf" : "ee"; }
 
   // Keeps the times that `filtered_exact` and `newton` took for the same blocks, by group and by name in the
@@ -241,7 +268,7 @@ class Study {
   std::mt19937_64 random_;
   std::vector<const ElementaryTest*> tests_;  // first those that see everything, then the sweep
   std::size_t whole_ = 0;
-  std::vector<Tally> totals_;
+  std::vector<Tally> totals_, close_totals_;  // the latter of queries at a distance
   std::size_t published_ = 0, contradicted_ = 0;
   std::vector<std::string> broken_;
   ordered_json workloads_ = ordered_json::array();
@@ -257,6 +284,7 @@ void run_accuracy(AccuracyOptions options) {
   const auto append = [&](std::vector<Workload> more) {
     for (Workload& workload : more) workloads.push_back(std::move(workload));
   };
+  append(close_workloads(options.close_queries, options.seed));
   append(random_workloads(options.hardnesses, options.random_queries, options.seed));
   if (!options.set.empty()) append(open_workloads(options.set, options.open_queries));
   for (const std::string& scene : options.scenes)
@@ -280,17 +308,19 @@ void run_accuracy(AccuracyOptions options) {
 
 void add_accuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command = app.add_subcommand("accuracy",
-                                         "Measure what elementary tests get wrong and what they cost, on the "
-                                         "same queries, against the referee.\n\n"
-                                         "  cscd accuracy --smoke\n"
-                                         "  cscd accuracy --scene rope_contact --set QUERIES --sweep "
-                                         "cubic@1e-3,cubic@1e-9 --json record.json\n\n"
-                                         "Asks the hard families (cscd list families), the same at every "
-                                         "hardness, the open query set where it is\n"
-                                         "named, and the pairs of scenes that get past bounds and filter. "
-                                         "Exit status 1 where a test is wrong in\n"
-                                         "what it proves, or the referee contradicts a published truth.");
+  CLI::App* command =
+      app.add_subcommand("accuracy",
+                         "Measure what elementary tests get wrong and what they cost, on the "
+                         "same queries, against the referee.\n\n"
+                         "  cscd accuracy --smoke\n"
+                         "  cscd accuracy --scene rope_contact --set QUERIES --sweep "
+                         "cubic@1e-3,cubic@1e-9 --json record.json\n\n"
+                         "Asks the hard families (cscd list families), the same at every "
+                         "hardness, families of queries at a\n"
+                         "distance (of the tests that know distances), the open query set where "
+                         "it is\nnamed, and the pairs of scenes that get past bounds and filter. "
+                         "Exit status 1 where a test is wrong in\n"
+                         "what it proves, or the referee contradicts a published truth.");
   command->add_option("--scene", options->scenes, "scenes whose pairs are asked (cscd list scenes)")
       ->delimiter(',');
   command->add_option("--every", options->every, "of their intervals, each K-th")
@@ -308,6 +338,7 @@ void add_accuracy(CLI::App& app) {
   command->add_option("--scene-queries", options->scene_queries, "at most, of each scene and kind");
   command->add_option("--open-queries", options->open_queries, "at most, of each folder and kind");
   command->add_option("--hard-queries", options->hard_queries, "of each family and kind");
+  command->add_option("--close-queries", options->close_queries, "of each family at a distance and kind");
   command->add_option("--random-queries", options->random_queries, "of each family, kind and hardness");
   command
       ->add_option("--hardness", options->hardnesses,

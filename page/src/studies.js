@@ -4,7 +4,7 @@ import { byId, element, radios } from "./dom.js";
 import { GREY } from "./palette.js";
 import { tableOf } from "./tables.js";
 
-const GROUPS = { scenes: "pairs of the scenes", open: "open query set", hard: "hard suite", random: "random families" };
+const GROUPS = { scenes: "pairs of the scenes", open: "open query set", hard: "hard suite", random: "random families", close: "hard families at a distance" };
 const STUDIES = { size: "triangles", step: "step, in steps of a frame", bones: "bones", threads: "threads" };
 const distinct = (values) => [...new Set(values)];
 

@@ -6,6 +6,7 @@ GROUPS = {
     "open": "open query set",
     "hard": "hard suite",
     "random": "random families, all hardnesses",
+    "close": "hard families at a distance",
 }
 
 

@@ -6,6 +6,7 @@
 
 #include "bench/compare/statistics/statistics.h"
 #include "core/base/random.h"
+#include "core/elementary/exact/closeness.h"
 #include "core/elementary/question/filter.h"
 #include "core/elementary/question/query_scale.h"
 #include "core/elementary/question/relative_box.h"
@@ -17,8 +18,8 @@ namespace {
 constexpr std::size_t kDistances = 500;
 
 template <class Use>
-auto with_features(const Query& query, Kind kind, const Use& use) {
-  return kind == Kind::vertex_face ? use(as_vertex_face(query)) : use(as_edge_edge(query));
+auto with_features(const Question& asked, Kind kind, const Use& use) {
+  return kind == Kind::vertex_face ? use(as_vertex_face(asked.query)) : use(as_edge_edge(asked.query));
 }
 
 // Errors in time by eighths of a decade from 1e-18 on; 0 is smaller than all.
@@ -32,25 +33,28 @@ double top_of_bin(std::size_t bin) {
 
 }  // namespace
 
-Truth truth_of(const Query& query, Kind kind) {
-  return with_features(query, kind, [](const auto& q) -> Truth {
-    if (never_coplanar(q) || relative_boxes_apart(q)) return {{}, Nearness::far};
-    const auto contact = exact::first_contact(q);
+Truth truth_of(const Question& asked, Kind kind) {
+  return with_features(asked, kind, [r = asked.r](const auto& q) -> Truth {
+    if ((r == 0 && never_coplanar(q)) || relative_boxes_apart(q, r)) return {{}, Nearness::far};
+    const auto contact = r == 0 ? exact::first_contact(q) : exact::first_closeness(q, r);
     return {contact, contact ? Nearness::contact : Nearness::near};
   });
 }
 
-Answer ask(const ElementaryTest& test, const Query& query, Kind kind) {
-  return kind == Kind::vertex_face ? test.vertex_face(as_vertex_face(query))
-                                   : test.edge_edge(as_edge_edge(query));
+Answer ask(const ElementaryTest& test, const Question& asked, Kind kind) {
+  return with_features(asked, kind, [&](const auto& q) {
+    return asked.r == 0 ? test.answer(q) : test.answer_close(q, asked.r);
+  });
 }
 
-ExactStage stage_of(const Query& query, Kind kind) {
-  return with_features(query, kind, [](const auto& q) { return filtered_exact_stage(q); });
+ExactStage stage_of(const Question& asked, Kind kind) {
+  return with_features(asked, kind, [r = asked.r](const auto& q) {
+    return r == 0 ? filtered_exact_stage(q) : filtered_exact_close_stage(q, r);
+  });
 }
 
-double least_distance(const Query& query, Kind kind) {
-  return with_features(query, kind, [](const auto& given) {
+double least_distance(const Question& asked, Kind kind) {
+  return with_features(asked, kind, [&](const auto& given) {
     const auto q = relative(in_range(given));
     constexpr int samples = 64;
     double best = 0, least = distance_at(q, 0);
@@ -64,12 +68,12 @@ double least_distance(const Query& query, Kind kind) {
       look(std::max(0.0, from - step));
       look(std::min(1.0, from + step));
     }
-    const double size = extent(q);
-    return size > 0 ? least / size : 0.0;
+    const double size = extent(q), r = std::ldexp(asked.r, range_exponent(given));
+    return size > 0 ? std::max(0.0, least - r) / size : 0.0;
   });
 }
 
-void Tally::count(const Query& query, Kind kind, const Truth& truth, const Answer& answer) {
+void Tally::count(const Question& asked, Kind kind, const Truth& truth, const Answer& answer) {
   ++queries;
   contacts += truth.contact.has_value();
   if (answer.verdict == Verdict::undecided) ++(truth.contact ? undecided_contacts : undecided_apart);
@@ -77,7 +81,7 @@ void Tally::count(const Query& query, Kind kind, const Truth& truth, const Answe
   if (answer.verdict == Verdict::contact && !truth.contact) {
     ++false_positives;
     if (false_positive_distances.size() < kDistances)
-      false_positive_distances.push_back(least_distance(query, kind));
+      false_positive_distances.push_back(least_distance(asked, kind));
   }
   if (answer.verdict == Verdict::contact && truth.contact) {
     ++times;
@@ -137,15 +141,15 @@ nlohmann::ordered_json Tally::json() const {
   return out;
 }
 
-void measure(std::span<const Query> queries, std::span<const Truth> truths, Kind kind,
+void measure(std::span<const Question> questions, std::span<const Truth> truths, Kind kind,
              std::span<const ElementaryTest* const> tests, int passes, std::mt19937_64& random,
              std::span<Tally*> tallies) {
   std::array<std::vector<std::size_t>, 3> classes;
-  for (std::size_t i = 0; i < queries.size(); ++i)
+  for (std::size_t i = 0; i < questions.size(); ++i)
     classes[static_cast<std::size_t>(truths[i].nearness)].push_back(i);
   std::vector<std::size_t> order(tests.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::vector<Answer> answers(queries.size());
+  std::vector<Answer> answers(questions.size());
   for (int pass = 0; pass < passes; ++pass) {
     shuffle(order, random);
     for (const std::size_t number : order) {
@@ -154,14 +158,15 @@ void measure(std::span<const Query> queries, std::span<const Truth> truths, Kind
       for (std::size_t k = 0; k < classes.size(); ++k) {
         if (classes[k].empty()) continue;
         const auto begin = std::chrono::steady_clock::now();
-        for (const std::size_t i : classes[k]) answers[i] = ask(*tests[number], queries[i], kind);
+        for (const std::size_t i : classes[k]) answers[i] = ask(*tests[number], questions[i], kind);
         const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - begin;
         tally.ns[k].push_back(spent.count() / static_cast<double>(classes[k].size()));
         whole += spent.count();
       }
       tally.block_ns.push_back(whole);
       if (pass + 1 < passes) continue;
-      for (std::size_t i = 0; i < queries.size(); ++i) tally.count(queries[i], kind, truths[i], answers[i]);
+      for (std::size_t i = 0; i < questions.size(); ++i)
+        tally.count(questions[i], kind, truths[i], answers[i]);
       for (std::size_t k = 0; k < classes.size(); ++k) tally.timed[k] += classes[k].size();
     }
   }

@@ -26,15 +26,16 @@ struct Truth {
   std::optional<exact::TimeEnclosure> contact;
   Nearness nearness;
 };
-Truth truth_of(const Query& query, Kind kind);
+Truth truth_of(const Question& asked, Kind kind);
 
-Answer ask(const ElementaryTest& test, const Query& query, Kind kind);
+Answer ask(const ElementaryTest& test, const Question& asked, Kind kind);
 
 // How far `filtered_exact` has to go; asks once more, so that counting costs the timed call nothing.
-ExactStage stage_of(const Query& query, Kind kind);
+ExactStage stage_of(const Question& asked, Kind kind);
 
-// The least distance of the features over the interval, in extents of the query; sampled, so from above.
-double least_distance(const Query& query, Kind kind);
+// The least distance of the features over the interval, less the distance at which they are asked, in extents
+// of the query; sampled, so from above.
+double least_distance(const Question& asked, Kind kind);
 
 struct Tally {
   std::uint64_t queries = 0, contacts = 0;
@@ -48,7 +49,7 @@ struct Tally {
   std::array<std::uint64_t, 3> timed{};          // queries, each counted once
   std::vector<double> block_ns;  // each block and pass as a whole; all tests of a block have the same number
 
-  void count(const Query& query, Kind kind, const Truth& truth, const Answer& answer);
+  void count(const Question& asked, Kind kind, const Truth& truth, const Answer& answer);
   void add(const Tally& other);
   bool breaks(const ElementaryTest& test) const;
   nlohmann::ordered_json json() const;
@@ -56,7 +57,7 @@ struct Tally {
 
 // Asks every test every query of a block, passes times over: the tests take turns in an order drawn anew, for
 // each class of nearness by itself. Answers are those of the last pass.
-void measure(std::span<const Query> queries, std::span<const Truth> truths, Kind kind,
+void measure(std::span<const Question> questions, std::span<const Truth> truths, Kind kind,
              std::span<const ElementaryTest* const> tests, int passes, std::mt19937_64& random,
              std::span<Tally*> tallies);
 

@@ -33,14 +33,14 @@ constexpr ElementaryTest kLiar{"liar",
                                one_by_one<lie<verdict, MovingEdgeEdge>>};
 
 struct Measured {
-  std::vector<Query> queries;
+  std::vector<Question> queries;
   std::vector<Truth> truths;
   std::vector<Tally> tallies;
   std::size_t contacts = 0;
 
   explicit Measured(std::vector<const ElementaryTest*> tests) : tallies(tests.size()) {
     for (std::size_t i = 0; i < 300; ++i) {
-      queries.push_back(hard::suite_query(crossing(), Kind::vertex_face, i, 1));
+      queries.push_back({hard::suite_query(crossing(), Kind::vertex_face, i, 1)});
       truths.push_back(truth_of(queries.back(), Kind::vertex_face));
       contacts += truths.back().contact.has_value();
     }
@@ -82,7 +82,10 @@ TEST(Tally, TheDistanceOfFalseAlarmsIsMeasured) {
   const Query query{
       {MovingPoint{{-0.04, 1, 3.7}, {-0.04, 1, -0.3}}, still(0, 0, 0), still(3.96, 0, 0), still(0, 3, 0)},
       {}};
-  EXPECT_NEAR(least_distance(query, Kind::vertex_face), 0.01, 1e-9);
+  EXPECT_NEAR(least_distance({query}, Kind::vertex_face), 0.01, 1e-9);
+  EXPECT_NEAR(least_distance({query, 0.03}, Kind::vertex_face), 0.0025, 1e-9) << "an extent is 4";
+  EXPECT_FALSE(truth_of({query, 0.0399}, Kind::vertex_face).contact);
+  EXPECT_TRUE(truth_of({query, 0.0401}, Kind::vertex_face).contact);
 }
 
 TEST(Tally, SumsAreSums) {

@@ -17,8 +17,8 @@ constexpr Kind kKinds[] = {Kind::vertex_face, Kind::edge_edge};
 
 // Where the elementary test that records what it is asked puts it, null for the kind that is not wanted: a
 // row's functions carry no state.
-thread_local std::vector<Query>* g_vertex_face = nullptr;
-thread_local std::vector<Query>* g_edge_edge = nullptr;
+thread_local std::vector<Question>* g_vertex_face = nullptr;
+thread_local std::vector<Question>* g_edge_edge = nullptr;
 
 constexpr ElementaryTest kRecorder{
     "recorder",
@@ -26,11 +26,11 @@ constexpr ElementaryTest kRecorder{
     false,
     false,
     one_by_one<[](const MovingVertexFace& q) -> Answer {
-      if (g_vertex_face) g_vertex_face->push_back({{q.vertex, q.corner[0], q.corner[1], q.corner[2]}, {}});
+      if (g_vertex_face) g_vertex_face->push_back({{{q.vertex, q.corner[0], q.corner[1], q.corner[2]}, {}}});
       return {Verdict::apart, 0};
     }>,
     one_by_one<[](const MovingEdgeEdge& q) -> Answer {
-      if (g_edge_edge) g_edge_edge->push_back({{q.first[0], q.first[1], q.second[0], q.second[1]}, {}});
+      if (g_edge_edge) g_edge_edge->push_back({{{q.first[0], q.first[1], q.second[0], q.second[1]}, {}}});
       return {Verdict::apart, 0};
     }>};
 
@@ -41,7 +41,7 @@ class ScenePairs {
       : input_(open_input(scene)), kind_(kind), every_(every), left_(most) {
     detector_ = complete_reference().make(input_.setup(kRecorder)).detector;
   }
-  void next(std::vector<Query>& block) {
+  void next(std::vector<Question>& block) {
     while (waiting_.empty() && left_ > 0 && interval_ < input_.clip->interval_count()) load();
     const std::size_t count = std::min({kBlock, waiting_.size(), left_});
     block.assign(waiting_.end() - static_cast<std::ptrdiff_t>(count), waiting_.end());
@@ -63,15 +63,23 @@ class ScenePairs {
   Kind kind_;
   std::size_t every_, left_, interval_ = 0;
   std::unique_ptr<Detector> detector_;
-  std::vector<Query> waiting_;
+  std::vector<Question> waiting_;
 };
+
+Question question(const Query& query) {
+  return {query};
+}
+Question question(const scenes::hard::CloseQuery& close) {
+  return {close.query, close.r};
+}
 
 // The next block of queries that a function makes by number.
 template <class Make>
 auto numbered(std::size_t count, const Make& make) {
-  return [count, make, i = std::size_t{0}](std::vector<Query>& block) mutable {
+  return [count, make, i = std::size_t{0}](std::vector<Question>& block) mutable {
     block.clear();
-    for (const std::size_t last = std::min(count, i + kBlock); i < last; ++i) block.push_back(make(i));
+    for (const std::size_t last = std::min(count, i + kBlock); i < last; ++i)
+      block.push_back(question(make(i)));
   };
 }
 
@@ -93,7 +101,7 @@ std::vector<Workload> scene_workloads(const std::string& scene, std::size_t ever
                          kind,
                          {},
                          [scene, every, most, kind,
-                          pairs = std::shared_ptr<ScenePairs>()](std::vector<Query>& block) mutable {
+                          pairs = std::shared_ptr<ScenePairs>()](std::vector<Question>& block) mutable {
                            if (!pairs) pairs = std::make_shared<ScenePairs>(scene, kind, every, most);
                            pairs->next(block);
                          }});
@@ -140,6 +148,16 @@ std::vector<Workload> hard_workloads(std::size_t count, std::uint64_t seed) {
     for (const Kind kind : kKinds)
       workloads.push_back({"hard", std::string(family.name), kind, {}, numbered(count, [=](std::size_t i) {
                              return scenes::hard::suite_query(family, kind, i, seed);
+                           })});
+  return workloads;
+}
+
+std::vector<Workload> close_workloads(std::size_t count, std::uint64_t seed) {
+  std::vector<Workload> workloads;
+  for (const scenes::hard::CloseFamily& family : scenes::hard::close_families())
+    for (const Kind kind : kKinds)
+      workloads.push_back({"close", std::string(family.name), kind, {}, numbered(count, [=](std::size_t i) {
+                             return scenes::hard::close_suite_query(family, kind, i, seed);
                            })});
   return workloads;
 }
