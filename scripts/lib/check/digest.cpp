@@ -11,10 +11,12 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/catalogue.h"
+#include "core/elementary/question/query_scale.h"
 #include "core/hierarchy/bounds.h"
 #include "scenes/queries/query_file.h"
 
@@ -22,20 +24,36 @@ using namespace cscd;
 
 namespace {
 
+template <class AskQuery>
+void print_digest(const std::string& name, const std::vector<Query>& queries, const AskQuery& ask) {
+  std::uint64_t sum = kDigestOfNothing;
+  const auto add = [&](std::uint64_t word) { sum = digest_of(std::as_bytes(std::span(&word, 1)), sum); };
+  int contacts = 0;
+  for (const Query& query : queries) {
+    const Answer answer = ask(query);
+    add(static_cast<std::uint64_t>(answer.verdict));
+    if (answer.verdict != Verdict::apart) add(std::bit_cast<std::uint64_t>(answer.time + 0.0));
+    contacts += answer.verdict == Verdict::contact;
+  }
+  std::printf("%s %d %s\n", name.c_str(), contacts, hex_text(sum).c_str());
+}
+
+// A distance is a 64th of the query's extent.
+template <class Ask>
+Answer at_distance(const ElementaryTest& test, const Ask& query) {
+  return test.answer_close(query, 0x1p-6 * extent(query));
+}
+
 void ask_all(const std::string& name, const std::vector<Query>& queries, bool vertex_face) {
   for (const ElementaryTest& test : elementary_tests()) {
-    std::uint64_t sum = kDigestOfNothing;
-    const auto add = [&](std::uint64_t word) { sum = digest_of(std::as_bytes(std::span(&word, 1)), sum); };
-    int contacts = 0;
-    for (const Query& query : queries) {
-      const Answer answer =
-          vertex_face ? test.vertex_face(as_vertex_face(query)) : test.edge_edge(as_edge_edge(query));
-      add(static_cast<std::uint64_t>(answer.verdict));
-      if (answer.verdict != Verdict::apart) add(std::bit_cast<std::uint64_t>(answer.time + 0.0));
-      contacts += answer.verdict == Verdict::contact;
-    }
-    std::printf("%s %s %d %s\n", name.c_str(), std::string(test.name).c_str(), contacts,
-                hex_text(sum).c_str());
+    const std::string row = name + " " + std::string(test.name);
+    print_digest(row, queries, [&](const Query& query) {
+      return vertex_face ? test.vertex_face(as_vertex_face(query)) : test.edge_edge(as_edge_edge(query));
+    });
+    if (!test.knows_distance()) continue;
+    print_digest(row + " at a distance", queries, [&](const Query& query) {
+      return vertex_face ? at_distance(test, as_vertex_face(query)) : at_distance(test, as_edge_edge(query));
+    });
   }
 }
 
