@@ -47,7 +47,9 @@ inline Nearest nearest_of_edges(const std::array<Vec3, 4>& points) {
   const Vec3 p = points[1] - points[0], q = points[3] - points[2], r = points[0] - points[2];
   const double a = p.squaredNorm(), e = q.squaredNorm(), b = p.dot(q), c = p.dot(r), f = q.dot(r);
   const double determinant = a * e - b * b;
-  double s = determinant > 0 ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
+  // Below this the determinant is mostly rounding. Edges that are parallel have nearest points with an end
+  // among them.
+  double s = determinant > 0x1p-48 * a * e ? std::clamp((b * f - c * e) / determinant, 0.0, 1.0) : 0.0;
   double t = e > 0 ? (b * s + f) / e : 0.0;
   if (t <= 0 || t >= 1 || e == 0) {
     t = std::clamp(t, 0.0, 1.0);

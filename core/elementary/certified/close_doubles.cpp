@@ -10,6 +10,9 @@
 // polynomial falls to zero, if it does. Newton's method finds that time, and one value in pairs of doubles
 // makes the largest double not above it certain, as in contact_time.h.
 //
+// Where several pairs of features are nearest together, gaps and distances of points tell neighbouring times
+// apart in pairs of doubles (fall_along).
+//
 // All numbers know how far they are off (approximate.h), and what they leave open is `unclear`.
 #include "core/elementary/certified/close_doubles.h"
 
@@ -25,6 +28,8 @@ namespace cscd {
 namespace {
 
 using exact::CloseCase;
+using exact::dot;
+using exact::operator-;
 using exact::PointOf;
 using Doubles = Approximate<double>;
 using Pairs = Approximate<Pair>;
@@ -59,6 +64,22 @@ struct Kind<MovingEdgeEdge> {
   }
 };
 
+// The vertex and the ends of the edge of a case other than the first. For two vertices, both ends are one.
+struct VertexAndEdge {
+  std::size_t vertex, from, to;
+};
+template <class Query>
+VertexAndEdge vertex_and_edge(int number) {
+  const auto n = static_cast<std::size_t>(number);
+  if constexpr (std::is_same_v<Query, MovingVertexFace>) {
+    return n < 4 ? VertexAndEdge{0, n, 1 + n % 3} : VertexAndEdge{0, n - 3, n - 3};
+  } else {
+    if (n < 3) return {n - 1, 2, 3};
+    if (n < 5) return {n - 1, 0, 1};
+    return {(n - 5) / 2, 2 + (n - 5) % 2, 2 + (n - 5) % 2};
+  }
+}
+
 template <class Query>
 class Closeness {
  public:
@@ -86,7 +107,8 @@ class Closeness {
       if (low + gain >= 1) return {CloseResult::apart};
       if (gain < tried) {
         const CloseResult closed_in = close_in(low, nearest);
-        if (closed_in.kind != CloseResult::unclear || gain < 0x1p-40) return closed_in;
+        if (closed_in.kind != CloseResult::unclear) return closed_in;
+        if (gain < 0x1p-40) return fall_along(low, nearest);
         tried = gain / 4;
       }
       low += gain;
@@ -137,8 +159,7 @@ class Closeness {
     const Doubles r{r_, 0};
     return Kind<Query>::close_case(number, points, Moving{r * r, {}});
   }
-  // The polynomial of the case at time t.
-  Pairs beyond_at(int number, double t) const {
+  std::array<PointOf<Pairs>, 4> pairs_at(double t) const {
     std::array<PointOf<Pairs>, 4> points;
     for (std::size_t i = 0; i < 4; ++i)
       for (Eigen::Index k = 0; k < 3; ++k) {
@@ -146,8 +167,12 @@ class Closeness {
             end{exact_sum(points_[i].end[k], -points_[3].end[k]), 0};
         points[i][static_cast<std::size_t>(k)] = start + (end - start) * Pairs{{t, 0}, 0};
       }
+    return points;
+  }
+  // The polynomial of the case at time t.
+  Pairs beyond_at(int number, double t) const {
     const Pairs r{{r_, 0}, 0};
-    return Kind<Query>::close_case(number, points, r * r).beyond;
+    return Kind<Query>::close_case(number, pairs_at(t), r * r).beyond;
   }
 
   // True if the nearest points are certainly those of the case, and the distance certainly falls.
@@ -211,6 +236,71 @@ class Closeness {
     if (time >= 1 && high == 1) return {CloseResult::apart};
     return time >= low && time < high ? CloseResult{CloseResult::close, time}
                                       : CloseResult{CloseResult::unclear};
+  }
+
+  // The case in which several pairs of features are nearest together, as in edges that stay parallel. From
+  // `low` on, at which the features are nearly close, the gap along the direction of their nearest points
+  // proves them apart, and the distance of two of their points proves them close. Both differ from the
+  // distance by the square of what the direction and the points are off, so pairs of doubles tell
+  // neighbouring times apart.
+  CloseResult fall_along(double low, const Nearest& nearest) const {
+    if (nearest.number == 0) return {CloseResult::unclear};
+    PointOf<Pairs> direction = way_at(low, nearest.number);
+    const auto [p, a, b] = vertex_and_edge<Query>(nearest.number);
+    if (a != b) {  // at a right angle to the edge in pairs of doubles, too
+      const std::array<PointOf<Pairs>, 4> now = pairs_at(low);
+      const PointOf<Pairs> edge = now[b] - now[a];
+      const double off = dot(direction, edge).value.high / dot(edge, edge).value.high;
+      for (std::size_t k = 0; k < 3; ++k) direction[k] = direction[k] - Pairs{{off, 0}, 0} * edge[k];
+    }
+    // It may be any direction, and leads to the first feature.
+    for (Pairs& x : direction) x = {p < Kind<Query>::split ? x.value : -x.value, 0};
+    const Vec3 way(direction[0].value.high, direction[1].value.high, direction[2].value.high);
+    // The length of the direction, and r times that: one step of Newton's method from the rounded root.
+    const Pair square = dot(direction, direction).value;
+    const double root = std::sqrt(square.high);
+    const Pair length = exact_sum(root, (square - exact_product(root, root)).high / (2 * root));
+    const Pairs least = Pairs{length, 0x1p-95 * root} * Pairs{{r_, 0}, 0};
+
+    // The least excess over r of the gaps between two points, and the first time at which it is zero.
+    double first = 2;
+    const auto apart_at = [&](double t) {
+      const std::array<PointOf<Pairs>, 4> now = pairs_at(t);
+      bool certain = true;
+      for (std::size_t i = 0; i < Kind<Query>::split; ++i)
+        for (std::size_t j = Kind<Query>::split; j < 4; ++j) {
+          const Pairs excess = dot(now[i] - now[j], direction) - least;
+          certain &= excess.sign() > 0;
+          const Vec3 change = (end_[i] - start_[i]) - (end_[j] - start_[j]);
+          const double fall = -change.dot(way);
+          if (!(fall > 0)) continue;
+          const Pair zero = exact_sum(t, excess.value.high / fall);
+          first = std::min(first, zero.low < 0 ? next_below_positive(zero.high) : zero.high);
+        }
+      return certain;
+    };
+    if (!apart_at(low)) return {CloseResult::unclear};
+    const double time = std::min(first, 1.0);
+    if (!(time > low) || !apart_at(time)) return {CloseResult::unclear};
+    if (time == 1) return {CloseResult::apart};
+    const PointOf<Pairs> last = way_at(std::nextafter(time, 2), nearest.number);
+    const Pairs r{{r_, 0}, 0};
+    const bool certain = (dot(last, last) - r * r).sign() < 0;
+    return certain ? CloseResult{CloseResult::close, time} : CloseResult{CloseResult::unclear};
+  }
+
+  // The way from a point of the edge of the case to its vertex, or from the one vertex to the other. The
+  // point is the nearest up to rounding.
+  PointOf<Pairs> way_at(double t, int number) const {
+    const auto [p, a, b] = vertex_and_edge<Query>(number);
+    const std::array<PointOf<Pairs>, 4> now = pairs_at(t);
+    PointOf<Pairs> way = now[p] - now[a];
+    if (a == b) return way;
+    const std::array<Vec3, 4> rounded = at(t);
+    const Vec3 edge = rounded[b] - rounded[a];
+    const double s = std::clamp((rounded[p] - rounded[a]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+    for (std::size_t k = 0; k < 3; ++k) way[k] = way[k] - Pairs{{s, 0}, 0} * (now[b][k] - now[a][k]);
+    return way;
   }
 
   const std::array<MovingPoint, 4> points_;

@@ -140,6 +140,33 @@ TEST(FilteredExactClose, AnswersAsTheRefereeOnALattice) {
   EXPECT_GT(family.by_referee(), 500);
 }
 
+// Edges that stay parallel, and vertices that come straight down on an edge of a face's border: several pairs
+// of features are nearest together. Coordinates have 20 bits, so that sums are exact.
+TEST(FilteredExactClose, DoublesSettleFeaturesThatStayParallel) {
+  QueryMaker make(6);
+  const auto bits = [&] {
+    const auto one = [&] { return (make.below(1 << 21) - (1 << 20)) * 0x1p-20; };
+    const double x = one(), y = one(), z = one();
+    return Vec3(x, y, z);
+  };
+  const auto path = [](const Vec3& p, const Vec3& way) { return MovingPoint{p, p + way}; };
+  CloseFamily parallel, border;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 u = bits(), a = bits(), from = a + bits(), way = 1.5 * (a - from), drift = 0.125 * bits();
+    const double r = make.uniform(0.01, 0.2);
+    ASSERT_NO_FATAL_FAILURE(parallel.add<MovingEdgeEdge>(
+        {path(from, way), path(from + u, way), path(a, drift), path(a + 0.5 * u, drift)}, r));
+    ASSERT_NO_FATAL_FAILURE(
+        border.add<MovingVertexFace>({path(from + 0.25 * u, way), path(a, drift), path(a + u, drift),
+                                      path(a + (from - a).cross(u), drift)},
+                                     r));
+  }
+  EXPECT_GT(parallel.close, 150);
+  EXPECT_LT(parallel.by_referee(), 0.05 * parallel.all());
+  EXPECT_GT(border.close, 150);
+  EXPECT_LT(border.by_referee(), 0.05 * border.all());
+}
+
 // Features that graze each other's distance, come close at t = 0 or t = 1, or stay at the distance.
 TEST(FilteredExactClose, AnswersAsTheRefereeWhereDistancesAreNearlyR) {
   QueryMaker make(4);
