@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/rounding.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"
 #include "core/elementary/catalogue.h"
@@ -13,6 +14,7 @@
 #include "core/session/candidates.h"
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
+#include "core/session/vertex_bounds.h"
 
 #include "cscd/cscd.h"
 
@@ -211,12 +213,29 @@ class SelfCollision::Engine {
   void candidates(const Motion& motion, double radius, Candidates& out) {
     if (!(radius >= 0) || !std::isfinite(radius))
       throw InputError("candidates: radius " + std::to_string(radius) + "; give a length of at least 0");
-    if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
-    search_->find(motion, Thickness(radius), found_);
+    search().find(motion, Thickness(radius), found_);
     append(mesh_, out);
     if (!obstacles_) return;
     obstacles_->find_candidates(motion, Thickness(radius), found_);
     append(obstacles_->together(), out);
+  }
+
+  std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap) {
+    // Pairs farther apart than this do not bound anything below the cap. The slack exceeds the roundings of
+    // the sums.
+    const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * cap);
+    const Thickness reach(options_.thickness + 2 * cap + slack, options_.vertex_thickness);
+    if (!(cap >= 0) || !std::isfinite(reach.largest()))
+      throw InputError("vertex_bounds: cap " + std::to_string(cap) + "; give a finite length of at least 0");
+    const Motion rest(pose, pose);
+    VertexBounds bounds(mesh_.vertex_count(), cap);
+    search().find(rest, reach, found_);
+    bounds.add(mesh_, rest, found_, thickness_);
+    if (obstacles_) {
+      obstacles_->find_candidates(rest, reach, found_);
+      if (!found_.empty()) bounds.add(obstacles_->together(), obstacles_->motion(), found_, thickness_);
+    }
+    return bounds.find();
   }
 
  private:
@@ -263,6 +282,11 @@ class SelfCollision::Engine {
     return Thickness(options_.thickness, by_vertex);
   }
   bool is_thick() const { return !thickness_.is_zero(); }
+
+  CandidateSearch& search() {
+    if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
+    return *search_;
+  }
 
   static const ElementaryTest& elementary() { return *find_elementary_test("filtered_exact"); }
   StrategyInput setup(bool first, const cscd::Exclusions* exclusions) const {
@@ -433,6 +457,14 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
     engine_->check_finite(motion.end(), "end positions");
     engine_->candidates(motion, radius, out);
     return out;
+  });
+}
+
+std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
+  return checked([&] {
+    const std::span<const Vec3> pose = rows_of(positions, engine_->mesh().vertex_count(), "positions");
+    engine_->check_finite(pose, "positions");
+    return engine_->vertex_bounds(pose, cap);
   });
 }
 

@@ -21,6 +21,7 @@ const cscd::Copy CSCD_COPY = {
     .all_contacts = &SelfCollision::all_contacts,
     .largest_step = &SelfCollision::largest_step,
     .candidates = &SelfCollision::candidates,
+    .vertex_bounds = &SelfCollision::vertex_bounds,
     .preparation = &SelfCollision::preparation,
     .vertex_count = &SelfCollision::vertex_count,
     .face_count = &SelfCollision::face_count,

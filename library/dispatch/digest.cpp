@@ -54,6 +54,7 @@ struct Digest {
     add(body.largest_step(start, end));
     const SelfCollision::Candidates near = body.candidates(start, end, 0.01);
     add_in_order(near.vertex_face), add_in_order(near.edge_edge);
+    for (const double bound : body.vertex_bounds(start, 0.05)) add(bound);
   }
 };
 

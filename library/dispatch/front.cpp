@@ -92,6 +92,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
   return engine_->call(&Copy::candidates, start, end, radius);
 }
 
+std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
+  return engine_->call(&Copy::vertex_bounds, positions, cap);
+}
+
 std::vector<std::byte> SelfCollision::preparation() const {
   return engine_->call(&Copy::preparation);
 }

@@ -211,6 +211,15 @@ PYBIND11_MODULE(_cscd, module) {
              }
              return py::make_tuple(table_of(found.vertex_face), table_of(found.edge_edge));
            })
+      .def("vertex_bounds",
+           [](SelfCollision& self, const Reals& positions, double cap) {
+             std::vector<double> bounds;
+             {
+               const py::gil_scoped_release without_lock;
+               bounds = self.vertex_bounds(view(positions), cap);
+             }
+             return py::array_t<double>(static_cast<py::ssize_t>(bounds.size()), bounds.data());
+           })
       .def(
           "preparation",
           [](const SelfCollision& self) {

@@ -30,7 +30,8 @@
 //   - first_contact() gives contacts of the earliest time, at least one, and that time is right to 2^-50;
 //   - all_contacts() gives all contacts;
 //   - up to largest_step() nothing touches, unless something touches or crosses at the start already;
-//   - candidates() holds every pair of features that comes within the radius.
+//   - candidates() holds every pair of features that comes within the radius;
+//   - while no vertex moves farther than its vertex_bounds(), along whatever path, nothing touches.
 // With a thickness (Options::thickness) above 0, all of this is about pairs of features that come within it:
 // wherever a comment says "touches" or "contact", the distance of the two is at most the thickness. Then
 //   - is_free() is true only if nothing comes within the thickness and nothing crosses at the start;
@@ -214,6 +215,15 @@ class CSCD_EXPORT SelfCollision {
   // length, at least 0 and finite; Options::thickness has no part in it. For a solver that runs a narrow
   // phase of its own.
   Candidates candidates(const Positions& start, const Positions& end, double radius);
+
+  // Returns for each vertex, [vertices of the mesh], how far it may move from where it is in `positions`, in
+  // any direction and along any path, so that no two features that are not excluded come as close as the
+  // thickness, however all other vertices move within their bounds. Obstacles stay where they are placed or
+  // move as they were told. What moves is the position that is stored: where sums round, leave room for that.
+  // No bound exceeds `cap`, a finite length of at least 0, in which the time grows: pairs within the
+  // thickness and twice the cap are looked at. Vertices of a pair that is not certainly farther apart than
+  // the thickness have the bound 0. From a pose in which nothing crosses, nothing comes to cross.
+  std::vector<double> vertex_bounds(const Positions& positions, double cap);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
   // damaged, of another version of the library, or of a mesh that had less than half of the faces, raise

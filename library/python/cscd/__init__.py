@@ -139,6 +139,16 @@ class SelfCollision(_cscd.SelfCollision):
         """
         return super().candidates(*_step(start, end), float(numbers(radius, "radius", REAL)))
 
+    def vertex_bounds(self, positions, cap):
+        """Returns [vertices] float: how far each vertex may move from `positions`, in any direction and along any path.
+
+        While all stay within their bounds, no two features that are not excluded come as close as the thickness, and
+        nothing comes to cross. Obstacles stay where they are placed or move as they were told. No bound exceeds `cap`, a
+        finite length of at least 0; the time grows with it. What moves is the position that is stored: where sums round,
+        leave room for that. Vertices of a pair that is not farther apart than the thickness have the bound 0.
+        """
+        return super().vertex_bounds(_positions(positions, "positions"), float(numbers(cap, "cap", REAL)))
+
 
 def _step(start, end):
     return _positions(start, "start positions"), _positions(end, "end positions")

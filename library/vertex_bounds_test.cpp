@@ -1,0 +1,229 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <random>
+#include <set>
+
+#include "core/geometry/feature_distance.h"
+#include "core/geometry/nearest_points.h"
+#include "library/test_steps.h"
+
+// Moves random surfaces within their bounds, and holds what comes near to the exact test.
+namespace cscd {
+namespace {
+
+using namespace test;
+
+// A pose of a surface, with a thickness below or above its least distance, and its bounds.
+struct Bounded {
+  SceneStep step;
+  SelfCollision::Options options;
+  Exclusions exclusions;
+  double cap;
+  double rounding = 1e-12;  // of a position that moves, with room to spare
+  std::unique_ptr<SelfCollision> body;
+  std::vector<double> bounds;
+
+  explicit Bounded(std::uint64_t seed) : step(seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> share(0, 1);
+    options.thickness = seed % 4 == 0 ? 0 : 0.1 * std::pow(share(random), 4);
+    if (seed % 4 == 3)
+      for (std::size_t v = 0; v < step.own(); ++v) options.vertex_thickness.push_back(0.01 * share(random));
+    if (seed % 5 == 2) {
+      options.exclude.rings = 1;
+      exclusions.exclude_rings(step.mesh, 1);
+    }
+    cap = seed % 3 == 0 ? 0.05 : 0.5;
+    body = std::make_unique<SelfCollision>(step.faces, step.start, options);
+    bounds = body->vertex_bounds(step.start, cap);
+    for (const Vec3& p : step.all_start) rounding = std::max(rounding, 1e-15 * p.norm());
+  }
+  Thickness thickness() const { return Thickness(options.thickness, options.vertex_thickness); }
+  std::set<Key> close_at(const Rows& pose) const {
+    std::set<Key> out;
+    for (const auto& [key, time] : found(body->all_contacts(pose, pose))) out.insert(key);
+    return out;
+  }
+};
+
+Vec3 direction(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Vec3 out;
+  do out = Vec3(normal(random), normal(random), normal(random));
+  while (!(out.norm() > 0.1));
+  return out.normalized();
+}
+
+// A polygon of a few pieces for each vertex, which bends within `share` of its bound. Balls are convex, so a
+// piece leaves none that holds its ends. Room is left for the rounding of sums.
+std::vector<Rows> paths(const Bounded& bounded, double share, std::mt19937_64& random) {
+  constexpr int kPieces = 4;
+  std::vector<Rows> out(kPieces + 1, bounded.step.start);
+  std::uniform_real_distribution<double> length(0, 1);
+  for (std::size_t v = 0; v < bounded.bounds.size(); ++v) {
+    const double bound = std::max(0.0, share * bounded.bounds[v] - bounded.rounding);
+    for (std::size_t piece = 1; piece < out.size(); ++piece)
+      out[piece].row(static_cast<Eigen::Index>(v)) +=
+          bound * (piece % 2 == 1 ? 1 : length(random)) * direction(random).transpose();
+  }
+  return out;
+}
+// Two features move towards each other as far as their vertices may, and the others as they like.
+Rows towards_each_other(const Bounded& bounded, double share, std::mt19937_64& random) {
+  Rows end = paths(bounded, share, random)[1];
+  const SceneStep& step = bounded.step;
+  const SelfCollision::Candidates near = bounded.body->candidates(step.start, step.start, 2 * bounded.cap);
+  if (near.edge_edge.empty() || near.vertex_face.empty()) return end;
+  std::array<int, 4> vertices = near.edge_edge[random() % near.edge_edge.size()];
+  const bool edges = random() % 2 == 0;
+  if (!edges) {
+    const auto [v, f] = near.vertex_face[random() % near.vertex_face.size()];
+    vertices = {v, step.faces(f, 0), step.faces(f, 1), step.faces(f, 2)};
+  }
+  std::array<Vec3, 4> at;
+  for (std::size_t i = 0; i < 4; ++i) at[i] = step.start.row(vertices[i]);
+  const Vec3 way = (edges ? nearest_of_edges(at) : nearest_of_vertex_face(at)).way;
+  if (!(way.norm() > 0)) return end;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double bound =
+        std::max(0.0, share * bounded.bounds[static_cast<std::size_t>(vertices[i])] - bounded.rounding);
+    end.row(vertices[i]) = at[i] + (i < (edges ? 2u : 1u) ? -bound : bound) * way.normalized();
+  }
+  return end;
+}
+
+// Returns whether every pair that is not close in the pose stays so along a way.
+bool stays_apart(const Bounded& bounded, const std::vector<Rows>& way, const std::set<Key>& close) {
+  for (std::size_t i = 0; i + 1 < way.size(); ++i)
+    for (const auto& [key, time] : found(bounded.body->all_contacts(way[i], way[i + 1])))
+      if (!close.contains(key)) return false;
+  return true;
+}
+
+// Mutations: a bound is the distance and not half of it; the thickness is not subtracted; one vertex takes
+// what its neighbours have not used, without saying so; the search does not reach to twice the cap.
+TEST(VertexBounds, NothingComesCloserWhateverMovesWithinThem) {
+  std::size_t motions = 0, free_poses = 0, bounded_by_cap = 0, zero = 0;
+  const std::size_t wanted = intervals() == 120 ? 400 : 10'000;
+  for (std::uint64_t seed = 1; motions < wanted; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Bounded bounded(seed);
+    const std::set<Key> close = bounded.close_at(bounded.step.start);
+    free_poses += close.empty();
+    for (const double bound : bounded.bounds) {
+      ASSERT_TRUE(bound >= 0 && bound <= bounded.cap);
+      bounded_by_cap += bound == bounded.cap, zero += bound == 0;
+    }
+    EXPECT_EQ(bounded.bounds, bounded.body->vertex_bounds(bounded.step.start, bounded.cap));
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 20; ++i, ++motions) {
+      const std::vector<Rows> way =
+          i % 2 == 0 ? paths(bounded, 1, random)
+                     : std::vector{bounded.step.start, towards_each_other(bounded, 1, random)};
+      ASSERT_TRUE(stays_apart(bounded, way, close)) << i;
+    }
+  }
+  EXPECT_GT(free_poses, wanted / 200);
+  EXPECT_GT(bounded_by_cap, 0u);
+  EXPECT_GT(zero, 0u);
+}
+
+// Bounds a little larger than these are not safe, so the motions above can fail.
+TEST(VertexBounds, LargerOnesAreNotSafe) {
+  std::size_t broken = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Bounded bounded(seed);
+    const std::set<Key> close = bounded.close_at(bounded.step.start);
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 20; ++i)
+      broken += !stays_apart(bounded, {bounded.step.start, towards_each_other(bounded, 1.1, random)}, close);
+  }
+  EXPECT_GT(broken, 5u);
+}
+
+// An obstacle at rest takes no share of the room, and one that moves takes what it moves.
+TEST(VertexBounds, ObstaclesKeepTheirOwnMotion) {
+  const FaceRows face{{0, 1, 2}};
+  const Rows pose{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  Rows above = pose, lower = pose;
+  above.col(2).setConstant(1), lower.col(2).setConstant(0.6);
+  SelfCollision::Options options;
+  options.thickness = 0.25;
+  options.obstacles.emplace_back(face, above);
+  SelfCollision body(face, pose, options);
+  for (const double bound : body.vertex_bounds(pose, 10)) EXPECT_NEAR(bound, 0.75, 1e-12);
+  for (const double bound : body.vertex_bounds(pose, 0.5)) EXPECT_EQ(bound, 0.5);
+  body.move_obstacle(0, above, lower);
+  for (const double bound : body.vertex_bounds(pose, 10)) EXPECT_NEAR(bound, 0.35, 1e-12);
+  body.place_obstacle(0, lower);
+  for (const double bound : body.vertex_bounds(pose, 10)) EXPECT_NEAR(bound, 0.35, 1e-12);
+  Rows touching = pose;
+  touching.col(2).setConstant(0.2);
+  body.place_obstacle(0, touching);
+  for (const double bound : body.vertex_bounds(pose, 10)) EXPECT_EQ(bound, 0);
+}
+
+// Half of the room for every vertex of a pair is the simplest bound. Planes between nearest points that no
+// side may pass (planar truncation) allow more in most directions, and are no bound for all of them. The
+// vertices get a good part of that without knowing the direction.
+TEST(VertexBounds, AreComparedWithHalvesAndWithPlanes) {
+  double halves = 0, bounds = 0, planes = 0, half_of_nearest = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const SceneStep step(seed);
+    constexpr double kCap = 0.5;
+    SelfCollision body(step.faces, step.start);
+    const std::vector<double> found = body.vertex_bounds(step.start, kCap);
+    const SelfCollision::Candidates near = body.candidates(step.start, step.start, 2 * kCap);
+    std::mt19937_64 random(seed);
+    std::vector<double> half(step.own(), kCap), nearest(step.own(), kCap), length(step.own(), kCap);
+    std::vector<Vec3> along;
+    for (std::size_t v = 0; v < step.own(); ++v) along.push_back(direction(random));
+    const auto take = [&](const std::array<int, 4>& vertices, bool edges) {
+      std::array<Vec3, 4> at;
+      for (std::size_t i = 0; i < 4; ++i) at[i] = step.start.row(vertices[i]);
+      const std::size_t split = edges ? 2 : 1;
+      const Vec3 way = (edges ? nearest_of_edges(at) : nearest_of_vertex_face(at)).way;
+      const double distance = way.norm();
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (std::size_t i = 0; i < split; ++i) low = std::min(low, at[i].dot(way));
+      for (std::size_t i = split; i < 4; ++i) high = std::max(high, at[i].dot(way));
+      for (std::size_t i = 0; i < 4; ++i) {
+        const auto v = static_cast<std::size_t>(vertices[i]);
+        half[v] = std::min(half[v], distance / 2);
+        if (!edges && i == 0) nearest[v] = std::min(nearest[v], distance / 2);
+        if (!(distance > 0)) continue;
+        const double side = i < split ? 1 : -1, room = std::abs(at[i].dot(way) - (low + high) / 2) / distance;
+        const double speed = -side * along[v].dot(way) / distance;
+        if (speed > 0) length[v] = std::min(length[v], room / speed);
+      }
+    };
+    for (const auto& [v, f] : near.vertex_face)
+      take({v, step.faces(f, 0), step.faces(f, 1), step.faces(f, 2)}, false);
+    for (const std::array<int, 4>& ends : near.edge_edge) take(ends, true);
+    for (std::size_t v = 0; v < step.own(); ++v) {
+      EXPECT_GE(found[v], half[v] - 1e-9) << "half of the room is the least that a vertex gets";
+      halves += half[v], bounds += found[v], planes += length[v], half_of_nearest += nearest[v];
+    }
+  }
+  std::cout << "in halves of the distance to the nearest face: halves " << halves / half_of_nearest
+            << ", bounds " << bounds / half_of_nearest << ", planes in a random direction "
+            << planes / half_of_nearest << '\n';
+  EXPECT_GT(bounds, 1.02 * halves);
+  EXPECT_GT(bounds, 0.8 * half_of_nearest);
+  EXPECT_GT(planes, bounds);
+}
+
+TEST(VertexBounds, RefuseWhatIsNoLength) {
+  const FaceRows face{{0, 1, 2}};
+  const Rows pose{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  SelfCollision body(face, pose);
+  for (const double wrong : {std::nan(""), HUGE_VAL, -1.0, 1e308})
+    EXPECT_THROW(body.vertex_bounds(pose, wrong), std::invalid_argument) << wrong;
+  EXPECT_THROW(body.vertex_bounds(Rows::Zero(4, 3), 1), std::invalid_argument);
+  EXPECT_EQ(body.vertex_bounds(pose, 3), std::vector<double>(3, 3.0));
+  EXPECT_EQ(body.vertex_bounds(pose, 0), std::vector<double>(3, 0.0));
+}
+
+}  // namespace
+}  // namespace cscd
