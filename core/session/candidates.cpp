@@ -1,10 +1,12 @@
 #include "core/session/candidates.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "core/base/stage_clock.h"
 #include "core/detect/carried_pairs.h"
+#include "core/detect/filter_block.h"
 #include "core/fast/trial.h"
 
 namespace cscd {
@@ -50,13 +52,38 @@ bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& p
 
 }  // namespace
 
-void CandidateSet::take(const Motion& motion, const Thickness& thickness, const TrianglePair& pair,
+CandidateSet::CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions)
+    : mesh_(mesh), exclusions_(exclusions) {
+  if (exclusions == nullptr) owners_.emplace(mesh);
+}
+
+// Where nothing is excluded, the owners' pairs of triangles are enough, because those that are passed on
+// carry everything that is near. A pair of triangles may be excluded while another carries the same features.
+CarriedPlaces CandidateSet::wanted(const TrianglePair& pair) const {
+  if (!owners_) return exclusions_->excludes(mesh_, pair) ? 0 : kAllCarried;
+  return owners_->owned_by(pair);
+}
+
+void CandidateSet::take(const Motion& motion, const Thickness& thickness, std::span<const TrianglePair> block,
                         std::vector<FeaturePair>& out) {
-  if (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair)) return;
-  for_each_carried(mesh_, pair, [&](const FeaturePair& features) {
-    if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
-    if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
-  });
+  block_.clear();
+  std::ranges::copy_if(block, std::back_inserter(block_),
+                       [&](const TrianglePair& pair) { return wanted(pair) != 0; });
+  for (std::size_t first = 0; first < block_.size(); first += kLanes16) {
+    const auto pairs = std::span(block_).subspan(first, std::min(kLanes16, block_.size() - first));
+    const auto before = no_contact_before(mesh_, motion, pairs, thickness.largest());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (before[i] > 1) continue;
+      const Triangle &a = mesh_.corners(pairs[i].a), &b = mesh_.corners(pairs[i].b);
+      CarriedPairs near{pairs[i], static_cast<CarriedPlaces>(carried_by(a, b) & wanted(pairs[i]))};
+      if (near.places != 0 && !thickness.is_zero())
+        near.places = not_farther_than(thickness.largest(), motion, a, b, near.places);
+      for_each_carried(mesh_, near, [&](const FeaturePair& features) {
+        if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
+        if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
+      });
+    }
+  }
 }
 
 // A complete culler passes on every triangle pair of which features come within the thickness.

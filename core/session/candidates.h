@@ -1,33 +1,40 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/detect/culler.h"
 #include "core/detect/exclusions.h"
+#include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/strategy.h"
 
 namespace cscd {
 
-// Collects the feature pairs that some triangle pairs carry and whose features may come within their
-// thickness of each other. The boxes of both features' paths are then at most so far apart along each axis.
+// Collects the feature pairs that some triangle pairs carry and that are not proven to stay farther apart
+// than their thickness. The boxes of both features' paths are at most so far apart along each axis.
 class CandidateSet {
  public:
   // `exclusions` may be null. Everything must outlive the set.
-  CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions)
-      : mesh_(mesh), exclusions_(exclusions) {}
+  CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions);
 
   // Forgets the triangle pairs of the last step.
   void start_step() { met_.start_interval(); }
-  // Appends the pair's feature pairs that are near enough, are not excluded, and are new in this step.
-  void take(const Motion& motion, const Thickness& thickness, const TrianglePair& pair,
+  // Appends the feature pairs that are near enough, are not excluded, and are new in this step. All blocks of
+  // a step together hold every triangle pair that carries some feature pair within its thickness.
+  void take(const Motion& motion, const Thickness& thickness, std::span<const TrianglePair> block,
             std::vector<FeaturePair>& out);
 
  private:
+  CarriedPlaces wanted(const TrianglePair& pair) const;
+
   const TriangleMesh& mesh_;
   const Exclusions* exclusions_;
+  std::optional<FeatureOwners> owners_;
   FeaturePairSet met_;
+  std::vector<TrianglePair> block_;  // of which some feature pairs are wanted
 };
 
 // Hands the triangle pairs that a culler passes on to a set.
@@ -38,9 +45,7 @@ class CandidateSink : public TrianglePairSink {
       : set_(set), motion_(motion), thickness_(thickness), out_(out) {}
 
  private:
-  void take(const std::vector<TrianglePair>& block) override {
-    for (const TrianglePair& pair : block) set_.take(motion_, thickness_, pair, out_);
-  }
+  void take(const std::vector<TrianglePair>& block) override { set_.take(motion_, thickness_, block, out_); }
   CandidateSet& set_;
   const Motion motion_;
   const Thickness thickness_;
