@@ -108,6 +108,24 @@ class SelfCollision(unittest.TestCase):
         self.assertEqual(edge_edge.shape[1], 4)
         self.assertNotIn([3, 4], self.body.candidates(self.before, self.before, 0.5)[0].tolist())
 
+    def test_a_thickness(self):
+        thick = cscd.SelfCollision(self.faces, self.before, thickness=0.25, vertex_thickness=np.full(8, 0.125))
+        after = fallen(self.before, 0.75)
+        answer = thick.first_contact(self.before, after)
+        self.assertAlmostEqual(answer.time, 2 / 3, 12)
+        self.assertAlmostEqual(thick.largest_step(self.before, after, safety=1), 2 / 3, 12)
+        self.assertFalse(thick.is_free(self.before, after))
+        self.assertTrue(self.body.is_free(self.before, after))
+        self.assertEqual(answer.close_at_start, 0)
+        self.assertGreater(thick.first_contact(after, after).close_at_start, 0)
+        self.assertTrue((thick.vertex_bounds(self.before, 10) <= self.body.vertex_bounds(self.before, 10)).all())
+
+    def test_vertex_bounds(self):
+        bounds = self.body.vertex_bounds(self.before, 10)
+        np.testing.assert_array_equal(self.body.vertex_bounds(self.before, 0.01), np.full(8, 0.01))
+        self.assertEqual(bounds.shape, (8,))
+        self.assertTrue((bounds > 0.2).all() and (bounds < 1).all())
+
     def test_wrong_input_is_a_value_error(self):
         nan = self.before.copy()
         nan[2, 1] = np.nan

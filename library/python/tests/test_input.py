@@ -123,6 +123,8 @@ class Input(unittest.TestCase):
         for name, values in {
                 "threads": [0, -1, 1.5, "1", None, True, 2**40, 4096, [1], np.nan],
                 "check_positions": [0, 1, None, "yes"], "check_start": [0.5, []],
+                "thickness": [-1, -5e-324, np.nan, np.inf, "1", None, [1], 1j, True],
+                "vertex_thickness": [[0.1] * 5, [-1] * 6, [np.nan] * 6, [1e308] * 6, [[0.1] * 6], "a", None, [True] * 6, 1],
                 "exclude": [0, [], {}, "none"], "preparation": ["", b"abc", 0, None, [1]],
                 "obstacles": [0, [0], [(FACES,)], [(FACES, START, 1)], "ab", [None], [("a", "b")], {1: 2}, None]}.items():
             for value in values:
@@ -139,6 +141,8 @@ class Input(unittest.TestCase):
                     self.refused(lambda: cscd.SelfCollision(FACES, START, exclude=cscd.Exclusions(**{name: value})))
         for safety in [0, -1, 1.5, np.nan, np.inf, None, "1", [0.5], True, 2**80]:
             self.refused(lambda: self.body.largest_step(START, END, safety), "safety")
+        for cap in [-1, np.nan, np.inf, 1e308, None, "1", [1, 2], 1j]:
+            self.refused(lambda: self.body.vertex_bounds(START, cap), "cap")
         for radius in [-1, np.nan, np.inf, None, "1", [1, 2], 1j]:
             self.refused(lambda: self.body.candidates(START, END, radius), "radius")
         body = cscd.SelfCollision(FACES, START, obstacles=[(FACES, START + 50)])
