@@ -9,6 +9,7 @@
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
+#include "bench/query/options/answer_options.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
@@ -26,6 +27,7 @@ struct InspectOptions {
   std::string input, output;
   bool force = false;
   ModelOptions model;
+  ThicknessRequest thickness;
 };
 
 // A moment that is looked at: the rest, and where each clip starts.
@@ -178,6 +180,35 @@ std::string strategies_text(const json& strategies) {
   return out;
 }
 
+// How many pairs of features are within the thickness at rest, and how many of them rings leave.
+json close_json(const Input& input) {
+  constexpr int kMostRings = 4;
+  const ContactSet close = close_at_rest(input);
+  json beyond = json::array();
+  for (int rings = 1; rings <= kMostRings && !close.contacts.empty(); ++rings) {
+    Exclusions near;
+    near.exclude_rings(input.mesh, rings);
+    beyond.push_back(std::ranges::count_if(
+        close.contacts, [&](const Contact& contact) { return !near.excludes(input.mesh, contact.pair); }));
+    if (beyond.back() == 0) break;
+  }
+  return {{"asked", input.thickness.asked.thickness.text},
+          {"length", input.thickness.length},
+          {"mean_edge", input.thickness.edge},
+          {"pairs", close.contacts.size()},
+          {"pairs_beyond_rings", std::move(beyond)}};
+}
+
+void print_close(const json& close) {
+  std::printf("  within %s of each other at rest (%s; the mean edge is %s long): %zu pairs of features",
+              close["asked"].get<std::string>().c_str(), number(close["length"]).c_str(),
+              number(close["mean_edge"]).c_str(), close["pairs"].get<std::size_t>());
+  const json& beyond = close["pairs_beyond_rings"];
+  for (std::size_t i = 0; i < beyond.size(); ++i)
+    std::printf("%s %zu with --exclude-rings %zu", i == 0 ? ";" : ",", beyond[i].get<std::size_t>(), i + 1);
+  std::printf("\n");
+}
+
 void print(const json& document) {
   for (const json& clip : document["clips"])
     std::printf("  clip '%s': %s s, %s frames from frame %s, %s bones driven\n",
@@ -199,6 +230,7 @@ void print(const json& document) {
     std::printf("; %s\n      %s\n%s", shape.c_str(), embedding_text(c["embedding"]).c_str(),
                 strategies_text(c["strategies"]).c_str());
   }
+  if (document.contains("thickness")) print_close(document["thickness"]);
   if (document["components"].size() < 2) return;
   const json& all = document["together"];
   std::printf("  all components together\n      %s\n%s", embedding_text(all["embedding"]).c_str(),
@@ -211,6 +243,7 @@ void inspect(InspectOptions options) {
   if (is_model_file(options.input)) options.model.import.survey = true;
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
+  set_thickness(input, options.thickness);
   const std::vector<Moment> moments = moments_of(input);
   const std::vector<Piece> pieces = scenes::pieces_of(input.mesh);
   const bool has_bones = input.rig.has_value();
@@ -240,6 +273,7 @@ void inspect(InspectOptions options) {
   json together = embedding_json(input.mesh, positions, moments);
   json strategies = strategies_json(input.mesh, has_bones, together);
   document["together"] = {{"embedding", std::move(together)}, {"strategies", std::move(strategies)}};
+  if (input.thickness.length > 0) document["thickness"] = close_json(input);
   if (output) output->commit(document.dump(1) + "\n");
   print(document);
 }
@@ -252,10 +286,12 @@ void add_inspect(CLI::App& app) {
       "inspect",
       "Say what an input is made of, component by component, and what each strategy can do with it.\n\n"
       "  cscd inspect character.glb\n"
-      "  cscd inspect character.fbx --fill-holes 12 --json report.json");
+      "  cscd inspect character.fbx --fill-holes 12 --json report.json\n"
+      "  cscd inspect skirt --thickness 0.2e         and how many pairs of features are that close at rest");
   command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--json", options->output, "where the same goes for a machine to read");
   command->add_flag("--force", options->force, "replace the output if it exists");
+  add_thickness_option(*command, options->thickness);
   add_model_options(*command, options->model);
   command->callback([options] { inspect(*options); });
 }

@@ -100,6 +100,7 @@ struct Said {
 Said say_clip(const QueryOptions& options, Input input, bool with_json) {
   input.threads = options.threads;
   ignore(input, options.ignored);
+  set_thickness(input, options.thickness);
   const SurfaceNames names(input);
   const ClipAnswer answer = answer_clip(options, input, names, with_json);
   std::printf("%s", clip_text(answer).c_str());
@@ -143,6 +144,7 @@ class AllVerdicts {
     say(of(IntervalVerdict::intersects_at_start), "crosses itself at the start of intervals",
         "cross themselves at the start of intervals");
     say(of(IntervalVerdict::touches), "touches itself", "touch themselves");
+    say(of(IntervalVerdict::close), "comes close to itself", "come close to themselves");
     say(of(IntervalVerdict::undecided), "may touch itself", "may touch themselves");
     say(of(IntervalVerdict::clear), "does not touch itself", "do not touch themselves");
     say(still_, "is one pose and was passed over", "are one pose and were passed over");
@@ -150,20 +152,23 @@ class AllVerdicts {
     return std::filesystem::path(input).filename().string() + ", " + std::to_string(count) +
            (count == 1 ? " clip in all:" : " clips in all:") + text + ".";
   }
-  json as_json(const std::string& input) const {
-    return {{"sentence", sentence(input)},
-            {"clear", of(IntervalVerdict::clear).size()},
-            {"touches", of(IntervalVerdict::touches).size()},
-            {"intersects_at_start", of(IntervalVerdict::intersects_at_start).size()},
-            {"undecided", of(IntervalVerdict::undecided).size()},
-            {"passed_over", still_.size()}};
+  // The clips that are close are counted where there is a thickness.
+  json as_json(const std::string& input, bool is_thick) const {
+    json out = {{"sentence", sentence(input)},
+                {"clear", of(IntervalVerdict::clear).size()},
+                {"touches", of(IntervalVerdict::touches).size()},
+                {"intersects_at_start", of(IntervalVerdict::intersects_at_start).size()},
+                {"undecided", of(IntervalVerdict::undecided).size()},
+                {"passed_over", still_.size()}};
+    if (is_thick) out["close"] = of(IntervalVerdict::close).size();
+    return out;
   }
 
  private:
   const std::vector<std::string>& of(IntervalVerdict verdict) const {
     return names_[static_cast<std::size_t>(verdict)];
   }
-  std::array<std::vector<std::string>, 4> names_;  // of clips, by their verdicts
+  std::array<std::vector<std::string>, 5> names_;  // of clips, by their verdicts
   std::vector<std::string> still_;
 };
 
@@ -202,7 +207,7 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
                      ": has no clip of more than one pose, so nothing moves; pass "
                      "--from-bind-pose to move from the bind pose to one of them");
   std::printf("%s\n", verdicts.sentence(options.input).c_str());
-  all.document["summary"] = verdicts.as_json(options.input);
+  all.document["summary"] = verdicts.as_json(options.input, options.thickness.thickness.number > 0);
   return all;
 }
 
@@ -223,7 +228,7 @@ Said say_answers(const QueryOptions& options, bool with_json) {
 
 void query(QueryOptions options) {
   require_sound(options);
-  if (!options.strategy.empty()) strategy_named(options.strategy);
+  if (!options.strategy.empty()) require_fit(options.thickness, strategy_named(options.strategy));
   most_start_pairs(options.start_pairs);
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
@@ -252,7 +257,9 @@ void add_query(CLI::App& app) {
       "cscd.query/3); --json - is standard output, and the text then goes to standard error. A file of "
       "several\n"
       "clips is answered as a list, `clips`, unless --clip names one; with --clip all any file is.\n\n"
-      "Each interval is clear, touches, or intersects_at_start. What crosses at rest (eyes in sockets, "
+      "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close: "
+      "then\n"
+      "something comes that near and nothing touches. What crosses at rest (eyes in sockets, "
       "clothes\n"
       "in skin) is how a character is made: pairs of triangles that cross in the bind pose, or in frame 0 of "
       "a\n"
@@ -275,7 +282,7 @@ void add_query(CLI::App& app) {
       "--start-pairs", options->start_pairs,
       "how many of the pairs of triangles that cross at a start are listed, or all; default 1000");
   command->add_flag("--fail-on-contact", options->fail_on_contact,
-                    "exit with status 3 when anything touches or crosses");
+                    "exit with status 3 when anything touches, crosses, or comes within the thickness");
   command->callback([options] { query(*options); });
 }
 

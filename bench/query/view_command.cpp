@@ -68,6 +68,7 @@ namespace {
 json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   input.threads = options.threads;
   ignore(input, options.ignored);
+  set_thickness(input, options.thickness);
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
   const IntervalRange range = parse_frames(options.frames, input);
@@ -115,6 +116,7 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   std::printf("%s", rows[0]["text"].get<std::string>().c_str());
   json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
                  {"engine_colours", !options.strategies.empty()},
+                 {"thickness", input.thickness.asked.thickness.text},
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
                  {"rest", rest_json(contestants.front()->recording.answer())},
@@ -160,7 +162,7 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
 std::string view_page(const ViewRequest& options) {
   require_viewer();
   require_sound(options);
-  for (const std::string& name : options.strategies) strategy_named(name);
+  for (const std::string& name : options.strategies) require_fit(options.thickness, strategy_named(name));
   if (options.strategies.size() > kMostStrategies)
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");

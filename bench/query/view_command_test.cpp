@@ -194,6 +194,14 @@ TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {
   use_in_browser("page.html", "small does not touch itself in frames 0 to 5");
 }
 
+TEST_F(View, ABrowserShowsWhatComesClose) {
+  ASSERT_EQ(run("cscd view figure.glb --clip hug --thickness 0.3e -o page.html").status, 0);
+  const json header = header_of(text("page.html"));
+  EXPECT_EQ(header["thickness"], "0.3e");
+  EXPECT_GT(header["strategies"][0]["summary"]["close"], 0);
+  use_in_browser("page.html", "comes within 0.3e of itself");
+}
+
 TEST_F(View, ADamagedPageSaysSoInOneLine) {
   ASSERT_EQ(run("cscd view small -o page.html").status, 0);
   const std::string whole = text("page.html");

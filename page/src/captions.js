@@ -2,16 +2,16 @@
 import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
 import { coverOf } from "./painter.js";
-import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, YELLOW } from "./palette.js";
-import { many, markOf, VERDICTS } from "./words.js";
+import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
+import { CLOSE, contactWord, isBad, many, markOf, VERDICTS } from "./words.js";
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
 
   // The sentences are made where the answers are (bench/query/answer/answer_text.h).
   sayVerdict({ summary, details }) {
-    const bad = summary.touches + summary.intersects_at_start > 0, verdict = byId("verdict");
-    verdict.className = bad ? "bad" : summary.undecided > 0 ? "" : "good";
+    const verdict = byId("verdict");
+    verdict.className = isBad(summary) ? "bad" : summary.undecided > 0 ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(summary.sentence));
     byId("details").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
@@ -20,7 +20,7 @@ export class Captions {
   sayInterval(strategy, interval, predicted) {
     const contacts = strategy.contacts[interval], pairs = strategy.start_pairs[interval], text = [];
     if (pairs > 0) text.push(`${many(pairs, "pair")} of triangles cross at this start`);
-    if (contacts > 0) text.push(`${many(contacts, "contact")} in this interval`);
+    if (contacts > 0) text.push(`${many(contacts, contactWord(strategy))} in this interval`);
     if (predicted) text.push("in the simulator's step, before it resolves them");
     byId("moment").textContent = text.join(" · ");
     const facts = [["interval", String(interval + this.recording.clip.first_interval)], ["verdict", VERDICTS[strategy.verdict[interval]]],
@@ -43,7 +43,10 @@ export class Captions {
     };
     const rows = [], cover = coverOf(mode);
     if (mode === "verdict") {
-      if (strategy.contacts[interval] > 0) rows.push(item(ORANGE, "touches"));
+      if (strategy.contacts[interval] > 0) {
+        if (strategy.close) rows.push(item(SKY, `within ${this.recording.header.thickness}`));
+        if (!strategy.close || strategy.verdict[interval] !== CLOSE) rows.push(item(ORANGE, "touches"));
+      }
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
     } else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));

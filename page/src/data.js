@@ -58,6 +58,7 @@ function strategyOf(row, arrays, prefix, triangles) {
   strategy.crossingOffset = offsets(strategy.kept_pairs);
   const rowBytes = Math.ceil(triangles / 8);
   undoDifferences(strategy.touched, rowBytes);
+  if (strategy.close) undoDifferences(strategy.close, rowBytes);  // of a page with a thickness
   if (row.has_clusters) undoDifferences(strategy.positive, rowBytes);
   // One entry for each cover. The observers of interval i have the numbers offset[i] to offset[i + 1] - 1, and `place` holds
   // twelve numbers for each of them: where its head is at the start and at the end of the interval, then the same of its tail.

@@ -1,7 +1,7 @@
 // The list of moments, with the contacts of the chosen one below it.
 import { element } from "./dom.js";
 import { momentsOf, namesOf, timeOf } from "./moments.js";
-import { both, many, momentText } from "./words.js";
+import { both, contactVerb, contactWord, many, momentText } from "./words.js";
 
 const MOST_ROWS = 1500;  // browsers grow slow with more
 const MOST_CONTACTS = 200;
@@ -30,20 +30,21 @@ export class MomentList {
     this.expanded = null;
     this.rowOf = new Map();  // by interval
     const moments = momentsOf(strategy);
-    this.title.textContent = moments.length ? `${many(moments.length, "moment")} with contact` : "No contact";
+    const what = strategy.close ? "close pairs" : "contact";
+    this.title.textContent = moments.length ? `${many(moments.length, "moment")} with ${what}` : `No ${what}`;
     const rows = moments.slice(0, MOST_ROWS).map((moment) => {
       const { interval } = moment, row = element("button"), counts = [];
       row.moment = moment;
-      row.append(element("span", both(...namesOf(this.recording, strategy, moment), moment.pair !== undefined ? "crosses" : "touches"), "what"),
+      row.append(element("span", both(...namesOf(this.recording, strategy, moment), moment.pair !== undefined ? "crosses" : contactVerb(strategy, moment.contact)), "what"),
         element("span", momentText(this.recording, interval + timeOf(strategy, moment)), "when"));
       if (strategy.start_pairs[interval] > 0) counts.push(many(strategy.start_pairs[interval], "crossing pair"));
-      if (strategy.contacts[interval] > 0) counts.push(many(strategy.contacts[interval], "contact"));
+      if (strategy.contacts[interval] > 0) counts.push(many(strategy.contacts[interval], contactWord(strategy)));
       row.append(element("span", counts.join(", "), "many"));
       this.rowOf.set(interval, row);
       return row;
     });
     if (moments.length > MOST_ROWS) rows.push(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
-    if (moments.length === 0) rows.push(element("p", "Nothing touches."));
+    if (moments.length === 0) rows.push(element("p", strategy.close ? "Nothing comes close." : "Nothing touches."));
     this.box.replaceChildren(...rows);
   }
 
@@ -56,12 +57,12 @@ export class MomentList {
     for (let contact = from; contact < to; ++contact) {
       const one = element("button", undefined, "one");
       one.moment = { interval, contact };
-      one.append(element("span", `${both(...namesOf(this.recording, strategy, one.moment), "touches")} (${strategy.contact_kind[contact] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
+      one.append(element("span", `${both(...namesOf(this.recording, strategy, one.moment), contactVerb(strategy, contact))} (${strategy.contact_kind[contact] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
         element("span", `t = ${timeOf(strategy, one.moment).toFixed(4)}`, "when"));
       rows.push(one);
     }
     const left = strategy.contacts[interval] - rows.length;
-    if (left > 0) rows.push(element("p", `and ${many(left, "more contact")}`, "one"));
+    if (left > 0) rows.push(element("p", `and ${many(left, `more ${contactWord(strategy)}`)}`, "one"));
     row.after(...rows);
   }
 

@@ -1,6 +1,6 @@
 // The colour of every triangle, by what the reader wants to tell apart.
 import { bitOf } from "./data.js";
-import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, RED, rgb, SKIN, YELLOW } from "./palette.js";
+import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, RED, rgb, SKIN, SKY, YELLOW } from "./palette.js";
 
 // Ways of colouring that change from interval to interval.
 const CHANGING = ["verdict", "cluster", "positive"];
@@ -59,7 +59,9 @@ export class Painter {
     };
     look.colourTexture.needsUpdate = true;
     if (mode === "verdict") {
-      const touched = rgb(ORANGE), crossed = rgb(CROSSED);
+      const close = rgb(SKY), touched = rgb(ORANGE), crossed = rgb(CROSSED);
+      if (strategy.close)
+        for (let t = 0; t < triangles; ++t) if (bitOf(strategy.close, triangles, interval, t)) setGlowing(t, close);
       if (strategy.contacts[interval] > 0)
         for (let t = 0; t < triangles; ++t) if (bitOf(strategy.touched, triangles, interval, t)) setGlowing(t, touched);
       for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) setGlowing(strategy.crossing[i], crossed);
@@ -118,7 +120,7 @@ export class Painter {
     return this.colourings.get(name);
   }
 
-  // In how many intervals each triangle has a feature of a contact, or crosses another at the start.
+  // In how many intervals each triangle has a feature of a contact or of a close pair, or crosses another at the start.
   oftenTouched(strategy) {
     if (!strategy.often) {
       const { triangles } = this.recording.clip;
@@ -126,7 +128,7 @@ export class Painter {
       for (let i = 0; i < strategy.verdict.length; ++i) {
         if (strategy.verdict[i] === 0) continue;
         const crossing = new Set(strategy.crossing.subarray(2 * strategy.crossingOffset[i], 2 * strategy.crossingOffset[i + 1]));
-        for (let t = 0; t < triangles; ++t) strategy.often[t] += bitOf(strategy.touched, triangles, i, t) || crossing.has(t) ? 1 : 0;
+        for (let t = 0; t < triangles; ++t) strategy.often[t] += bitOf(strategy.touched, triangles, i, t) || (strategy.close && bitOf(strategy.close, triangles, i, t)) || crossing.has(t) ? 1 : 0;
       }
     }
     return strategy.often;

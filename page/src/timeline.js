@@ -1,6 +1,6 @@
 // The bar under the slider: one column for each interval, as high as there are contacts, with the worst moments marked.
-import { ORANGE, RED, YELLOW } from "./palette.js";
-import { momentOf } from "./words.js";
+import { ORANGE, RED, SKY, YELLOW } from "./palette.js";
+import { CLOSE, momentOf } from "./words.js";
 
 export class Timeline {
   constructor(canvas, recording, seek) {
@@ -62,7 +62,7 @@ export class Timeline {
     for (let i = 0; i < n; ++i) {
       const verdict = strategy.verdict[i];
       if (verdict === 0) continue;
-      context.fillStyle = verdict === 2 ? RED : verdict === 1 ? ORANGE : YELLOW;
+      context.fillStyle = verdict === 2 ? RED : verdict === 1 ? ORANGE : verdict === CLOSE ? SKY : YELLOW;
       const h = Math.max(4, (amount(i) / most) * (bottom - top));
       context.fillRect(x(i), bottom - h, Math.max(1.5, x(i + 1) - x(i) - 0.3), h);
     }

@@ -1,8 +1,15 @@
 // What the page says in words.
-export const VERDICTS = ["clear", "touches", "crosses itself at its start", "undecided"];
+export const VERDICTS = ["clear", "touches", "crosses itself at its start", "undecided", "close"];
+
+export const CLOSE = 4;
+// What a contact is called: with a thickness, it is a pair that comes close.
+export const contactWord = (strategy) => (strategy.close ? "close pair" : "contact");
+// What the features of a contact do.
+export const contactVerb = (strategy, contact) => (contact === undefined || !strategy.close || strategy.contact_touches[contact] ? "touches" : "comes close to");
 
 // Before a verdict, by the summary of its answers.
-export const markOf = (summary) => (summary.touches + summary.intersects_at_start > 0 ? "\u2716" : summary.undecided > 0 ? "?" : "\u2714");
+export const isBad = (summary) => summary.touches + summary.intersects_at_start + (summary.close || 0) > 0;
+export const markOf = (summary) => (isBad(summary) ? "\u2716" : summary.undecided > 0 ? "?" : "\u2714");
 
 const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
 export const many = (count, one) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;

@@ -7,13 +7,15 @@
 namespace cscd::bench {
 namespace {
 
-IntervalVerdict verdict_of(const StepAnswer& answer) {
+IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
-  if (answer.time()) return IntervalVerdict::touches;
+  if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
+  if (answer.time()) return IntervalVerdict::close;
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
 }
 
-AnswerOptions with_ignored(AnswerOptions options, const Input& input) {
+AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
+  options.thickness = input.thickness.thickness();
   options.ignored = input.ignored ? &input.ignored->triangles : nullptr;
   return options;
 }
@@ -30,6 +32,8 @@ std::string_view to_string(IntervalVerdict verdict) {
       return "intersects_at_start";
     case IntervalVerdict::undecided:
       return "undecided";
+    case IntervalVerdict::close:
+      return "close";
   }
   return "";
 }
@@ -37,8 +41,18 @@ std::string_view to_string(IntervalVerdict verdict) {
 Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                    const AnswerOptions& options)
     : input_(input),
+      elementary_(elementary),
       session_(input.name, input.setup(elementary), strategy, complete_fallback(), input.rest(),
-               with_ignored(options, input)) {}
+               as_input_says(options, input)) {}
+
+void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const {
+  for (const Contact& close : answer.found.contacts) {
+    if (close.verdict != Verdict::contact) continue;
+    answer.close_at_start += close.time == 0;
+    const Answer touch = ask(elementary_, input_.mesh, motion, close.pair);
+    if (touch.verdict == Verdict::contact) answer.touching.emplace(close.pair, touch.time);
+  }
+}
 
 IntervalAnswer Answerer::answer(std::size_t index) {
   IntervalAnswer answer;
@@ -47,7 +61,9 @@ IntervalAnswer Answerer::answer(std::size_t index) {
   const scenes::ClipInterval interval = input_.clip->load(index);
   answer.load_ms = loading.milliseconds();
   session_.step(interval.motion, interval.bones ? &*interval.bones : nullptr, answer);
-  answer.verdict = verdict_of(answer);
+  const bool is_thick = input_.thickness.length > 0;
+  if (is_thick) tell_touching_from_close(interval.motion, answer);
+  answer.verdict = verdict_of(answer, is_thick);
   return answer;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string_view>
 
 #include "bench/query/input/input.h"
@@ -11,7 +12,8 @@ enum class IntervalVerdict {
   clear,                // nothing crosses at the start, and nothing touches
   touches,              // nothing crosses at the start, and something touches
   intersects_at_start,  // triangles cross at the start
-  undecided  // nothing crosses, and an inexact elementary test could not tell whether something touches
+  undecided,  // nothing crosses, and an inexact elementary test could not tell whether something touches
+  close       // nothing crosses or touches, and something comes within the thickness
 };
 std::string_view to_string(IntervalVerdict verdict);
 
@@ -20,6 +22,10 @@ struct IntervalAnswer : StepAnswer {
   std::size_t index = 0;
   IntervalVerdict verdict = IntervalVerdict::clear;
   double load_ms = 0;  // what it took to read both frames, outside of `wall_ms`
+  // With a thickness, contacts are close pairs. `touching` holds the earliest times at which those of them
+  // touch that do. `close_at_start` counts those that are close when the interval starts.
+  std::map<FeaturePair, double> touching;
+  std::size_t close_at_start = 0;
 };
 
 using AnswerOptions = SessionOptions;
@@ -46,7 +52,10 @@ class Answerer {
   int threads() const { return session_.threads(); }
 
  private:
+  void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
+
   Input& input_;
+  const ElementaryTest& elementary_;
   Session session_;
 };
 

@@ -69,6 +69,28 @@ json side_json(const Input& input, const SurfaceNames& names, const FeaturePair&
   return out;
 }
 
+// What was asked of distances.
+json thickness_json(const ClipAnswer& answer) {
+  const InputThickness& own = answer.input.thickness;
+  const auto length = [&](const WrittenLength& written) {
+    return json{{"asked", written.text}, {"length", written.length(own.edge)}};
+  };
+  json out = length(own.asked.thickness), near;
+  if (own.asked.near_rest.number > 0) near = length(own.asked.near_rest);
+  out["mean_edge"] = own.edge;
+  out["left_out"] = nullptr;
+  if (own.left_out)
+    out["left_out"] = {{"rings", own.asked.rings},
+                       {"near_rest", std::move(near)},
+                       {"close_at_rest", answer.close_at_rest},
+                       {"left_out_at_rest", answer.left_out_at_rest}};
+  return out;
+}
+
+bool asks_distances(const Input& input) {
+  return input.thickness.length > 0 || input.thickness.left_out != nullptr;
+}
+
 json contact_json(const Input& input, const SurfaceNames& names, const Contact& contact,
                   const Motion& motion) {
   json vertices = json::array();
@@ -104,10 +126,15 @@ json moment_json(const Input& input, const ClipMoment& moment) {
 json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::size_t most_start_pairs) {
   const Input& input = clip.input;
   const Motion motion = input.clip->load(answer.index).motion;
+  const bool is_thick = input.thickness.length > 0;
   json contacts = json::array(), undecided = json::array(), start_pairs = json::array(), collides;
-  for (const Contact& contact : answer.found.contacts)
-    (contact.verdict == Verdict::contact ? contacts : undecided)
-        .push_back(contact_json(input, clip.names, contact, motion));
+  for (const Contact& contact : answer.found.contacts) {
+    json& list = contact.verdict == Verdict::contact ? contacts : undecided;
+    list.push_back(contact_json(input, clip.names, contact, motion));
+    if (!is_thick || &list != &contacts) continue;
+    const auto touch = answer.touching.find(contact.pair);
+    list.back()["touch_time"] = touch == answer.touching.end() ? json() : json(touch->second);
+  }
   for (std::size_t i = 0; i < std::min(most_start_pairs, answer.start.pairs.size()); ++i)
     start_pairs.push_back({number(answer.start.pairs[i].first), number(answer.start.pairs[i].second)});
   if (answer.verdict != IntervalVerdict::undecided) collides = answer.verdict != IntervalVerdict::clear;
@@ -131,6 +158,7 @@ json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::si
   out["ms"]["embedding"] = answer.embedding_ms;
   out["ms"]["load"] = answer.load_ms;
   out["ms"]["wall"] = answer.wall_ms;
+  if (is_thick) out["touching"] = answer.touching.size(), out["close_at_start"] = answer.close_at_start;
   const json start = moment_json(input, {answer.index, 0});
   out["frame"] = start["frame"];
   out["seconds"] = start["seconds"];
@@ -173,27 +201,33 @@ json summary_json(const ClipAnswer& answer) {
     worst["start_pairs"] = s.worst->start_pairs;
     worst["contacts"] = s.worst->contacts;
   }
-  return {{"verdict", to_string(s.verdict())},
-          {"sentence", verdict_sentence(answer)},
-          {"intervals", s.intervals()},
-          {"clear", s.count(IntervalVerdict::clear)},
-          {"touches", s.count(IntervalVerdict::touches)},
-          {"intersects_at_start", s.count(IntervalVerdict::intersects_at_start)},
-          {"undecided", s.count(IntervalVerdict::undecided)},
-          {"proven", s.proven},
-          {"ms",
-           {{"query", s.query_ms},
-            {"embedding", s.embedding_ms},
-            {"wall", s.wall_ms},
-            {"load", s.load_ms},
-            {"preparation", answer.preparation_ms}}},
-          {"with_left_out", s.with_left_out},
-          {"strategies", std::move(strategies)},
-          {"first", std::move(first)},
-          {"worst", std::move(worst)},
-          {"met", std::move(met)},
-          {"with_ignored", s.with_ignored},
-          {"ignored", std::move(ignored)}};
+  json out = {{"verdict", to_string(s.verdict())},
+              {"sentence", verdict_sentence(answer)},
+              {"intervals", s.intervals()},
+              {"clear", s.count(IntervalVerdict::clear)},
+              {"touches", s.count(IntervalVerdict::touches)},
+              {"intersects_at_start", s.count(IntervalVerdict::intersects_at_start)},
+              {"undecided", s.count(IntervalVerdict::undecided)},
+              {"proven", s.proven},
+              {"ms",
+               {{"query", s.query_ms},
+                {"embedding", s.embedding_ms},
+                {"wall", s.wall_ms},
+                {"load", s.load_ms},
+                {"preparation", answer.preparation_ms}}},
+              {"with_left_out", s.with_left_out},
+              {"strategies", std::move(strategies)},
+              {"first", std::move(first)},
+              {"worst", std::move(worst)},
+              {"met", std::move(met)},
+              {"with_ignored", s.with_ignored},
+              {"ignored", std::move(ignored)}};
+  if (answer.input.thickness.length > 0) {
+    out["close"] = s.count(IntervalVerdict::close);
+    out["close_at_start"] = s.close_at_start;
+    out["with_close_at_start"] = s.with_close_at_start;
+  }
+  return out;
 }
 
 json clip_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
@@ -205,6 +239,7 @@ json clip_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
               {"first_only", answer.first_only},      {"rest_crossings", rest_json(answer)},
               {"ignore", ignored_json(answer.input)}, {"summary", summary_json(answer)},
               {"intervals", std::move(intervals)}};
+  if (asks_distances(answer.input)) out["thickness"] = thickness_json(answer);
   if (answer.input.import) out["import"] = import_json(*answer.input.import);
   return out;
 }

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "bench/query/input/thickness.h"
+
 namespace cscd::bench {
 namespace {
 
@@ -96,11 +98,37 @@ std::string of_intervals(std::size_t count, const AnswerSummary& s) {
   return std::to_string(count) + " of " + many(s.intervals(), "interval");
 }
 
+// "0.2e (0.0134)", or "0.01".
+std::string length_text(const WrittenLength& written, double edge) {
+  return written.text + (written.in_edges ? " (" + number(written.length(edge)) + ")" : "");
+}
+
+// "thickness 0.2e (0.0134); 1200 of 1234 pairs of features that are this close at rest are left out
+// (--exclude-rings 2)". Empty where nothing of this was asked.
+std::string thickness_text(const ClipAnswer& answer) {
+  const InputThickness& own = answer.input.thickness;
+  const bool is_thick = own.length > 0;
+  std::string out = is_thick ? "thickness " + length_text(own.asked.thickness, own.edge) : "";
+  if (const AnswerSummary& s = answer.summary; s.close_at_start > 0)
+    out += "; " + many(s.close_at_start, "pair") + " of features " + (s.close_at_start == 1 ? "is" : "are") +
+           " this close at the start of " + many(s.with_close_at_start, "interval");
+  if (!own.left_out) return out;
+  out += (is_thick ? "; " : "") + std::to_string(answer.left_out_at_rest) + " of " +
+         many(answer.close_at_rest, "pair") + " of features that " + (is_thick ? "are this close" : "touch") +
+         " at rest are left out (";
+  if (own.asked.rings > 0) out += "--exclude-rings " + std::to_string(own.asked.rings);
+  if (own.asked.near_rest.number > 0)
+    out += (own.asked.rings > 0 ? ", --exclude-near-rest " : "--exclude-near-rest ") +
+           length_text(own.asked.near_rest, own.edge);
+  return out + ")";
+}
+
 // The predicate of a verdict: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
   const AnswerSummary& s = answer.summary;
-  const std::size_t touch = s.count(IntervalVerdict::touches),
+  const bool is_thick = input.thickness.length > 0;
+  const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
                     cross = s.count(IntervalVerdict::intersects_at_start),
                     undecided = s.count(IntervalVerdict::undecided);
   if (!collides(s.verdict())) {
@@ -113,31 +141,41 @@ std::string verdict_predicate(const ClipAnswer& answer) {
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
-    return s.moves ? "does not touch itself" + frames + apart
-                   : "does not move" + frames + ", and does not touch itself" + apart;
+    const std::string clear =
+        is_thick ? "does not come within " + input.thickness.asked.thickness.text + " of itself"
+                 : "does not touch itself";
+    return s.moves ? clear + frames + apart : "does not move" + frames + ", and " + clear + apart;
   }
   std::string text;
   if (cross > 0) text = "crosses itself at the start of " + of_intervals(cross, s);
   if (touch > 0)
     text += cross > 0 ? " and touches itself in " + std::to_string(touch) + " more"
                       : "touches itself in " + of_intervals(touch, s);
+  if (close > 0)
+    text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
+            " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
   const AnswerSummary::Meeting& first = *s.first;
   return text + ", first at " + moment_text(input, first.moment) + ": " +
-         meeting_text(first.names, first.crosses ? "crosses" : "touches");
+         meeting_text(first.names, first.crosses ? "crosses"
+                                   : is_thick    ? "comes close to"
+                                                 : "touches");
 }
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
-  std::string counts, worst, met, ignored, rest, proven, rate, choice;
+  std::string counts, thickness, worst, met, ignored, rest, proven, rate, choice;
 };
 
 Sentences sentences(const ClipAnswer& answer) {
   const Input& input = answer.input;
   const AnswerSummary& s = answer.summary;
   Sentences out;
-  out.counts = many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) +
-               " clear, " + std::to_string(s.count(IntervalVerdict::touches)) + " touch, " +
-               std::to_string(s.count(IntervalVerdict::intersects_at_start)) + " cross at their start";
+  out.thickness = thickness_text(answer);
+  out.counts =
+      many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) + " clear, " +
+      (input.thickness.length > 0 ? std::to_string(s.count(IntervalVerdict::close)) + " close, " : "") +
+      std::to_string(s.count(IntervalVerdict::touches)) + " touch, " +
+      std::to_string(s.count(IntervalVerdict::intersects_at_start)) + " cross at their start";
   if (s.count(IntervalVerdict::undecided) > 0)
     out.counts += ", " + std::to_string(s.count(IntervalVerdict::undecided)) + " undecided";
   if (s.worst) {
@@ -145,7 +183,7 @@ Sentences sentences(const ClipAnswer& answer) {
                 moment_text(input, {s.worst->moment.interval, 0}) + ": ";
     if (s.worst->start_pairs > 0)
       out.worst += many(s.worst->start_pairs, "pair") + " of triangles cross at its start, and ";
-    out.worst += many(s.worst->contacts, "contact");
+    out.worst += many(s.worst->contacts, input.thickness.length > 0 ? "close pair" : "contact");
   }
   if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
   if (input.ignored) out.ignored = ignored_text(input, s);
@@ -187,7 +225,7 @@ std::string clip_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out = verdict_sentence(answer) + "\n";
   for (const std::string* line :
-       {&said.counts, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
+       {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
          number(s.embedding_ms) + " to know what crosses at the starts; " + number(answer.preparation_ms) +
@@ -197,8 +235,8 @@ std::string clip_text(const ClipAnswer& answer) {
 std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
-  for (const std::string* sentence :
-       {&said.counts, &said.worst, &said.ignored, &said.rest, &said.proven, &said.rate, &said.choice}) {
+  for (const std::string* sentence : {&said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest,
+                                      &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

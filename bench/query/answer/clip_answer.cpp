@@ -51,6 +51,8 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   ++strategies[std::string(answer.strategy->name)];
   proven += answer.proven;
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
+  close_at_start += answer.close_at_start;
+  with_close_at_start += answer.close_at_start > 0;
   add_ignored(answer, names);
   embedding_ms += answer.embedding_ms;
   query_ms += answer.report.ms.total();
@@ -96,8 +98,8 @@ void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames
 }
 
 IntervalVerdict AnswerSummary::verdict() const {
-  for (const IntervalVerdict worst :
-       {IntervalVerdict::intersects_at_start, IntervalVerdict::touches, IntervalVerdict::undecided})
+  for (const IntervalVerdict worst : {IntervalVerdict::intersects_at_start, IntervalVerdict::touches,
+                                      IntervalVerdict::close, IntervalVerdict::undecided})
     if (count(worst) > 0) return worst;
   return IntervalVerdict::clear;
 }
@@ -105,15 +107,24 @@ IntervalVerdict AnswerSummary::verdict() const {
 ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,
                            const ElementaryTest& elementary, const AnswerOptions& options,
                            const Answerer& answerer) {
-  return {input,
-          names,
-          strategy,
-          elementary,
-          options.first,
-          !options.keep_rest_crossings,
-          answerer.threads(),
-          answerer.preparation_ms(),
-          answerer.rest_crossings()};
+  ClipAnswer out{input,
+                 names,
+                 strategy,
+                 elementary,
+                 options.first,
+                 !options.keep_rest_crossings,
+                 answerer.threads(),
+                 answerer.preparation_ms(),
+                 answerer.rest_crossings()};
+  if (const Exclusions* const left_out = input.thickness.left_out.get()) {
+    const ContactSet close = close_at_rest(input);
+    out.close_at_rest = close.contacts.size();
+    out.left_out_at_rest =
+        static_cast<std::size_t>(std::ranges::count_if(close.contacts, [&](const Contact& contact) {
+          return left_out->excludes(input.mesh, contact.pair);
+        }));
+  }
+  return out;
 }
 
 }  // namespace cscd::bench

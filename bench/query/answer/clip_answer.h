@@ -28,7 +28,7 @@ std::optional<double> second_of(const Input& input, const ClipMoment& moment);
 
 // Sums up the answers to the intervals of a clip.
 struct AnswerSummary {
-  std::array<std::size_t, 4> verdicts{};          // by IntervalVerdict
+  std::array<std::size_t, 5> verdicts{};          // by IntervalVerdict
   std::map<std::string, std::size_t> strategies;  // how many intervals each answered
   std::size_t proven = 0;
   std::size_t with_left_out = 0;                // intervals from which something was left out
@@ -56,6 +56,8 @@ struct AnswerSummary {
   };
   std::map<NamePair, IgnoredHere> ignored;
   std::size_t with_ignored = 0;  // intervals in which something is
+  // With a thickness: pairs that are close at the starts of intervals, and the number of such intervals.
+  std::size_t close_at_start = 0, with_close_at_start = 0;
   double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0;
 
   std::size_t intervals() const;
@@ -69,9 +71,9 @@ struct AnswerSummary {
   void add_ignored(const IntervalAnswer& answer, const SurfaceNames& names);
 };
 
-// Whether anything touches or crosses.
+// Whether anything touches, crosses, or comes within the thickness.
 constexpr bool collides(IntervalVerdict verdict) {
-  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
+  return verdict != IntervalVerdict::clear && verdict != IntervalVerdict::undecided;
 }
 
 // What one strategy answers to a clip, or to some intervals of it. Texts (answer_text.h) and JSON
@@ -85,6 +87,9 @@ struct ClipAnswer {
   int threads = 1;
   double preparation_ms = 0;
   Crossings rest = {};  // what crosses at rest
+  // Pairs of features that are close at rest, and those of them that are left out by InputThickness; counted
+  // only where some may be.
+  std::size_t close_at_rest = 0, left_out_at_rest = 0;
   AnswerSummary summary = {};
   std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
 };

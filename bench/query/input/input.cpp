@@ -182,6 +182,7 @@ bool allows(const Input& input, const Strategy& strategy) {
 
 const Strategy& default_strategy(const Input& input, bool first) {
   const Strategy* chosen = &complete_fallback();
+  if (input.thickness.left_out) return *chosen;
   const Guarantee wanted = first ? Guarantee::first_contact : Guarantee::all_from_embedded;
   for (const Strategy* strategy : strategies_in(""))
     if (strategy->guarantee == wanted && allows(input, *strategy)) chosen = strategy;

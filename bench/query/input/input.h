@@ -11,7 +11,9 @@
 
 #include "bench/query/input/import.h"
 #include "bench/query/input/outside_truth.h"
+#include "bench/query/input/thickness.h"
 #include "core/detect/exclusions.h"
+#include "core/detect/step.h"
 #include "core/detect/strategy.h"
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
@@ -50,6 +52,7 @@ struct Input {
   Up up = {};
   std::shared_ptr<const Ignored> ignored = nullptr;     // null where nothing is
   std::shared_ptr<const OutsideTruth> truth = nullptr;  // null where none is to be held against
+  InputThickness thickness = {};
 
   // In which crossing triangles are how the surface is made: the clip's pose at rest, or else frame 0.
   std::span<const Vec3> rest() const {
@@ -57,11 +60,18 @@ struct Input {
     return named.empty() ? std::span<const Vec3>(reference) : std::span<const Vec3>(named);
   }
 
+  // An interval as a detector is asked about it.
+  Step step(const scenes::ClipInterval& interval) const {
+    return {.motion = interval.motion,
+            .bones = interval.bones ? &*interval.bones : nullptr,
+            .thickness = thickness.thickness()};
+  }
+
   StrategyInput setup(const ElementaryTest& elementary, bool first_only = false,
                       Pipeline pipeline = Pipeline::vectorised) const {
-    return {mesh,       reference, rig && use_bones ? &*rig : nullptr,
-            elementary, threads,   first_only,
-            nullptr,    pipeline,  preparation};
+    return {mesh,       reference,  rig && use_bones ? &*rig : nullptr, elementary,
+            threads,    first_only, thickness.left_out.get(),           pipeline,
+            preparation};
   }
 };
 
@@ -94,7 +104,7 @@ bool allows(const Input& input, const Strategy& strategy);
 
 // What answers where no strategy is named: a row that promises the first contact alone if `first` says that
 // no other is asked for, otherwise one that promises all of them. The last such row without a group that the
-// input allows, or else the complete fallback.
+// input allows, or else the complete fallback, as where pairs are left out by InputThickness.
 const Strategy& default_strategy(const Input& input, bool first);
 
 }  // namespace cscd::bench

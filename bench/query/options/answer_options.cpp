@@ -30,6 +30,7 @@ void add_answer_options(CLI::App& command, AnswerRequest& request) {
                   "seconds after which an interval is given up; default 60 for model files, else none")
       ->check(CLI::Range(0.01, 1e6));
   add_ignore_options(command, request.ignored);
+  add_thickness_options(command, request.thickness);
   add_threads_option(command, request.threads);
   add_model_options(command, request.model);
 }
@@ -48,8 +49,36 @@ void add_ignore_options(CLI::App& command, IgnoreRequest& request) {
       ->check(CLI::Range(0, 1000));
 }
 
+void add_thickness_option(CLI::App& command, ThicknessRequest& request) {
+  command
+      .add_option_function<std::string>(
+          "--thickness",
+          [&request](const std::string& text) { request.thickness = parse_length("--thickness", text); },
+          "what comes this near counts: a length such as 0.01, or 0.2e for mean edges of the pose at rest")
+      ->type_name("R");
+}
+
+void add_thickness_options(CLI::App& command, ThicknessRequest& request) {
+  add_thickness_option(command, request);
+  command
+      .add_option(
+          "--exclude-rings", request.rings,
+          "vertices that at most so many edges join do not collide; a pair of features is left out if\n"
+          "all its vertices are so near")
+      ->check(CLI::Range(0, 1000));
+  command
+      .add_option_function<std::string>(
+          "--exclude-near-rest",
+          [&request](const std::string& text) {
+            request.near_rest = parse_length("--exclude-near-rest", text);
+          },
+          "nor do vertices that are nearer than this at rest; a length as for --thickness")
+      ->type_name("R");
+}
+
 void require_sound(const AnswerRequest& request) {
   const ElementaryTest& elementary = elementary_test_named(request.elementary);
+  require_fit(request.thickness, elementary);
   // With --first, the time up to which pairs are looked at has to be right.
   if (request.answers.first && (!elementary.apart_is_proof || !elementary.contact_is_proof))
     throw InputError("--first: elementary test '" + std::string(elementary.name) +

@@ -6,6 +6,7 @@
 
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/ignore.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/input/watchdog.h"
 #include "bench/query/options/model_options.h"
 
@@ -16,6 +17,7 @@ struct AnswerRequest {
   std::string input, elementary = "filtered_exact", frames;
   AnswerOptions answers;
   IgnoreRequest ignored;
+  ThicknessRequest thickness;
   std::optional<double> interval_seconds;
   int threads = 1;
   ModelOptions model;
@@ -26,6 +28,11 @@ void add_answer_options(CLI::App& command, AnswerRequest& request);
 
 // --ignore and --ignore-neighbours. `request` must live as long as the command.
 void add_ignore_options(CLI::App& command, IgnoreRequest& request);
+
+// --thickness, --exclude-rings and --exclude-near-rest. `request` must live as long as the command.
+void add_thickness_options(CLI::App& command, ThicknessRequest& request);
+// --thickness alone.
+void add_thickness_option(CLI::App& command, ThicknessRequest& request);
 
 // Throws InputError where options do not go together.
 void require_sound(const AnswerRequest& request);

@@ -92,16 +92,19 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
   tests_.push_back(count(answer.report.pairs.elementary_tests));
 
   std::uint32_t contacts = 0, kept = 0;
-  std::vector<bool> touched(answer_.input.mesh.triangle_count());
+  std::vector<bool> touched(answer_.input.mesh.triangle_count()), close(touched);
   for (const Contact& contact : answer.found.contacts) {
     if (contact.verdict != Verdict::contact) continue;
     ++contacts;
-    mark_touched(answer_.input.mesh, contact.pair, touched);
+    const bool touches = !is_thick() || answer.touching.contains(contact.pair);
+    mark_touched(answer_.input.mesh, contact.pair, touches ? touched : close);
     if (kept == kMostContacts) continue;
     ++kept;
     add_contact(contact, interval.motion, places);
+    touches_.push_back(touches);
   }
   touched_.append(touched);
+  close_.append(close);
   contacts_.push_back(contacts);
   kept_contacts_.push_back(kept);
   undecided_.push_back(count(answer.found.contacts.size()) - contacts);
@@ -142,7 +145,8 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
   ContactSet ignored;
   prepared_.detector->forget();
   const Rig::Interval* bones = interval.bones && answer_.input.use_bones ? &*interval.bones : nullptr;
-  const Report report = prepared_.detector->detect({interval.motion, bones}, ignored);
+  const Report report = prepared_.detector->detect(
+      {.motion = interval.motion, .bones = bones, .thickness = answer_.input.thickness.thickness()}, ignored);
   const RadialView view = prepared_.detector->radial_view();
   clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
 
@@ -191,6 +195,7 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix) con
   put("contact_place", place_);
   put("crossing", crossing_);
   put("touched", touched_.bytes());
+  if (is_thick()) put("close", close_.bytes()), put("contact_touches", touches_);
   if (has_clusters()) {
     std::vector<std::uint16_t> atomic(prepared_.preparation.atomic_cluster.begin(),
                                       prepared_.preparation.atomic_cluster.end());

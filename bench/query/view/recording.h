@@ -77,6 +77,7 @@ class StrategyRecording {
 
  private:
   void add_contact(const Contact& contact, const Motion& motion, TextTable& places);
+  bool is_thick() const { return answer_.input.thickness.length > 0; }
   void add_view(const scenes::ClipInterval& interval);
 
   ClipAnswer answer_;
@@ -90,14 +91,18 @@ class StrategyRecording {
   std::vector<std::uint32_t> contacts_, undecided_, start_pairs_, pairs_, tests_, clusters_, kept_contacts_,
       kept_pairs_;
   // [contacts], several numbers each
-  std::vector<std::uint8_t> kind_;                // 0 vertex and face, 1 two edges
-  std::vector<std::uint16_t> time_in_;            // in the interval, of 65535
-  std::vector<std::uint16_t> along_first_;        // where the point lies on the first edge, of 65535
-  std::vector<std::int8_t> normal_;               // x, y, z of 127; zeros where there is none
-  std::vector<std::int32_t> vertex_;              // vertex and corners of the face, or the ends of both edges
-  std::vector<std::uint16_t> place_;              // of both sides
-  std::vector<std::int32_t> crossing_;            // [crossing pairs][2]: triangles
-  ViewBits touched_, positive_;                   // [intervals][triangles]
+  std::vector<std::uint8_t> kind_;          // 0 vertex and face, 1 two edges
+  std::vector<std::uint16_t> time_in_;      // in the interval, of 65535
+  std::vector<std::uint16_t> along_first_;  // where the point lies on the first edge, of 65535
+  std::vector<std::int8_t> normal_;         // x, y, z of 127; zeros where there is none
+  std::vector<std::int32_t> vertex_;        // vertex and corners of the face, or the ends of both edges
+  std::vector<std::uint16_t> place_;        // of both sides
+  std::vector<std::int32_t> crossing_;      // [crossing pairs][2]: triangles
+  ViewBits touched_, positive_;             // [intervals][triangles]
+  // With a thickness: which triangles have a feature of a pair that is close and does not touch, and which of
+  // the contacts touch.
+  ViewBits close_;
+  std::vector<std::uint8_t> touches_;
   std::vector<std::uint16_t> cluster_of_atomic_;  // [intervals][atomic clusters]
   std::vector<ObserverRecording> observers_;      // [covers in use]
   // The same in every interval: clusters of the covers behind the first, and patches.
