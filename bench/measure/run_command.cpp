@@ -30,6 +30,7 @@ constexpr char kAllScenes[] = "all";
 struct RunOptions {
   ReplayRequest request;
   IgnoreRequest ignored;
+  ThicknessRequest thickness;
   std::string output;
   bool force = false, counts = false;
   // Where results of cells are kept. Without a folder, the run is not divided.
@@ -81,14 +82,18 @@ void print(const VerificationRecord& v, const std::string& timed) {
       count(v.accuracy.undecided), v.accuracy.largest_time_error);
 }
 
-// Names the strategies that would have run if nothing were ignored.
-void say_who_cannot_ignore(const Input& input, const ReplayRequest& request) {
+// Names the strategies that would have run if nothing were ignored and nothing but touching counted.
+void say_who_is_left_out(const Input& input, const ReplayRequest& request) {
   const std::vector<std::string> groups =
       request.strategies.empty() ? std::vector<std::string>{""} : request.strategies;
   for (const std::string& group : groups)
     for (const Strategy* strategy : strategies_in(group))
-      if (const auto reason = why_not_ignoring(input, *strategy); reason && allows(input, *strategy))
-        std::printf("without %s: %s\n", std::string(strategy->name).c_str(), reason->c_str());
+      if (allows(input, *strategy)) {
+        const std::string distance = why_not_within(input.thickness.asked, *strategy);
+        const std::string reason = why_not_ignoring(input, *strategy).value_or(distance);
+        if (!reason.empty())
+          std::printf("without %s: %s\n", std::string(strategy->name).c_str(), reason.c_str());
+      }
 }
 
 // Truth from outside is a gate. Whatever would have to be left out of it is refused.
@@ -99,9 +104,10 @@ void read_truth(Input& input) {
   if (const std::size_t intervals = input.clip->interval_count(); intervals != 1)
     throw InputError("truth " + input.truth->file + ": is of one step, and " + input.name + " has " +
                      std::to_string(intervals) + "; move the table away, or give a cache of two frames");
-  if (input.ignored)
-    throw InputError("--ignore: " + input.truth->file + " beside " + input.name +
-                     " judges all contacts; move the table away, or ignore nothing");
+  if (input.ignored || input.thickness.left_out || input.thickness.length > 0)
+    throw InputError("--ignore, --thickness: " + input.truth->file + " beside " + input.name +
+                     " judges everything that touches, and that alone; move the table away, or leave these "
+                     "options out");
 }
 
 Input open(const RunOptions& options, const ReplayRequest& request) {
@@ -109,8 +115,9 @@ Input open(const RunOptions& options, const ReplayRequest& request) {
   say_what_was_read(input, stdout);
   input.threads = request.threads;
   ignore(input, options.ignored);
+  set_thickness(input, options.thickness, true);
   read_truth(input);
-  say_who_cannot_ignore(input, request);
+  say_who_is_left_out(input, request);
   return input;
 }
 
@@ -201,6 +208,7 @@ void run(const RunOptions& options) {
   const bool is_worker = !options.worker.empty();
   if (options.output.empty() && !is_worker) throw CLI::RequiredError("--json");
   require_sound(options.request);  // before anything is opened
+  require_fit(options.thickness, elementary_test_named(options.request.elementary));
   if (!options.cells.empty()) make_folder(options.cells, "--cells");
   if (is_worker) {
     if (!work(options)) throw kVerificationFailed;
@@ -289,6 +297,7 @@ void add_run(CLI::App& app) {
       "triangles, a thousand million of them on the rope at every interval, and the ablation.");
   add_replay_options(*command, options->request);
   add_ignore_options(*command, options->ignored);
+  add_thickness_options(*command, options->thickness);
   command->add_option(
       "--json", options->output,
       "where the record goes, - is standard output; with --scene all or a folder, the folder of the records");

@@ -222,6 +222,7 @@ ordered_json to_json(const Record& record) {
                       {"verification", to_json(record.verification)},
                       {"strategies", std::move(strategies)}};
   if (record.processes > 1) out["processes"] = record.processes;
+  if (record.thickness > 0) out["thickness"] = record.thickness;
   return out;
 }
 
@@ -242,9 +243,11 @@ Record parse_record(const std::string& text, const std::string& where) {
     for (const ordered_json& effect : scene.at("effects"))
       out.scene.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
     out.scene.path = scene.value("path", "");
+    out.thickness = document.value("thickness", 0.0);
     // Older records have the path in place of the name.
-    if (out.scene.path.empty() && (out.scene.name.find('/') != std::string::npos ||
-                                   std::filesystem::path(out.scene.name).has_extension())) {
+    if (out.scene.path.empty() && out.thickness == 0 &&
+        (out.scene.name.find('/') != std::string::npos ||
+         std::filesystem::path(out.scene.name).has_extension())) {
       out.scene.path = out.scene.name;
       out.scene.name = scenes::plain_name(out.scene.path);
     }

@@ -83,10 +83,12 @@ struct TruthRecord {
 };
 
 struct VerificationRecord {
-  std::string reference, elementary;    // the complete strategy and the exact test
-  std::vector<std::size_t> intervals;   // those verified
-  std::vector<std::size_t> unembedded;  // those of them whose start is not embedded
-  std::vector<std::size_t> colliding;   // those of them on which the reference found a contact
+  std::string reference, elementary;   // the complete strategy and the exact test
+  std::vector<std::size_t> intervals;  // those verified
+  // Those of them whose start is not embedded, or with a thickness, not clear: nothing is then promised by
+  // rows that promise the first contact, or all from an embedded start.
+  std::vector<std::size_t> unembedded;
+  std::vector<std::size_t> colliding;  // those of them on which the reference found a contact
   // Verified intervals on which the answers of two rows had differed when all counted intervals were answered
   // with the timed elementary test.
   std::vector<std::size_t> disagreeing;
@@ -118,9 +120,10 @@ struct Record {
   std::vector<std::string> command;
   std::uint64_t seed = 0;
   SceneRecord scene;
-  Pipeline pipeline = Pipeline::vectorised;    // older records do not say
-  std::string elementary;                      // the timed one
-  std::size_t intervals = 0;                   // that the command spans
+  Pipeline pipeline = Pipeline::vectorised;  // older records do not say
+  double thickness = 0;                      // length within which features count as contacts; 0 for touching
+  std::string elementary;                    // the timed one
+  std::size_t intervals = 0;                 // that the command spans
   std::vector<std::size_t> counted_intervals;  // those of them that have counters and digests, ascending
   std::vector<std::size_t> timed_intervals;    // those of these that were timed, ascending
   VerificationRecord verification;

@@ -22,7 +22,8 @@ StrategyInput measured_setup(const Input& input, const Strategy& strategy, const
                              bool first_only, Pipeline pipeline) {
   StrategyInput setup =
       setup_for(strategy, input.setup(elementary, first_only, pipeline), input.clip->interval_count());
-  if (input.ignored) setup.exclusions = &input.ignored->triangles;
+  // What is left out by distance includes what is ignored.
+  if (input.ignored && !input.thickness.left_out) setup.exclusions = &input.ignored->triangles;
   return setup;
 }
 
@@ -68,7 +69,9 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
     if (std::ranges::find(chosen, row) == chosen.end()) chosen.push_back(row);
   };
   const auto add_of_group = [&](const StrategyRow& row) {
-    if (has(row) && allows(input, *row.strategy) && !why_not_ignoring(input, *row.strategy)) add(row);
+    if (has(row) && allows(input, *row.strategy) && !why_not_ignoring(input, *row.strategy) &&
+        why_not_within(input.thickness.asked, *row.strategy).empty())
+      add(row);
   };
   if (texts.empty())
     for (const Strategy* strategy : strategies_in("")) add_of_group({strategy});
@@ -82,6 +85,7 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
         throw InputError("strategy " + text +
                          " is not of the paper, so the pipeline published does not have it; leave it out, or "
                          "run it with --pipeline today");
+      require_fit(input.thickness.asked, *row.strategy);
       if (const auto reason = why_not_ignoring(input, *row.strategy))
         throw InputError("strategy " + text + " cannot leave out what is ignored: " + *reason +
                          "; leave the strategy out, or --ignore and --ignore-neighbours");
@@ -90,13 +94,13 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
   return chosen;
 }
 
-void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval) {
+void lead_up(const Strategy& strategy, Detector& detector, Input& input, std::size_t interval) {
   if (strategy.kind != StrategyKind::adaptive) return;
   detector.forget();
   ContactSet ignored;
   for (std::size_t i = interval - std::min(interval, kLead); i < interval; ++i) {
-    const scenes::ClipInterval before = clip.load(i);
-    detector.detect({before.motion, before.bones ? &*before.bones : nullptr}, ignored);
+    const scenes::ClipInterval before = input.clip->load(i);
+    detector.detect(input.step(before), ignored);
   }
 }
 

@@ -37,9 +37,9 @@ std::vector<Contestant> make_contestants(const Input& input, std::span<const Str
 std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& strategy);
 
 // Rows by the texts that rows_called() reads; of a group, those that the input allows; without texts, those
-// without a group that it allows. Rows that the pipeline does not have, or that cannot leave out what the
-// input ignores, are left out of groups. Throws InputError for a name that is not known, and for a row that
-// is named and would be left out of a group.
+// without a group that it allows. Rows that the pipeline does not have, that cannot leave out what the
+// input ignores, or that do not know its thickness, are left out of groups. Throws InputError for a name that
+// is not known, and for a row that is named and would be left out of a group.
 std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::string> texts,
                                      Pipeline pipeline = Pipeline::vectorised);
 
@@ -51,6 +51,6 @@ inline constexpr std::size_t kLead = 24;
 
 // Warms up strategies that adapt to the surface (Strategy::follows), and does nothing for the others. Load
 // the interval again afterwards, because the clip then holds another one.
-void lead_up(const Strategy& strategy, Detector& detector, scenes::ClipSource& clip, std::size_t interval);
+void lead_up(const Strategy& strategy, Detector& detector, Input& input, std::size_t interval);
 
 }  // namespace cscd::bench

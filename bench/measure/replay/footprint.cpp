@@ -77,8 +77,7 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
             {}};
   made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   ContactSet found;
-  for (int time = 0; time < 2; ++time)
-    made.prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
+  for (int time = 0; time < 2; ++time) made.prepared.detector->detect(input.step(interval), found);
   if (peak_is_ours) made.footprint.peak_bytes = growth(resident, status_bytes("VmHWM"));
   malloc_trim(0);
   made.footprint.held_bytes = growth(resident, status_bytes("VmRSS"));
@@ -97,7 +96,7 @@ Footprint measure_footprint(Input& input, const StrategyRow& row, const Elementa
     const scenes::ClipInterval interval = input.clip->load(i);
     const auto before = counter.so_far();
     if (!before) return footprint;
-    made.prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
+    made.prepared.detector->detect(input.step(interval), found);
     instructions += growth(before, counter.so_far()).value_or(0);
   }
   footprint.instructions = static_cast<double>(instructions) / static_cast<double>(intervals.size());

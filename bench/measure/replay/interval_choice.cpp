@@ -18,7 +18,7 @@ std::vector<std::size_t> intervals_with_contacts(Input& input, Detector& detecto
   ContactSet found;
   for (std::size_t i = range.first; i < range.last; ++i) {
     const scenes::ClipInterval interval = input.clip->load(i);
-    detector.detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
+    detector.detect(input.step(interval), found);
     if (!found.contacts.empty()) touching.push_back(i);
   }
   return touching;

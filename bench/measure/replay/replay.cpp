@@ -59,6 +59,10 @@ std::vector<std::string> command_line(const ReplayRequest& options, const Input&
     if (input.ignored->neighbours)
       words.insert(words.end(), {"--ignore-neighbours", std::to_string(*input.ignored->neighbours)});
   }
+  const ThicknessRequest& near = input.thickness.asked;
+  if (near.thickness.number > 0) words.insert(words.end(), {"--thickness", near.thickness.text});
+  if (near.rings > 0) words.insert(words.end(), {"--exclude-rings", std::to_string(near.rings)});
+  if (near.near_rest.number > 0) words.insert(words.end(), {"--exclude-near-rest", near.near_rest.text});
   if (input.import) {
     const std::vector<std::string> model = to_arguments(options.model.import);
     words.insert(words.end(), model.begin(), model.end());
@@ -203,6 +207,9 @@ Record execute(Input& input, const Replay& replay) {
   record.seed = replay.request.seed;
   record.pipeline = pipeline_named(replay.request.pipeline);
   record.elementary = timed.name;
+  record.thickness = input.thickness.length;
+  // Queries with a thickness are other work, which no table puts beside the scene's own.
+  if (record.thickness > 0) record.scene.name += ", thickness " + input.thickness.asked.thickness.text;
   record.intervals = replay.intervals.range.last - replay.intervals.range.first;
   record.counted_intervals = replay.intervals.counted;
   record.timed_intervals = replay.intervals.timed;

@@ -41,9 +41,8 @@ struct Answer {
 };
 
 // Sorting and digesting happen outside the detector's clock.
-Answer answer(Contestant& contestant, const scenes::ClipInterval& interval, ContactSet& found) {
-  const Report report =
-      contestant.timed->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
+Answer answer(Contestant& contestant, const Step& step, ContactSet& found) {
+  const Report report = contestant.timed->detect(step, found);
   found.sort();
   if (contestant.row.first) keep_first(found);
   const auto first = found.contacts.empty() ? std::nullopt : std::optional(found.contacts.front().time);
@@ -117,14 +116,12 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
       if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken.count(), records[c].ms, repetition);
       if (&strategy != &complete_fallback() || contestants[c].row.first) continue;
-      lead_up(strategy, *contestants[c].timed, *input.clip, i);
+      lead_up(strategy, *contestants[c].timed, input, i);
       interval = input.clip->load(i);
       stream_positions(interval.motion);
-      const Report report =
-          contestants[c].timed->detect({.motion = interval.motion,
-                                        .bones = interval.bones ? &*interval.bones : nullptr,
-                                        .crossings = &start},
-                                       found);
+      Step step = input.step(interval);
+      step.crossings = &start;
+      const Report report = contestants[c].timed->detect(step, found);
       found.sort();
       if (digest(found) != records[c].digests[place_of(i, warm_up.counted)])
         throw std::logic_error("interval " + std::to_string(i) + " of " + input.name + ": " +
@@ -169,9 +166,9 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
   for (const std::size_t i : counted) {
     scenes::ClipInterval interval = input.clip->load(i);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
-      lead_up(*contestants[c].row.strategy, *contestants[c].timed, *input.clip, i);
+      lead_up(*contestants[c].row.strategy, *contestants[c].timed, input, i);
       interval = input.clip->load(i);
-      answers[c] = answer(contestants[c], interval, found);
+      answers[c] = answer(contestants[c], input.step(interval), found);
       append_counts(answers[c].report, found, records[c].counts);
       records[c].digests.push_back(answers[c].digest);
       records[c].first_times.push_back(answers[c].first);
@@ -184,9 +181,11 @@ WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const 
       }
     }
     const auto starts_embedded = [&] {
-      const bool embedded = embedding.embedded(interval.motion.start());
-      if (!embedded) out.excused.push_back(i);
-      return embedded;
+      bool holds = embedding.embedded(interval.motion.start());
+      if (input.thickness.length > 0)  // with a thickness, promises are about clear starts
+        for (const Answer& said : answers) holds = holds && said.first != 0.0;
+      if (!holds) out.excused.push_back(i);
+      return holds;
     };
     if (!agree(contestants, answers, starts_embedded)) out.disagreeing.push_back(i);
     progress.advance();
@@ -213,7 +212,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
     for (const std::size_t i : plan.timed) {
       const std::size_t row = place_of(i, warm_up.counted);
       for (const Contestant& contestant : contestants)
-        lead_up(*contestant.row.strategy, *contestant.timed, *input.clip, i);
+        lead_up(*contestant.row.strategy, *contestant.timed, input, i);
       // A lead brings what its strategy works on into the caches, from where other strategies drive it
       // otherwise.
       if (leads) drive_from_caches();
@@ -221,7 +220,7 @@ std::optional<Unrepeatable> time_contestants(Input& input, std::span<Contestant>
       shuffle(order, random);
       for (const std::size_t c : order) {
         append_time("streaming", stream_positions(interval.motion), records[c].ms, repetition);
-        const Answer timed = answer(contestants[c], interval, found);
+        const Answer timed = answer(contestants[c], input.step(interval), found);
         append_times(timed.report.ms, records[c].ms, repetition);
         if (timed.digest != records[c].digests[row] || !same_culling(timed.report, warm_up.reports[c][row]) ||
             timed.report.pairs.elementary_tests != warm_up.reports[c][row].pairs.elementary_tests)

@@ -133,7 +133,7 @@ bool Verifier::has_judged(std::size_t interval) const {
 }
 
 bool Verifier::starts_embedded(std::size_t interval) const {
-  return std::ranges::find(record_.unembedded, interval) == record_.unembedded.end();
+  return !crossing_starts_.contains(interval);
 }
 
 const Report& Verifier::report(std::size_t contestant, std::size_t interval) const {
@@ -152,34 +152,36 @@ void Verifier::judge(std::span<const std::size_t> intervals) {
 
 void Verifier::judge_one(std::size_t i) {
   scenes::ClipInterval interval = input_.clip->load(i);
-  const Rig::Interval* bones = interval.bones ? &*interval.bones : nullptr;
   const bool starts_embedded = embedding_->embedded(interval.motion.start());
-  if (!starts_embedded) record_.unembedded.push_back(i);
+  if (!starts_embedded) crossing_starts_.insert(i);
 
   ContactSet truth, answer;
-  const Report expected = reference_->used->judged->detect({interval.motion, bones}, truth);
+  const Report expected = reference_->used->judged->detect(input_.step(interval), truth);
   truth.sort();
+  const bool starts_close =
+      input_.thickness.length > 0 && !truth.contacts.empty() && truth.contacts.front().time == 0;
+  const bool promise_holds = starts_embedded && !starts_close;
+  if (!promise_holds) record_.unembedded.push_back(i);
   if (!truth.contacts.empty()) record_.colliding.push_back(i);
   if (input_.truth) record_.truth = held_against(*input_.truth, input_.mesh, truth);
   std::vector<Report>& reports = reports_[i];
   for (std::size_t c = 0; c < contestants_.size(); ++c) {
     const Strategy& strategy = *contestants_[c].row.strategy;
     const bool itself = &contestants_[c] == reference_->used;
-    lead_up(strategy, *contestants_[c].judged, *input_.clip, i);
+    lead_up(strategy, *contestants_[c].judged, input_, i);
     interval = input_.clip->load(i);
-    bones = interval.bones ? &*interval.bones : nullptr;
-    reports.push_back(itself ? expected : contestants_[c].judged->detect({interval.motion, bones}, answer));
+    reports.push_back(itself ? expected : contestants_[c].judged->detect(input_.step(interval), answer));
     answer.sort();
     if (contestants_[c].row.first) keep_first(answer);
     if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
       own->second->compare(input_.mesh, i, truth, answer);
       keep_shared(truth, answer);
     }
-    add(verify(truth, itself ? truth : answer, contestants_[c].row, starts_embedded),
-        promises(strategy.guarantee, starts_embedded, truth), i, record_.strategies[c]);
+    add(verify(truth, itself ? truth : answer, contestants_[c].row, promise_holds),
+        promises(strategy.guarantee, promise_holds, truth), i, record_.strategies[c]);
   }
   record_.accuracy_tests +=
-      reference_->used->timed->detect({interval.motion, bones}, answer).pairs.elementary_tests;
+      reference_->used->timed->detect(input_.step(interval), answer).pairs.elementary_tests;
   record_.accuracy.add(compare_elementary(truth, answer));
 }
 

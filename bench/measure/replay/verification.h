@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,7 @@ class Verifier {
   std::unique_ptr<EmbeddingTest> embedding_;
   std::map<std::size_t, std::vector<Report>> reports_;         // by interval: [contestants]
   std::map<std::size_t, std::unique_ptr<OwnTest>> own_tests_;  // by contestant
+  std::set<std::size_t> crossing_starts_;                      // intervals that do not start embedded
   VerificationRecord record_;
 };
 

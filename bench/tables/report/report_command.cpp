@@ -91,7 +91,7 @@ json study_json(const std::filesystem::path& path, const char* schema_file,
 json write_views(const std::vector<Record>& records, const std::filesystem::path& folder, bool force) {
   json views = json::object();
   for (const Record& record : records) {
-    if (!record.scene.path.empty() || views.contains(record.scene.name)) continue;
+    if (!record.scene.path.empty() || record.thickness > 0 || views.contains(record.scene.name)) continue;
     const std::string file = record.scene.name + ".html";
     OutputFile output(folder / file, force, ".html");
     ViewRequest request;
