@@ -15,6 +15,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/studies/scale_study.h"
 #include "bench/measure/studies/scale_summary.h"
+#include "bench/query/input/input.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"
 #include "scenes/catalog/resized.h"
@@ -49,6 +50,15 @@ std::vector<StrategyRow> chosen_rows(const ScaleOptions& options, const ordered_
   return rows;
 }
 
+std::size_t frames_of(const std::string& scene) {
+  return is_point_cache(scene) ? open_input(scene).clip->frame_count() : scenes::load_scene(scene).frames;
+}
+
+std::size_t triangles_of(const std::string& scene) {
+  return is_point_cache(scene) ? open_input(scene).mesh.triangle_count()
+                               : scenes::triangle_count(scenes::load_scene(scene));
+}
+
 // Makes the subjects of a run out of what was asked for and, where nothing was, of the plan in data. One
 // member a study, called scene by scene with what all subjects of the scene have in common.
 class Plan {
@@ -65,12 +75,13 @@ class Plan {
                          " is neither a share of a frame nor a whole number of frames; round it");
   }
 
-  // Scenes of which only the study of contacts is planned come last.
+  // Scenes of which only the studies of contacts and of thickness are planned come last.
   std::vector<std::string> scenes() const {
     std::vector<std::string> names = or_planned(options_.scenes, "scenes");
     if (!options_.scenes.empty()) return names;
-    for (const std::string name : data_.at("contact_scenes"))
-      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    for (const char* key : {"contact_scenes", "thickness_scenes"})
+      for (const std::string name : data_.at(key))
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     return names;
   }
 
@@ -124,6 +135,19 @@ class Plan {
     add(subject, "contact_intervals");
   }
 
+  void thickness(ScaleSubject subject) {
+    if (options_.scenes.empty() && !planned_for("thickness_scenes", subject.scene)) return;
+    subject.rows = chosen_rows(options_, data_.at("thickness_strategies"));
+    for (const StrategyRow& row : subject.rows)
+      require_fit({.thickness = parse_length("--thickness", "1e")}, *row.strategy);
+    subject.recorded = true;
+    subject.triangles = 0;
+    subject.steps.clear();
+    for (const double edges : data_.at("thicknesses"))
+      subject.steps.push_back({.scene = subject.scene, .edges = edges});
+    add(subject);
+  }
+
   std::vector<ScaleSubject> take() { return std::move(all_); }
 
  private:
@@ -139,11 +163,13 @@ class Plan {
   }
   void add(ScaleSubject subject, const char* intervals = "intervals") {
     // A variant with contacts may be shorter than its scene.
-    std::size_t frames = scenes::load_scene(subject.scene).frames;
+    std::size_t frames = frames_of(subject.scene);
     for (const ScaleStep& step : subject.steps)
-      if (step.scene != subject.scene) frames = std::min(frames, scenes::load_scene(step.scene).frames);
+      if (step.scene != subject.scene) frames = std::min(frames, frames_of(step.scene));
+    std::size_t count = or_planned(options_.intervals, intervals);
+    if (is_point_cache(subject.scene)) count = std::min(count, std::max<std::size_t>(frames, 3) - 2);
     subject.starts =
-        spread_starts(frames, or_planned(options_.intervals, intervals), subject.steps.back().frames);
+        frames == 2 ? std::vector<std::size_t>{0} : spread_starts(frames, count, subject.steps.back().frames);
     all_.push_back(std::move(subject));
   }
 
@@ -157,11 +183,18 @@ class Plan {
 constexpr struct {
   const char* name;
   void (Plan::*add)(ScaleSubject);
-} kStudies[] = {{"size", &Plan::size},
-                {"step", &Plan::step},
-                {"bones", &Plan::bones},
-                {"threads", &Plan::threads},
-                {"contacts", &Plan::contacts}};
+} kStudies[] = {{"size", &Plan::size},       {"step", &Plan::step},         {"bones", &Plan::bones},
+                {"threads", &Plan::threads}, {"contacts", &Plan::contacts}, {"thickness", &Plan::thickness}};
+
+// Point caches have one size and the motion that they hold, so one study alone takes them. It runs where it
+// is named: thick queries of large surfaces take as long as all the other studies.
+constexpr std::string_view kOnlyWhereNamed = "thickness";
+
+bool takes(const ScaleOptions& options, std::string_view study, const std::string& scene) {
+  if (study != kOnlyWhereNamed && is_point_cache(scene)) return false;
+  if (options.studies.empty()) return study != kOnlyWhereNamed;
+  return std::ranges::find(options.studies, study) != options.studies.end();
+}
 
 std::string study_names() {
   std::string names;
@@ -178,8 +211,7 @@ std::vector<ScaleSubject> planned(const ScaleOptions& options) {
   Plan plan(options);
   for (const std::string& scene : plan.scenes())
     for (const auto& study : kStudies) {
-      if (!options.studies.empty() && std::ranges::find(options.studies, study.name) == options.studies.end())
-        continue;
+      if (!takes(options, study.name, scene)) continue;
       ScaleSubject subject = plan.common(scene);
       subject.study = study.name;
       (plan.*study.add)(std::move(subject));
@@ -192,9 +224,8 @@ double estimated_minutes(std::span<const ScaleSubject> all) {
   constexpr double kMicrosecondsATriangle = 80, kSecondsOnce = 1;
   double seconds = 0;
   for (const ScaleSubject& subject : all) {
-    const scenes::Scene scene = scenes::load_scene(subject.scene);
     const auto triangles =
-        static_cast<double>(subject.triangles > 0 ? subject.triangles : scenes::triangle_count(scene));
+        static_cast<double>(subject.triangles > 0 ? subject.triangles : triangles_of(subject.scene));
     const auto intervals = static_cast<double>(subject.steps.size() * subject.starts.size());
     seconds += kSecondsOnce + kMicrosecondsATriangle * 1e-6 * triangles * intervals;
   }
@@ -239,9 +270,11 @@ void print(const ordered_json& subject) {
   for (const ordered_json& step : subject.at("steps")) {
     for (const ordered_json& failure : step.at("verified").at("failures"))
       std::printf("  %s\n", failure.get<std::string>().c_str());
-    std::printf("  %s, step %-5s %zu of %zu collide:", step.at("scene").get<std::string>().c_str(),
-                step.at("step").dump().c_str(), step.at("colliding").get<std::size_t>(),
-                step.at("starts").size());
+    const bool is_thick = step.contains("thickness");
+    std::printf("  %s, %s %-5s %zu of %zu %s:", step.at("scene").get<std::string>().c_str(),
+                is_thick ? "thickness" : "step", step.at(is_thick ? "thickness" : "step").dump().c_str(),
+                step.at("colliding").get<std::size_t>(), step.at("starts").size(),
+                is_thick ? "come that close" : "collide");
     for (const ordered_json& row : step.at("strategies"))
       if (row.contains("ms"))
         std::printf("  %s %.2f ms", row.at("name").get<std::string>().c_str(),
@@ -279,6 +312,7 @@ void run_scale(const ScaleOptions& options) {
                                {"fits", fits(subjects)},
                                {"step_ratios", step_ratios(subjects)},
                                {"contact_ratios", contact_ratios(subjects)},
+                               {"thickness_ratios", thickness_ratios(subjects)},
                                {"subjects", std::move(subjects)}};
   if (const std::string violation = schema_violation(record, "scale.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
@@ -293,7 +327,7 @@ void add_scale(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "scale",
       "Measure how cost grows: with triangles, with the length of the step, with bones, with threads, with\n"
-      "contacts.\n\n"
+      "contacts, with the thickness.\n\n"
       "  cscd scale --json scale.json\n"
       "  cscd scale --smoke\n"
       "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
@@ -301,14 +335,18 @@ void add_scale(CLI::App& app) {
       "step     intervals between frames that lie further apart, or nearer\n"
       "bones    chains of bones merged or cut, on the same surface\n"
       "threads  the same surface on one thread and more, up to those of the machine\n"
-      "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n\n"
+      "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n"
+      "thickness what comes within a distance, in mean edges, counts; also of point caches; where named "
+      "alone\n\n"
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
-  command->add_option("--study", options->studies, study_names() + ", with commas; default all")
+  command->add_option("--study", options->studies, study_names() + ", with commas; default all but the last")
       ->delimiter(',');
   command
-      ->add_option("--scene", options->scenes, "scenes with commas; default the six, and cloth for contacts")
+      ->add_option("--scene", options->scenes,
+                   "scenes with commas; default the six, and cloth for contacts and thickness; point caches\n"
+                   "for thickness")
       ->delimiter(',');
   command->add_option("--sizes", options->sizes, "numbers of triangles, about")
       ->delimiter(',')

@@ -304,6 +304,46 @@ TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
   EXPECT_TRUE(out.at("fits").empty());
 }
 
+// Mutations: the rows are not told the thickness; a start is taken for clear where something is close.
+TEST_F(ScaleProgram, TakesTheSameIntervalsAtEveryThickness) {
+  const auto out = record({"--smoke", "--study", "thickness"}, "thickness");
+  EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
+  ASSERT_EQ(out.at("subjects").size(), 1u);
+  const auto& steps = out.at("subjects")[0].at("steps");
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].at("thickness"), 0);
+  EXPECT_EQ(steps[0].at("clear"), steps[0].at("embedded"));
+  EXPECT_EQ(steps[2].at("clear"), 0) << "at a mean edge every surface is close to itself";
+  double contacts = -1;
+  for (const auto& step : steps) {
+    EXPECT_EQ(step.at("verified").at("by_reference"), step.at("starts").size());
+    const auto &base = step.at("strategies")[0], &complete = step.at("strategies")[2];
+    EXPECT_EQ(base.at("counts").at("contacts"), complete.at("counts").at("contacts"));
+    EXPECT_GT(base.at("counts").at("contacts"), contacts);
+    contacts = base.at("counts").at("contacts");
+  }
+  EXPECT_EQ(out.at("thickness_ratios").size(), 6u);
+}
+
+TEST_F(ScaleProgram, TakesPointCachesAtAThicknessAlone) {
+  const fs::path folder = *scratch_ / "one", cache = folder / "step.h5";
+  fs::create_directories(folder);
+  write(folder / "one.json", R"({
+    "schema": "cscd.scene/1", "story": "A small sheet falls. It has one step.", "frames": 2, "substeps": 4,
+    "shape": {"name": "sheet", "cells": 12, "strips": 14, "edge": 1, "centre": [0, 0, 1], "u": [1, 0, 0],
+              "v": [0, 1, 0.2]},
+    "effects": [{"name": "cloth_dynamics", "gravity": [0, 0, -0.2], "drag": 0.02, "bend_compliance": 0.1,
+                 "thickness": 0.9, "floor": 0}]})");
+  const std::vector<std::string> environment = {"CSCD_SCENES=" + folder.string(),
+                                                "CSCD_CACHE=" + folder.string()};
+  ASSERT_EQ(cscd({"export", "one", cache}, {}, environment).code, 0);
+  const auto out = record({"--smoke", "--study", "thickness", "--scene", cache}, "cache");
+  const auto& subject = out.at("subjects").at(0);
+  EXPECT_EQ(subject.at("scene"), "step");
+  EXPECT_EQ(subject.at("left_out").at(0).at("name"), "drvbc_fast") << "a sheet has a border";
+  for (const auto& step : subject.at("steps")) EXPECT_EQ(step.at("starts").size(), 1u);
+}
+
 TEST_F(ScaleProgram, RefusesInOneLine) {
   const auto refusal = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "scale");
@@ -314,6 +354,9 @@ TEST_F(ScaleProgram, RefusesInOneLine) {
   };
   EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones, threads, contacts"),
             std::string::npos);
+  EXPECT_NE(refusal({"--study", "thickness", "--strategy", "mcd"}).find("choose one of base, "),
+            std::string::npos);
+  EXPECT_NE(refusal({"--scene", "step.h5"}).find("leave nothing to measure"), std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,2.5"}).find("round it"), std::string::npos);
   EXPECT_NE(refusal({"--steps", "1,500"}).find("does not fit"), std::string::npos);
   EXPECT_NE(refusal({"--scene", "nosuch"}).find("unknown scene"), std::string::npos);

@@ -5,7 +5,9 @@ import { GREY } from "./palette.js";
 import { tableOf } from "./tables.js";
 
 const GROUPS = { scenes: "pairs of the scenes", open: "open query set", hard: "hard suite", random: "random families", close: "hard families at a distance" };
-const STUDIES = { size: "triangles", step: "step, in steps of a frame", bones: "bones", threads: "threads" };
+const STUDIES = { size: "triangles", step: "step, in steps of a frame", bones: "bones", threads: "threads", thickness: "thickness, in mean edges" };
+// A thickness may be 0, which no logarithm has.
+const scaleOf = (study) => (study === "thickness" ? LINEAR : LOG);
 const distinct = (values) => [...new Set(values)];
 
 // Joins points that lie between gaps of other series.
@@ -62,16 +64,26 @@ export function showGrowth(study) {
         const fit = fits.find((one) => one.study === name && one.scene === scene && one.strategy === strategy);
         return { label: fit ? `${strategy} (grows as the power ${fit.exponent.toFixed(2)})` : strategy, stroke: colourOf(strategy), dash: dashOf(strategy, i), points: { show: true, size: 6 }, ...SPAN };
       }),
-      x: { label: STUDIES[name], scale: LOG },
+      x: { label: STUDIES[name], scale: scaleOf(name) },
       y: { label: "ms a query", scale: LOG },
     };
   });
+  const list = () => {
+    const strategies = distinct(rows().map((point) => point.strategy)), sizes = distinct(rows().map((point) => point.size));
+    const cell = (size, strategy) => rows().find((point) => point.size === size && point.strategy === strategy);
+    byId("growth-list").replaceChildren(tableOf([STUDIES[name], ...strategies.map((strategy) => `${strategy}, ms`)],
+      sizes.map((size) => [size.toLocaleString("en"), ...strategies.map((strategy) => (cell(size, strategy) ? short(cell(size, strategy).ms) : "–"))])));
+  };
+  const draw = () => {
+    chart.draw();
+    list();
+  };
   const choose = () => {
     const scenes = distinct(points.filter((point) => point.study === name).map((point) => point.scene));
     if (!scenes.includes(scene)) [scene] = scenes;
     select.replaceChildren(...scenes.map((one) => new Option(one, one, false, one === scene)));
     byId("growth-studies").update(name);
-    chart.draw();
+    draw();
   };
   radios(byId("growth-studies"), studies.map((one) => [one, STUDIES[one].split(",")[0]]), (chosen) => {
     name = chosen;
@@ -79,7 +91,7 @@ export function showGrowth(study) {
   });
   select.addEventListener("change", () => {
     scene = select.value;
-    choose();
+    draw();
   });
   choose();
 }

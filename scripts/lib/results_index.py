@@ -7,7 +7,7 @@ from script import ROOT, refuse
 from tracked import tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "latency", "waits")
+KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "latency", "waits")
 PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
@@ -23,6 +23,7 @@ and its kind.
 | accuracy | `scripts/record accuracy` | what every elementary test gets wrong, and what accuracy costs |
 | benchmark | `scripts/record benchmark` | scores of this project's strategies and today's packages on [the public benchmark](../bench/BENCHMARK.md) |
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |
+| thickness | `scripts/record thickness --real DIR` | what it costs that features count which come within a distance |
 | latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
 
 The newest record of each kind is here. A record is never rewritten after its day; whatever is found out later stands in a

@@ -9,6 +9,7 @@ class Record:
         self.fits = {(f["study"], f["scene"], f["strategy"], f["quantity"]): f for f in record["fits"]}
         self.ratios = {(r["scene"], r["strategy"], r["step"]): r for r in record["step_ratios"]}
         self.contacts = {(r["scene"], r["strategy"], r["of"]): r for r in record["contact_ratios"]}
+        self.thickness = {(r["scene"], r["strategy"], r["thickness"]): r for r in record.get("thickness_ratios", [])}
         names = [row["name"] for subject in record["subjects"] for row in subject["strategies"]]
         self.strategies = list(dict.fromkeys(names))
 

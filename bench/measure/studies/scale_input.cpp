@@ -64,7 +64,14 @@ Moments recorded_moments(const ScaleSubject& subject) {
   const auto keep = [&](std::span<const Vec3> positions, std::span<const Bone> bones) {
     out.moments.push_back({{positions.begin(), positions.end()}, {bones.begin(), bones.end()}});
   };
+  std::map<std::string, std::size_t> first_interval;  // by scene: steps of one scene share its moments
   for (const ScaleStep& step : subject.steps) {
+    const auto [known, fresh] = first_interval.try_emplace(step.scene, out.intervals.size());
+    if (!fresh) {
+      for (std::size_t i = 0; i < subject.starts.size(); ++i)
+        out.intervals.push_back(out.intervals[known->second + i]);
+      continue;
+    }
     const Input recorded = open_input(step.scene);
     for (const std::size_t start : subject.starts) {
       const scenes::ClipInterval interval = recorded.clip->load(start);
@@ -81,6 +88,19 @@ Moments recorded_moments(const ScaleSubject& subject) {
 
 ScaleInput scale_input(const ScaleSubject& subject) {
   const auto begin = std::chrono::steady_clock::now();
+  const auto milliseconds = [&] {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  };
+  if (is_point_cache(subject.scene)) {
+    Input input = open_input(subject.scene);
+    Moments moments = recorded_moments(subject);
+    const scenes::ClipHeader& header = input.clip->header();
+    input.clip = std::make_unique<MomentSource>(
+        scenes::ClipHeader{header.triangles, header.vertex_count, header.bone_parent, false, header.rest},
+        std::move(moments.moments), std::move(moments.intervals));
+    input.threads = subject.threads;
+    return {std::move(input), milliseconds()};
+  }
   const scenes::Scene scene = scenes::load_scene(subject.scene);
   scenes::Shape shape =
       scenes::resized_shape(scene, subject.triangles > 0 ? subject.triangles : scenes::triangle_count(scene));
@@ -102,8 +122,7 @@ ScaleInput scale_input(const ScaleSubject& subject) {
   if (!rig.parent.empty()) bones = std::move(rig);
   Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(bones)};
   input.threads = subject.threads;
-  return {std::move(input),
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count()};
+  return {std::move(input), milliseconds()};
 }
 
 std::vector<std::size_t> spread_starts(std::size_t frames, std::size_t count, double longest_step) {

@@ -14,15 +14,16 @@ namespace cscd::bench {
 struct ScaleStep {
   std::string scene;  // of whose motion they are
   double frames = 1;  // a whole number of frame steps, or a share of one
+  double edges = 0;   // the thickness, in mean edges at rest
 };
 
 struct ScaleSubject {
-  std::string study;      // size, step, bones, threads or contacts
-  std::string scene;      // whose surface and bones these are
+  std::string study;      // size, step, bones, threads, contacts or thickness
+  std::string scene;      // whose surface and bones these are; of recorded steps, also a point cache
   bool recorded = false;  // each step as its scene's clip holds it; else posed anew from the subject's scene
   std::size_t triangles = 0;        // asked for, of a posed one; 0 for the scene's own
   std::size_t bones = 0;            // of the chain, of a posed one; 0 for the scene's own
-  std::vector<ScaleStep> steps;     // none shorter than the one before
+  std::vector<ScaleStep> steps;     // none shorter or thinner than the one before
   std::vector<std::size_t> starts;  // frames at which intervals start
   std::vector<StrategyRow> rows;
   std::size_t repetitions = 5;

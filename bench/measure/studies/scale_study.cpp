@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
+#include "scenes/catalog/plain_name.h"
 
 namespace cscd::bench {
 namespace {
@@ -45,9 +46,8 @@ struct Entrant {
   std::vector<std::string> promised;
 };
 
-Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet& found) {
-  const Report report = entrant.made.prepared.detector->detect(
-      {interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
+Report answer(Entrant& entrant, const Step& step, ContactSet& found) {
+  const Report report = entrant.made.prepared.detector->detect(step, found);
   found.sort();
   if (entrant.row.first) keep_first(found);
   return report;
@@ -56,6 +56,7 @@ Report answer(Entrant& entrant, const scenes::ClipInterval& interval, ContactSet
 // The outcome of the verification of one step's intervals.
 struct Verified {
   std::size_t embedded = 0, colliding = 0, by_reference = 0;
+  std::size_t clear = 0;            // embedded, and with a thickness, nothing is close
   std::vector<ordered_json> first;  // time of the first contact of each interval, null without one
   std::vector<std::string> failures;
 };
@@ -66,7 +67,11 @@ ordered_json first_time(const ContactSet& sorted) {
 
 class Measurement {
  public:
-  explicit Measurement(const ScaleSubject& subject) : subject_(subject), scaled_(scale_input(subject)) {
+  explicit Measurement(const ScaleSubject& subject)
+      : subject_(subject),
+        scaled_(scale_input(subject)),
+        edge_(mean_edge(input().mesh, input().rest())),
+        is_thick_(std::ranges::any_of(subject.steps, [](const ScaleStep& s) { return s.edges > 0; })) {
     const ElementaryTest& test = elementary_test_named(kElementary);
     std::vector<StrategyRow> rows = subject.rows;
     const StrategyRow reference{&complete_reference()};
@@ -99,23 +104,29 @@ class Measurement {
       const auto [start, fresh] =
           embedded.try_emplace({subject_.steps[step_of(i)].scene, start_of(i)}, false);
       if (fresh) start->second = embedding.embedded(interval.motion.start());
-      embedded_[i] = start->second;
+      bool promise_holds = start->second;
+      embedded_[i] = promise_holds;
       verified.embedded += start->second;
 
       const bool judged = reference_answers(i);
       if (judged) {
         Entrant& reference = *std::ranges::find_if(entrants_, &Entrant::reference);
-        keep(reference, i, answer(reference, interval, truth), truth);
+        const Report report = answer(reference, asked(interval, i), truth);
+        // With a thickness, promises are about clear starts.
+        if (length_of(i) > 0 && first_time(truth) == 0.0) promise_holds = false;
+        embedded_[i] = promise_holds;
+        verified.clear += promise_holds;
+        keep(reference, i, report, truth);
         ++verified.by_reference;
       }
       ordered_json first = judged ? first_time(truth) : ordered_json();
       const Entrant* told = nullptr;  // who told the first contact where the reference did not
       for (Entrant& c : entrants_) {
         if (c.reference || left_out(c, step_of(i))) continue;
-        keep(c, i, answer(c, interval, found), found);
+        keep(c, i, answer(c, asked(interval, i), found), found);
         const std::string where = label(c, i);
         if (judged) {
-          const Verification judgement = bench::verify(truth, found, c.row, start->second);
+          const Verification judgement = bench::verify(truth, found, c.row, promise_holds);
           if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
         } else if (!told) {
           first = first_time(found);
@@ -142,7 +153,7 @@ class Measurement {
         shuffle(order, random);
         for (Entrant* c : order) {
           stream_positions(interval.motion);
-          const Report report = answer(*c, interval, found);
+          const Report report = answer(*c, asked(interval, i), found);
           append_times(report.ms, c->ms[step_of(i)], repetition);
           if (promised(*c, i, found) != c->promised[i]) {
             verified_[step_of(i)].failures.push_back(label(*c, i) + "other contacts when timed");
@@ -162,7 +173,7 @@ class Measurement {
       if (is_timed(c)) strategies.push_back(preparation_json(c));
     for (std::size_t s = 0; s < subject_.steps.size(); ++s) steps.push_back(step_json(s));
     return {{"study", subject_.study},
-            {"scene", subject_.scene},
+            {"scene", scenes::plain_name(subject_.scene)},
             {"triangles", input().mesh.triangle_count()},
             {"vertices", input().mesh.vertex_count()},
             {"bones", input().rig ? input().rig->parent.size() : 0},
@@ -181,6 +192,13 @@ class Measurement {
   std::size_t step_of(std::size_t interval) const { return interval / subject_.starts.size(); }
   std::size_t start_of(std::size_t interval) const {
     return subject_.starts[interval % subject_.starts.size()];
+  }
+  // The thickness of an interval.
+  double length_of(std::size_t interval) const { return subject_.steps[step_of(interval)].edges * edge_; }
+  Step asked(const scenes::ClipInterval& interval, std::size_t number) const {
+    Step step = input().step(interval);
+    step.thickness = Thickness(length_of(number));
+    return step;
   }
   // Begins the line of a failure, under the step that it belongs to.
   std::string label(const Entrant& c, std::size_t interval) const {
@@ -212,6 +230,8 @@ class Measurement {
       else if (input().mesh.triangle_count() <= subject_.reference_limit && !left_out(c, s))
         return true;
     }
+    // What is close at the start, the reference alone says for sure.
+    if (is_thick_) return true;
     return interval % subject_.starts.size() == 0 || others < 2;
   }
 
@@ -266,18 +286,24 @@ class Measurement {
     ordered_json rows = ordered_json::array();
     for (const Entrant& c : entrants_)
       if (is_timed(c)) rows.push_back(row_json(c, s));
-    return {{"step", subject_.steps[s].frames},
-            {"scene", subject_.steps[s].scene},
-            {"starts", subject_.starts},
-            {"embedded", verified.embedded},
-            {"colliding", verified.colliding},
-            {"first_contact", verified.first},
-            {"verified",
-             {{"ok", verified.failures.empty()},
-              {"by_reference", verified.by_reference},
-              {"by_each_other", subject_.starts.size() - verified.by_reference},
-              {"failures", verified.failures}}},
-            {"strategies", std::move(rows)}};
+    ordered_json out = {{"step", subject_.steps[s].frames},
+                        {"scene", scenes::plain_name(subject_.steps[s].scene)},
+                        {"starts", subject_.starts},
+                        {"embedded", verified.embedded},
+                        {"colliding", verified.colliding},
+                        {"first_contact", verified.first},
+                        {"verified",
+                         {{"ok", verified.failures.empty()},
+                          {"by_reference", verified.by_reference},
+                          {"by_each_other", subject_.starts.size() - verified.by_reference},
+                          {"failures", verified.failures}}},
+                        {"strategies", std::move(rows)}};
+    if (is_thick_) {
+      out["thickness"] = subject_.steps[s].edges;
+      out["length"] = subject_.steps[s].edges * edge_;
+      out["clear"] = verified.clear;
+    }
+    return out;
   }
 
   ordered_json row_json(const Entrant& c, std::size_t s) const {
@@ -323,10 +349,13 @@ class Measurement {
 
   const ScaleSubject& subject_;
   ScaleInput scaled_;
+  double edge_;  // mean length at rest
+  bool is_thick_;
   std::vector<Entrant> entrants_;
   ordered_json left_out_ = ordered_json::array();  // rows that the surface does not allow, and why
   std::vector<Verified> verified_;                 // by step
-  std::vector<bool> embedded_;                     // by interval: whether its start is
+  // By interval: whether its start is embedded, and with a thickness, clear.
+  std::vector<bool> embedded_;
 };
 
 }  // namespace

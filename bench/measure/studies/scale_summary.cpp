@@ -41,7 +41,7 @@ ordered_json fits(const ordered_json& subjects) {
   std::vector<std::pair<std::array<std::string, 4>, Series>> series;
   for (const ordered_json& subject : subjects) {
     const std::string study = subject.at("study");
-    if (study == "step" || study == "contacts") continue;
+    if (study == "step" || study == "contacts" || study == "thickness") continue;
     const double x = subject.at(study == "size" ? "triangles" : study);
     const auto add = [&](const std::string& strategy, const std::string& quantity, double y) {
       const std::array<std::string, 4> key = {study, subject.at("scene"), strategy, quantity};
@@ -88,6 +88,24 @@ ordered_json step_ratios(const ordered_json& subjects) {
         if (!row.contains("ms") || !unit.contains("ms")) continue;
         out.push_back(
             {{"scene", subject.at("scene")}, {"strategy", row.at("name")}, {"step", step.at("step")}});
+        out.back().update(ratio_of(row, unit, "total_samples"));
+      }
+  }
+  return out;
+}
+
+ordered_json thickness_ratios(const ordered_json& subjects) {
+  ordered_json out = ordered_json::array();
+  for (const ordered_json& subject : subjects) {
+    if (subject.at("study") != "thickness") continue;
+    const ordered_json& thin = subject.at("steps").at(0);
+    for (const ordered_json& step : subject.at("steps"))
+      for (const ordered_json& row : step.at("strategies")) {
+        const ordered_json& unit = *row_named(thin.at("strategies"), row.at("name"));
+        if (step.at("thickness") == 0 || !row.contains("ms") || !unit.contains("ms")) continue;
+        out.push_back({{"scene", subject.at("scene")},
+                       {"strategy", row.at("name")},
+                       {"thickness", step.at("thickness")}});
         out.back().update(ratio_of(row, unit, "total_samples"));
       }
   }

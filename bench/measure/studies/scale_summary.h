@@ -12,5 +12,7 @@ nlohmann::ordered_json step_ratios(const nlohmann::ordered_json& subjects);
 // Returns what intervals of a scene's variant with contacts cost, as a ratio to the scene's own intervals:
 // for the median interval, and for all together.
 nlohmann::ordered_json contact_ratios(const nlohmann::ordered_json& subjects);
+// Returns what a thickness costs, as ratios to touching alone: of each row, scene and thickness above 0.
+nlohmann::ordered_json thickness_ratios(const nlohmann::ordered_json& subjects);
 
 }  // namespace cscd::bench

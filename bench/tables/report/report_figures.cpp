@@ -58,10 +58,11 @@ json growth_points(const json& record) {
     for (const json& step : subject.at("steps"))
       for (const json& strategy : step.at("strategies")) {
         if (!strategy.contains("ms")) continue;  // its answers were not verified
-        const json& size = study == "step"      ? step.at("step")
-                           : study == "bones"   ? subject.at("bones")
-                           : study == "threads" ? subject.at("threads")
-                                                : subject.at("triangles");
+        const json& size = study == "step"        ? step.at("step")
+                           : study == "bones"     ? subject.at("bones")
+                           : study == "threads"   ? subject.at("threads")
+                           : study == "thickness" ? step.at("thickness")
+                                                  : subject.at("triangles");
         points.push_back({{"study", study},
                           {"scene", subject.at("scene")},
                           {"strategy", strategy.at("name")},

@@ -222,6 +222,40 @@ def contacts_part(record, drawn):
     return text + ["Without → with:", ""] + table([""] + scenes, lines) + [""]
 
 
+def thickness_part(record):
+    scenes = record.scenes("thickness")
+    if not scenes:
+        return []
+    names = record.names("thickness")
+    base, others = names[0], names[1:]
+    void = {row["name"] for s in record.of("thickness") for row in s["strategies"] if row["guarantee"] == "first_contact"}
+    text = ["## With a thickness", "",
+            "Features count that come within a thickness, in mean edges of the surface at rest, of each other; 0 is touching. Clear starts: "
+            f"starts in which nothing crosses and nothing is that close. Milliseconds a query, the mean; in brackets, times the same row at 0; "
+            f"then, how many times faster than `{base}` whose boxes grow by the same thickness. Rows that need a clear start promise nothing "
+            "where some start is not clear, and their times have a star there.", ""]
+    lines = []
+    for scene in scenes:
+        subject = record.of("thickness", scene)[0]
+        for step in subject["steps"]:
+            starts, thickness = len(step["starts"]), step["thickness"]
+            cells = [scene, f"{thickness:g}", f"{step['clear']} of {starts}", f"{step['colliding']} of {starts}"]
+            unit = row(step, base)
+            for name in names:
+                own = row(step, name)
+                if not own or "ms" not in own:
+                    cells.append("–")
+                    continue
+                ratio = record.thickness.get((scene, name, thickness))
+                cells.append(short(own["ms"]["total"]) + ("*" if name in void and step["clear"] < starts else "")
+                             + (f" ({ratio['ratio']:.2f})" if ratio else "")
+                             + (f", {unit['ms']['total'] / own['ms']['total']:.3g} times" if name in others and unit and "ms" in unit else ""))
+            pairs = row(step, names[-1])
+            lines.append(cells + [short(pairs["counts"].get("contacts")) if pairs and pairs["intervals"] else "–"])
+    head = ["scene", "thickness", "clear starts", "with close pairs", *(f"`{name}`" for name in names), f"close pairs, `{names[-1]}`"]
+    return text + table(head, lines) + [""]
+
+
 def slower(mine, theirs):
     """Whether a row took longer than another in every repetition. Less than that is noise."""
     of = [row.get("total_samples") or [row["ms"]["total"]] for row in (mine, theirs)]
@@ -312,7 +346,7 @@ def page(record, drawn):
     text = ["# How cost grows", ""]
     if record.raw["smoke"]:
         text += ["**A small run: it shows that everything works; its times mean nothing.**", ""]
-    names = record.names("size") or record.names("step") or record.names("contacts")
+    names = record.names("size") or record.names("step") or record.names("contacts") or record.names("thickness")
     parts = []
     for scene in record.scenes("size"):
         law = record.fit("size", scene, names[0], "total")
@@ -329,10 +363,11 @@ def page(record, drawn):
                   for scene in record.scenes("contacts") if (scene, name, "median_interval") in record.contacts]
         if ratios:
             text += [f"`{name}`, the median interval's time with contacts over that without: {', '.join(ratios)}."]
-    lost = losses(record)
-    text += ["", "## Where it loses", ""] + ([f"- {line}" for line in lost] or [NOWHERE])
+    if any(record.scenes(study) for study in ("size", "step", "contacts", "bones")):
+        lost = losses(record)
+        text += ["", "## Where it loses", ""] + ([f"- {line}" for line in lost] or [NOWHERE])
     text += [""] + size_part(record, drawn) + step_part(record, drawn) + bones_part(record, drawn) + threads_part(record, drawn)
-    text += contacts_part(record, drawn)
+    text += contacts_part(record, drawn) + thickness_part(record)
     text += checked_part(record)
     return "\n".join(text) + "\n"
 
