@@ -33,8 +33,6 @@ void draw_exclusions(std::uint64_t seed, const SceneStep& step, Options& options
   }
 }
 
-// Mutations: obstacles do not grow; a start that is embedded is taken for clear; the boxes of obstacles grow
-// by half; the plain session answers where pairs are excluded.
 TEST(Thickness, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {
   std::size_t free = 0, close_at_start = 0, close_later = 0;
   for (std::uint64_t seed = 1; seed <= intervals() / 2; ++seed) {
@@ -98,6 +96,23 @@ TEST(Thickness, SaysWhereFeaturesAreNearest) {
   EXPECT_TRUE(body.is_free(kApart, end));
   EXPECT_TRUE(SelfCollision(kTwoFaces, kApart, thick(0.499)).is_free(kApart, after()));
   EXPECT_EQ(SelfCollision(kTwoFaces, kApart, thick(3)).largest_step(kApart, after()), 0);
+}
+
+// Mutations: the box of the mesh does not grow, nor do the boxes of its triangles.
+TEST(Thickness, ReachesToObstacles) {
+  const FaceRows face{{0, 1, 2}};
+  const Rows start = kApart.bottomRows(3), end = after().bottomRows(3);
+  for (const bool by_vertex : {false, true}) {
+    Options options = by_vertex ? thick(0, {0.25, 0.25, 0.25, 0.75, 0.75, 0.75}) : thick(1);
+    options.obstacles.emplace_back(face, kApart.topRows(3));
+    SelfCollision body(face, start, options);
+    const SelfCollision::Answer first = body.first_contact(start, end);
+    EXPECT_NEAR(first.time().value_or(2), 2.0 / 3, 1e-15);
+    EXPECT_EQ(first.close_at_start(), 0u);
+    EXPECT_FALSE(body.is_free(start, end));
+    EXPECT_GT(body.all_contacts(end, end).close_at_start(), 0u);
+    EXPECT_TRUE(body.is_free(start, start));
+  }
 }
 
 // From less than the square of what a double holds to more than the mesh measures.
