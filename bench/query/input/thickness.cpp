@@ -21,6 +21,13 @@ double length_in(const Input& input, const WrittenLength& written, const char* o
   return length;
 }
 
+// The diagonal of the box that holds a pose.
+double diagonal(std::span<const Vec3> pose) {
+  Vec3 low = pose.front(), high = low;
+  for (const Vec3& x : pose) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
+}
+
 template <class Rows, class Has>
 std::string names_of_rows(const Rows& rows, const Has& has) {
   std::vector<std::string_view> names;
@@ -63,6 +70,11 @@ void set_thickness(Input& input, const ThicknessRequest& request, bool with_igno
   out.asked = request;
   out.edge = mean_edge(input.mesh, input.rest());
   out.length = length_in(input, request.thickness, "--thickness", out.edge);
+  // Far above the size of the surface, squares overflow, and every answer is known.
+  if (out.length > diagonal(input.rest()))
+    throw InputError("--thickness " + request.thickness.text + ": is more than all of " + input.name +
+                     " at rest, so that every pair of features is close; give less than " +
+                     std::to_string(diagonal(input.rest())));
   if (!request.leaves_out()) return;
   Exclusions left_out;
   if (with_ignored && input.ignored) left_out = input.ignored->triangles;

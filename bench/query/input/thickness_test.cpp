@@ -61,6 +61,9 @@ TEST(Thickness, IsMeasuredInTheMeanEdgeOfThePoseAtRest) {
   Input input = octahedron();
   set_thickness(input, {.thickness = parse_length("--thickness", "2e")});
   EXPECT_DOUBLE_EQ(input.thickness.length, 2 * std::sqrt(2.0)) << "all edges are as long";
+  EXPECT_TRUE(has(refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "3.5")}); }),
+                  "--thickness 3.5: is more than all of octahedron at rest"))
+      << "its box is 3.46 across";
   EXPECT_EQ(input.thickness.left_out, nullptr);
   EXPECT_EQ(close_at_rest(input).contacts.size(), 24u + 30u) << "all pairs that share no vertex";
   set_thickness(input, {.thickness = parse_length("--thickness", "0.001e")});
