@@ -44,7 +44,7 @@ unsigned long long count(std::uint64_t number) {
   return number;
 }
 
-void print(const VerificationRecord& v, const std::string& timed) {
+void print(const VerificationRecord& v, const std::string& timed, bool is_thick) {
   std::printf("intervals verified against %s with the elementary test %s, in %.1f s: %zu\n",
               v.reference.c_str(), v.elementary.c_str(), v.seconds, v.intervals.size());
   std::printf("  with contacts: %zu%s\n", v.colliding.size(),
@@ -56,8 +56,10 @@ void print(const VerificationRecord& v, const std::string& timed) {
     for (const std::string& difference : v.truth->differences) std::printf("    %s\n", difference.c_str());
   }
   if (!v.unembedded.empty())
-    std::printf("  with a start that is not embedded, as the surface crosses itself: %zu\n",
-                v.unembedded.size());
+    std::printf(
+        "  with a start that is not %s: %zu\n",
+        is_thick ? "clear, as something crosses or is close" : "embedded, as the surface crosses itself",
+        v.unembedded.size());
   std::size_t width = 0;
   for (const VerifiedStrategy& s : v.strategies) width = std::max(width, s.name.size());
   for (const VerifiedStrategy& s : v.strategies) {
@@ -136,7 +138,7 @@ Record measured(const RunOptions& options, Input& input, const Replay& replay) {
 bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile& output) {
   Input input = open(options, request);
   const Record record = measured(options, input, replay_of(options, input, request));
-  print(record.verification, request.elementary);
+  print(record.verification, request.elementary, record.thickness > 0);
   output.commit(json_text(to_json(record)));
   std::printf("%s", run_times_text(record).c_str());
   return record.verification.ok();

@@ -36,13 +36,14 @@ std::string shortfall_text(const Shortfall& lacking) {
 
 std::string shortfall_note(std::span<const Record> records) {
   std::string out;
-  bool is_void = false;
+  bool is_void = false, is_thick = false;
   for (const Record& record : records) {
     std::string rows;
     for (const StrategyRecord& row : record.strategies)
       if (const auto lacking = shortfall(record, row.name)) {
         rows += (rows.empty() ? "" : ", ") + row.name + " (" + shortfall_text(*lacking) + ")";
         is_void = is_void || lacking->void_intervals > 0;
+        is_thick = is_thick || record.thickness > 0;
       }
     if (!rows.empty())
       out += "- " + record.scene.name + ", pipeline " + std::string(to_string(record.pipeline)) + ": " +
@@ -53,7 +54,8 @@ std::string shortfall_note(std::span<const Record> records) {
          " The row does not answer everything that a complete row answers, so its time is not for the same "
          "work" +
          (is_void ? ".\nA promise is void on an interval whose start is not embedded: the surface crosses "
-                    "itself there"
+                    "itself there" +
+                        std::string(is_thick ? ", or with a thickness, something is close" : "")
                   : "") +
          ".\n" + out;
 }
