@@ -16,6 +16,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/ignore.h"
 #include "bench/query/input/input.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "bench/query/options/model_options.h"
 #include "bench/tables/run_times.h"

@@ -9,6 +9,7 @@
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"

@@ -19,6 +19,7 @@
 #include "bench/query/answer/answer_json.h"
 #include "bench/query/answer/answer_text.h"
 #include "bench/query/input/input.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "core/base/error.h"
 

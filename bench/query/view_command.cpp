@@ -16,6 +16,7 @@
 #include "bench/query/answer/answer_json.h"
 #include "bench/query/answer/surface_names.h"
 #include "bench/query/input/input.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "bench/query/view/clip_recording.h"
 #include "bench/query/view/html.h"

@@ -5,6 +5,8 @@
 #include <set>
 #include <tuple>
 
+#include "bench/query/input/thickness.h"
+
 namespace cscd::bench {
 namespace {
 

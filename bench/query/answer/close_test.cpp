@@ -3,6 +3,7 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
+#include "bench/query/input/thickness.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/test_shapes.h"
 

@@ -11,7 +11,7 @@
 
 #include "bench/query/input/import.h"
 #include "bench/query/input/outside_truth.h"
-#include "bench/query/input/thickness.h"
+#include "bench/query/input/thickness_request.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/step.h"
 #include "core/detect/strategy.h"

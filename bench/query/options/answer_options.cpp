@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/query/input/thickness.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

@@ -6,7 +6,7 @@
 
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/ignore.h"
-#include "bench/query/input/thickness.h"
+#include "bench/query/input/thickness_request.h"
 #include "bench/query/input/watchdog.h"
 #include "bench/query/options/model_options.h"
 
