@@ -42,7 +42,7 @@ struct Gaps {
 
   Mask16 farther_along(Vector16 direction) const {
     const Float16 largest = larger_size(larger_size(direction[0], direction[1]), direction[2]);
-    for (Float16& component : direction) component /= largest;
+    for (Float16& component : direction) component = component / largest;
     const Float16 least =
         product_plus(all_lanes(1 + 0x1p-20F) * square_root(dot(direction, direction)), distance, error);
     unsigned over = 0xffff, under = 0xffff;

@@ -26,9 +26,10 @@ part rows core/elementary/{additive,cubic,inclusion,newton,catalogue} scenes/que
 part filtered core/elementary/certified/{close_doubles,filtered_exact,integer_polynomial,integer_roots,integer_signs,integer_contact}
 part lanes core/elementary/certified/exact_lanes
 part single core/detect/single_filter
+part distance core/detect/distance_filter
 part exact core/elementary/exact/{exact,algebraic,closeness,polynomial,touch}
 part starts core/elementary/exact/{static_contact,triangles_meet}
-part meshes core/detect/{double_filter,carried_pairs,compose,contact,filter_block,no_contact_before} \
+part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
   core/mesh/triangle_mesh core/geometry/feature_distance
 part team core/base/team
 part exclusions core/detect/exclusions
