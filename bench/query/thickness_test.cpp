@@ -26,7 +26,7 @@ class ThicknessOption : public Program {
   }
 };
 
-bool has(const std::string& text, const std::string& part) {
+bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -81,9 +81,9 @@ TEST_F(ThicknessOption, SaysHowManyPairsAreLeftOut) {
   EXPECT_EQ(document["strategy"], "drvbc_fast_complete");
   const Ran said = run("cscd query figure.glb --clip hug --thickness 1e --exclude-near-rest 2e");
   EXPECT_EQ(said.status, 0) << said.errors;
-  EXPECT_TRUE(has(said.out, "  thickness 1e (")) << said.out;
+  EXPECT_TRUE(says(said.out, "  thickness 1e (")) << said.out;
   EXPECT_TRUE(
-      has(said.out, " of features that are this close at rest are left out (--exclude-near-rest 2e ("))
+      says(said.out, " of features that are this close at rest are left out (--exclude-near-rest 2e ("))
       << said.out;
   const Ran inspected = run("cscd inspect figure.glb --thickness 1e --json inspect.json");
   EXPECT_EQ(inspected.status, 0) << inspected.errors;
