@@ -5,6 +5,7 @@
 #include "bench/cli/output/progress.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
+#include "bench/query/input/thickness.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
