@@ -16,6 +16,7 @@
 #include "bench/measure/studies/scale_study.h"
 #include "bench/measure/studies/scale_summary.h"
 #include "bench/query/input/input.h"
+#include "bench/query/input/thickness.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"
 #include "scenes/catalog/resized.h"
