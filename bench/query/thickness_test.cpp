@@ -45,8 +45,8 @@ TEST_F(ThicknessOption, OfZeroChangesNothing) {
 
 TEST_F(ThicknessOption, TellsWhatIsCloseFromWhatTouches) {
   const json plain = answer("figure.glb --clip hug"),
-             thick = answer("figure.glb --clip hug --thickness 0.3e");
-  EXPECT_EQ(thick["thickness"]["asked"], "0.3e");
+             thick = answer("figure.glb --clip hug --thickness 0.05e");
+  EXPECT_EQ(thick["thickness"]["asked"], "0.05e");
   EXPECT_GT(thick["thickness"]["length"], 0);
   ASSERT_EQ(thick["intervals"].size(), plain["intervals"].size());
   std::size_t close = 0, at_start = 0;
@@ -73,19 +73,19 @@ TEST_F(ThicknessOption, TellsWhatIsCloseFromWhatTouches) {
 }
 
 TEST_F(ThicknessOption, SaysHowManyPairsAreLeftOut) {
-  const json document = answer("figure.glb --clip hug --thickness 1e --exclude-rings 2");
+  const json document = answer("small --thickness 1e --exclude-rings 2");
   const json& left_out = document["thickness"]["left_out"];
   EXPECT_EQ(left_out["rings"], 2);
   EXPECT_GT(left_out["left_out_at_rest"], 0);
   EXPECT_LE(left_out["left_out_at_rest"], left_out["close_at_rest"]);
   EXPECT_EQ(document["strategy"], "drvbc_fast_complete");
-  const Ran said = run("cscd query figure.glb --clip hug --thickness 1e --exclude-near-rest 2e");
+  const Ran said = run("cscd query small --thickness 1e --exclude-near-rest 2e");
   EXPECT_EQ(said.status, 0) << said.errors;
   EXPECT_TRUE(says(said.out, "  thickness 1e (")) << said.out;
   EXPECT_TRUE(
       says(said.out, " of features that are this close at rest are left out (--exclude-near-rest 2e ("))
       << said.out;
-  const Ran inspected = run("cscd inspect figure.glb --thickness 1e --json inspect.json");
+  const Ran inspected = run("cscd inspect small --thickness 1e --json inspect.json");
   EXPECT_EQ(inspected.status, 0) << inspected.errors;
   const json close = json::parse(text("inspect.json"))["thickness"];
   EXPECT_EQ(close["pairs"], left_out["close_at_rest"]);
@@ -95,13 +95,13 @@ TEST_F(ThicknessOption, SaysHowManyPairsAreLeftOut) {
 
 TEST_F(ThicknessOption, IsVerifiedAndTimedByRun) {
   const Ran ran =
-      run("cscd run --scene small --thickness 0.2e --strategy base,drvbc_fast,drvbc_fast_complete "
+      run("cscd run --scene small --thickness 1e --strategy base,drvbc_fast,drvbc_fast_complete "
           "--elementary filtered_exact --repetitions 1 --json run.json");
   ASSERT_EQ(ran.status, 0) << ran.out << ran.errors;
   const auto record = nlohmann::ordered_json::parse(text("run.json"));
   EXPECT_EQ(schema_violation(record, "run.schema.json"), "");
   EXPECT_GT(record["thickness"], 0);
-  EXPECT_EQ(record["scene"]["name"], "small, thickness 0.2e");
+  EXPECT_EQ(record["scene"]["name"], "small, thickness 1e");
   std::size_t contacts = 0;
   for (const auto& count : record["strategies"][0]["counts"]["contacts"])
     contacts += count.get<std::size_t>();
@@ -121,7 +121,7 @@ TEST_F(ThicknessOption, RefusesInOneLine) {
     expect_refused(run(start + "thick"), "is no length");
   }
   expect_refused(run("cscd query small --thickness 0.1 --strategy mcd"), "choose one of base, ");
-  expect_refused(run("cscd view small --thickness 0.1 --strategy drvbc"), "choose one of base, ");
+  expect_refused(run("cscd view small --thickness 0.1 --strategy mcd"), "choose one of base, ");
   expect_refused(run("cscd query small --thickness 0.1 --elementary newton"), "knows no distances");
   expect_refused(run("cscd run --scene small --thickness 0.1 --json x.json"), "knows no distances");
   expect_refused(
