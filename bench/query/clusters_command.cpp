@@ -3,8 +3,8 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
-#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/input/input.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"

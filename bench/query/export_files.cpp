@@ -7,8 +7,8 @@
 
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/clip_answer.h"
 #include "bench/query/view/touched.h"

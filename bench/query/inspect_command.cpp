@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
 #include "bench/cli/output/json_text.h"
-#include "bench/measure/strategies/strategy_row.h"
+#include "bench/cli/output/output.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/input/input.h"
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"

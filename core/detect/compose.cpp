@@ -252,7 +252,12 @@ class PairTester : public TrianglePairSink {
       ++counts_.relative_dropped;
       return;
     }
-    if (by_owners_) places &= owners_->owned_by(pair);
+    if (by_owners_) {
+      // What others own is carried all the same.
+      const auto owned = static_cast<CarriedPlaces>(places & owners_->owned_by(pair));
+      counts_.feature_pairs += static_cast<unsigned>(std::popcount(static_cast<unsigned>(places ^ owned)));
+      places = owned;
+    }
     if (places != 0) carried_.push_back({pair, places});
   }
 

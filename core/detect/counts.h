@@ -25,7 +25,7 @@ struct PairCounts {
   std::uint64_t adjacent_pctp = 0;     // pairs whose triangles share a vertex
   std::uint64_t relative_dropped = 0;  // non-adjacent pairs dropped by their relative boxes
   std::uint64_t feature_pairs =
-      0;  // feature pairs that the other pairs are tested for, counted as often as that is so
+      0;  // feature pairs carried by the other pairs, counted as often as they are carried
   std::uint64_t elementary_tests = 0;  // distinct feature pairs that the filter left
 };
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/strategy_row.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/measure/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"

@@ -142,7 +142,7 @@ std::vector<Vec3> vectors(const Numbers& numbers) {
 constexpr Components kPositions = Components::floats | Components::bytes | Components::unsigned_bytes |
                                   Components::shorts | Components::unsigned_shorts;
 
-}  // namespace cscd::scenes::gltf
+}  // namespace
 
 // The attributes of a primitive, whether they are compressed or not.
 class Attributes {
