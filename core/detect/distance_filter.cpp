@@ -33,9 +33,10 @@ Vector16 of_kind(const Vector16& vertex_face, const Vector16& edge_edge) {
 }
 
 // The lanes whose features are farther apart along a direction, on one side at both ends. Once the direction
-// is divided by its largest component, gaps are off by less than 32 u times `reach`, the largest coordinate,
-// by the bound of no_contact_before.cpp; points are one difference more off here, which 64 pays for. A
-// direction of 0 divides to no number, and then no comparison holds.
+// is divided by its largest component, a gap is off by less than 32 u times the largest coordinate of the
+// points, by the bound of no_contact_before.cpp. Here points are differences of corners, so that they are up
+// to twice as large as corners and round once more, which the factor 64 pays for. A direction of 0 divides to
+// no number, and then no comparison holds.
 struct Gaps {
   const VectorLanes16 (&point)[3];
   Float16 error, distance;

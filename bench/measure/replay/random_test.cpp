@@ -67,6 +67,18 @@ TEST(RandomVerification, EveryStrategyHoldsOnThreeHundredIntervals) {
   EXPECT_LT(found, expected) << "no contact is ever dropped";
 }
 
+// The same at random thicknesses, for the rows that know distances.
+TEST(RandomVerification, RowsThatKnowDistancesHoldAtRandomThicknesses) {
+  const RandomSummary summary = verify_random({.intervals = 60, .thick = true}, rows_of(strategies()));
+  for (const RandomFailure& failure : summary.failures)
+    ADD_FAILURE() << failure.strategy << ", seed " << failure.seed << ": " << failure.what;
+  EXPECT_EQ(summary.intervals, 80u);
+  EXPECT_GT(summary.embedded_with_contacts, 20u) << "clear starts with close pairs";
+  std::size_t known = 0;
+  for (const Strategy& strategy : strategies()) known += strategy.knows_distance;
+  EXPECT_EQ(summary.rows.size(), known);
+}
+
 TEST(RandomVerification, AFailureNamesItsSeedAndLeavesAFileThatReplays) {
   const Strategy saboteur[] = {
       {"uncertain_is_positive", "for tests", Guarantee::first_contact, Needs::closed_mesh_with_bones,

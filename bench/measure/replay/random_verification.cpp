@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/query/input/thickness.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
@@ -72,7 +73,8 @@ struct Subject {
     const auto draw = [&] { return std::uniform_real_distribution<double>(0, 1)(random_bits); };
     const double least = least_distance_at_start(), some = std::exp2(-8 * draw());
     // Half of the starts are clear, for those who promise nothing of others.
-    const double all = draw() < 0.5 && least > 0 ? some * least : some * mean_edge();
+    const double all =
+        draw() < 0.5 && least > 0 ? some * least : some * mean_edge(mesh, random.clip.frame(0).positions);
     if (draw() < 0.7) {
       thickness = Thickness(all);
       return;
@@ -92,15 +94,6 @@ struct Subject {
                            : distance_at(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), 0));
     });
     return least;
-  }
-  double mean_edge() const {
-    const std::span<const Vec3> start = random.clip.frame(0).positions;
-    double sum = 0;
-    for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-      const auto [p, q] = mesh.ends(EdgeId{static_cast<std::int32_t>(e)});
-      sum += (start[+p] - start[+q]).norm();
-    }
-    return sum / static_cast<double>(mesh.edge_count());
   }
   template <class Take>
   void for_each_pair(const Take& take) const {
