@@ -57,7 +57,7 @@ class PairTester : public TrianglePairSink {
         team_(options_.threads),
         clock_(clock),
         plain_sign_(setup.pipeline == Pipeline::published) {
-    if (options_.owners && exclusions_ == nullptr && !plain_sign_) owners_.emplace(mesh_);
+    if (options_.owners && may_own()) owners_.emplace(mesh_);
   }
 
   void start_interval(const Step& step, ContactSet& out) {
@@ -97,6 +97,11 @@ class PairTester : public TrianglePairSink {
     flush();
     start_ = nullptr;
   }
+  void test_owned(bool alone) override {
+    flush();
+    if (alone && may_own() && !owners_) owners_.emplace(mesh_);
+    owned_alone_ = alone && owners_;
+  }
   bool looks_for_first() const override { return first_only_; }
   double until() const override { return first_only_ ? cut() : 1; }
   void begin_again() override {
@@ -118,10 +123,6 @@ class PairTester : public TrianglePairSink {
       test_carried();
     } else if (first_only_) {
       test_in_order(block);
-    } else if (!thickness_.is_zero()) {
-      carried_.clear();
-      for_each_near(block, [&](const Bounded& pair) { take_all_carried(pair.pair); });
-      test_carried();
     } else {
       carried_.clear();
       for (const TrianglePair& pair : block) take_all_carried(pair);
@@ -129,6 +130,9 @@ class PairTester : public TrianglePairSink {
     }
     clock_.enter(Stage::traversal);
   }
+
+  // An excluded triangle pair may own feature pairs that others, which are not excluded, carry too.
+  bool may_own() const { return exclusions_ == nullptr && !plain_sign_; }
 
   // Visits the triangle pairs that may come near enough no later than the earliest contact that matters.
   template <class Take>
@@ -252,7 +256,7 @@ class PairTester : public TrianglePairSink {
       ++counts_.relative_dropped;
       return;
     }
-    if (by_owners_) {
+    if (by_owners_ || owned_alone_) {
       // What others own is carried all the same.
       const auto owned = static_cast<CarriedPlaces>(places & owners_->owned_by(pair));
       counts_.feature_pairs += static_cast<unsigned>(std::popcount(static_cast<unsigned>(places ^ owned)));
@@ -327,7 +331,7 @@ class PairTester : public TrianglePairSink {
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
   FeaturePairSet met_;                           // feature pairs met in this interval
   std::optional<FeatureOwners> owners_;
-  bool by_owners_ = false;
+  bool by_owners_ = false, owned_alone_ = false;
   std::vector<FeaturePair> remembered_;   // those that touched first in an earlier step
   Tests<MovingVertexFace> vertex_faces_;  // those left that are met for the first time
   Tests<MovingEdgeEdge> edge_edges_;

@@ -32,6 +32,18 @@ Vector16 of_kind(const Vector16& vertex_face, const Vector16& edge_edge) {
   return out;
 }
 
+// The way from the middle of the first triangle to that of the second, times six, in every lane.
+Vector16 way(const Corners& corners) {
+  Vector16 out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    float sum = 0;
+    for (const auto& [first, last] : corners.end)
+      sum += first[12 + i] + last[i] + last[4 + i] - (first[i] + first[4 + i] + first[8 + i]);
+    out[i] = all_lanes(sum);
+  }
+  return out;
+}
+
 // The lanes whose features are farther apart along a direction, on one side at both ends. Once the direction
 // is divided by its largest component, a gap is off by less than 32 u times the largest coordinate of the
 // points, by the bound of no_contact_before.cpp. Here points are differences of corners, so that they are up
@@ -86,7 +98,8 @@ CarriedPlaces not_farther_than(double distance, const Motion& motion, const Tria
     left &= ~static_cast<unsigned>(gaps.farther_along(direction));
     return left == 0;
   };
-  if (ask(across(p, r)) || ask(of_kind(across(q - p, rp), across(rq, p - q))) ||
+  // The way from one triangle to the other parts most that share no vertex.
+  if (ask(way(corners)) || ask(across(p, r)) || ask(of_kind(across(q - p, rp), across(rq, p - q))) ||
       ask(of_kind(across(q, r), across(rq, q))) || ask(of_kind(cross(p, q), cross(p, rq))) || ask(r) ||
       ask(rp) || ask(of_kind(rq, q)) || ask(of_kind(rq, q - p)) || ask(of_kind(rq, across(p, q))))
     return 0;

@@ -115,7 +115,9 @@ std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
 
 // Passes on the pairs near on the surface of which signs say nothing (certify/tall_rings.h).
 void FastCuller::pass_on_near(TrianglePairSink& sink) const {
+  sink.test_owned(true);
   certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { sink.add(a, b); });
+  sink.test_owned(false);
 }
 
 // Passes on pairs until the sink needs no others. A long interval is looked at in parts, in the order of
