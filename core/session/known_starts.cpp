@@ -17,7 +17,16 @@ KnownStarts::KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> referen
     : poses_({mesh, reference}, kMostCrossings), use_bones_(use_bones), thickness_(thickness) {}
 
 bool KnownStarts::begin(const Motion& motion, bool& finite) {
-  return moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+  moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+  if (!moved_on_ && end_follows_ && same_bits(end_, motion.start())) {
+    poses_.follow(end_, end_touched_);
+    free_of_close_pairs_ = false;
+    pose_bones_.swap(end_bones_);
+    end_follows_ = false;
+    end_.clear();
+    moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+  }
+  return moved_on_;
 }
 
 void KnownStarts::abandon(const Motion& motion) {
@@ -34,6 +43,7 @@ void KnownStarts::search(std::span<const Vec3> pose, const Rig::Interval* bones,
     poses_.find(pose);
   }
   free_of_close_pairs_ = false;  // the search is about what crosses
+  end_follows_ = false;
   ++searches_;
 }
 
@@ -42,6 +52,7 @@ Report KnownStarts::see(Detector& detector, Step step, ContactSet& found) {
   step.most_crossings = poses_.most();
   const Report report = detector.detect(step, found);
   poses_.know(step.motion.start(), seen_);
+  end_follows_ = false;
   free_of_close_pairs_ = false;
   return report;
 }
@@ -49,7 +60,7 @@ Report KnownStarts::see(Detector& detector, Step step, ContactSet& found) {
 bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bones, Detector& detector,
                             const Certainty& certainty) {
   const bool has_bones = bones == nullptr || pose_bones_.size() == bones->start.size();
-  if (!(certainty.all || certainty.whether) || !has_bones || same_bits(unknown_end_, pose)) return false;
+  if (!(certainty.all || certainty.whether) || !has_bones || same_bits(end_, pose)) return false;
   std::optional<Rig::Interval> way;
   if (bones != nullptr) way = Rig::Interval{pose_bones_, bones->start};
   detector.detect({.motion = Motion(poses_.positions(), pose),
@@ -60,6 +71,7 @@ bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bon
   const bool all_known = touched_.contacts.empty() || certainty.all;
   if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
   poses_.follow(pose, touched_);
+  end_follows_ = false;
   free_of_close_pairs_ = touched_.contacts.empty();
   return true;
 }
@@ -69,14 +81,18 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
   if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
   const bool nothing_touched = found.contacts.empty() && certainty.whether;
   if (!nothing_touched) abandon(motion);
-  if (nothing_touched || (certainty.all && found.contacts.size() <= kMostFollowed)) {
+  end_follows_ = !nothing_touched && certainty.all && found.contacts.size() <= kMostFollowed;
+  if (nothing_touched) {
     if (!moved_on_) poses_.follow(motion.end(), found);
-    free_of_close_pairs_ = found.contacts.empty();
-    unknown_end_.clear();
+    free_of_close_pairs_ = true;
+    end_.clear();
     if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
-  } else {
-    unknown_end_.assign(motion.end().begin(), motion.end().end());
+    return;
   }
+  end_.assign(motion.end().begin(), motion.end().end());
+  if (!end_follows_) return;
+  end_touched_ = found;
+  if (bones != nullptr) end_bones_.assign(bones->end.begin(), bones->end.end());
 }
 
 }  // namespace cscd

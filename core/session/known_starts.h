@@ -19,7 +19,8 @@ struct Certainty {
 // Knows which triangle pairs cross in one pose: the last one that was searched, or to whose end a motion was
 // followed. Two triangles begin or cease to cross only where something touches, so a step that starts in the
 // known pose, and whose contacts are certain, tells what crosses at its end. Steps are therefore best asked
-// for in the order of the motion.
+// for in the order of the motion. Where something touches, the start stays the known pose until a step starts
+// at the end, because who looks for a step that is free asks about the same start again.
 //
 // With a thickness it knows also which poses are *clear*: nothing crosses, and no pair is close. A step
 // without a contact proves its start and its end clear. The pairs that touch are among the close ones, so
@@ -39,8 +40,9 @@ class KnownStarts {
   // How often crossings have been searched from nothing.
   std::size_t searches() const { return searches_; }
 
-  // Begins a step. Where it starts in the known pose, takes its end for the known pose already, and returns
-  // true; `finite` then says whether the positions of the end are. abandon() or learn_end() have to follow.
+  // Begins a step. Where it starts in the known pose, or where the last step ended, takes its end for the
+  // known pose already, and returns true; `finite` then says whether the positions of the end are. abandon()
+  // or learn_end() have to follow.
   bool begin(const Motion& motion, bool& finite);
   // Ends a step of which nothing is learned: its start is the known pose again.
   void abandon(const Motion& motion);
@@ -73,11 +75,14 @@ class KnownStarts {
   Thickness thickness_;
   bool free_of_close_pairs_ = false;  // known of the known pose
   std::size_t searches_ = 0;
-  bool moved_on_ = false;          // poses_ holds the end of the step that has begun
-  std::vector<Bone> pose_bones_;   // the skeleton in the known pose
-  std::vector<Vec3> unknown_end_;  // of the last step, where its contacts kept the end from being known
-  ContactSet touched_;             // on the way to a pose
-  Crossings seen_;                 // at a start, by a detector
+  bool moved_on_ = false;         // poses_ holds the end of the step that has begun
+  std::vector<Bone> pose_bones_;  // the skeleton in the known pose
+  std::vector<Vec3> end_;         // of the last step in which something touched
+  bool end_follows_ = false;      // from the known pose, by all that touched on the way:
+  ContactSet end_touched_;
+  std::vector<Bone> end_bones_;
+  ContactSet touched_;  // on the way to a pose
+  Crossings seen_;      // at a start, by a detector
 };
 
 }  // namespace cscd

@@ -72,7 +72,9 @@ TEST_F(KnownStartsTest, TheEndOfAStepInWhichNothingTouchesIsKnown) {
   EXPECT_EQ(starts_.searches(), 1u);
 }
 
-TEST_F(KnownStartsTest, TheEndAfterContactsIsKnownWhereTheyAreAll) {
+// Mutations: the end is taken for the known pose at once; its crossings are not followed; an end is followed
+// from another pose than the start of its step.
+TEST_F(KnownStartsTest, BothEndsOfAStepWithContactsAreKnownWhereTheyAreAll) {
   starts_.search(near_, nullptr, nullptr);
   const Motion motion(near_, inside_);
   const ContactSet found = contacts_of(motion);
@@ -80,9 +82,23 @@ TEST_F(KnownStartsTest, TheEndAfterContactsIsKnownWhereTheyAreAll) {
   bool finite = false;
   ASSERT_TRUE(starts_.begin(motion, finite));
   starts_.learn_end(motion, nullptr, kAll, found);
+  EXPECT_TRUE(starts_.embedded());
+  ASSERT_TRUE(starts_.begin(Motion(near_, far_), finite)) << "a shorter step from the same start";
+  starts_.abandon(Motion(near_, far_));
   ASSERT_FALSE(truth(inside_).empty());
+  ASSERT_TRUE(starts_.begin(Motion(inside_, near_), finite));
   EXPECT_EQ(starts_.crossings().pairs, truth(inside_));
-  EXPECT_TRUE(starts_.begin(Motion(inside_, near_), finite));
+  EXPECT_EQ(starts_.searches(), 1u);
+}
+
+TEST_F(KnownStartsTest, AnEndIsFollowedFromTheStartOfItsStepAlone) {
+  starts_.search(near_, nullptr, nullptr);
+  const Motion motion(near_, inside_);
+  bool finite = false;
+  ASSERT_TRUE(starts_.begin(motion, finite));
+  starts_.learn_end(motion, nullptr, kAll, contacts_of(motion));
+  starts_.search(far_, nullptr, nullptr);
+  EXPECT_FALSE(starts_.begin(Motion(inside_, near_), finite));
 }
 
 TEST_F(KnownStartsTest, TheEndAfterContactsIsNotKnownWhereSomeMayBeMissing) {
