@@ -1,4 +1,5 @@
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -229,6 +231,46 @@ TEST(Input, WrongNumbersAreRefused) {
     o.obstacles.emplace_back(kFaces, kStart);
     o.obstacles[0].positions[2][1] = inf;
   });
+}
+
+TEST(Input, MessagesNameNumbersAsTheyAre) {
+  SelfCollision body(kFaces, kStart);
+  expect_refused("safety 1.000000001", [&] { body.largest_step(kStart, kEnd, 1 + 1e-9); });
+  expect_refused("radius -1e-300", [&] { body.candidates(kStart, kEnd, -1e-300); });
+  expect_refused("cap 1e+308", [&] { body.vertex_bounds(kStart, 1e308); });
+}
+
+TEST(Input, PositionsThatWereNeverFilledInAreRefused) {
+  expect_refused("all vertices are in one place",
+                 [] { SelfCollision(kFaces, MatrixXd::Constant(6, 3, 0.5)); });
+}
+
+TEST(Input, AnObjectThatHasBeenMovedFromSaysSo) {
+  SelfCollision body(kFaces, kStart);
+  const SelfCollision other = std::move(body);
+  expect_refused("moved from", [&] { body.is_free(kStart, kEnd); });
+  expect_refused("moved from", [&] { body.vertex_count(); });
+  EXPECT_EQ(other.vertex_count(), 6u);
+}
+
+// Two threads ask one object: every call is answered right, or refused.
+// Mutation: calls are not held apart.
+TEST(Input, ASecondThreadIsTurnedAway) {
+  SelfCollision body(kFaces, kStart);
+  const auto expected = body.first_contact(kStart, kEnd).time();
+  std::atomic<int> refused = 0, wrong = 0;
+  const auto ask_often = [&] {
+    for (int i = 0; i < 20000 && refused < 100; ++i) try {
+        wrong += body.first_contact(kStart, kEnd).time() != expected;
+      } catch (const std::logic_error& error) {
+        wrong += std::string(error.what()).find("another thread") == std::string::npos;
+        ++refused;
+      }
+  };
+  std::thread other(ask_often);
+  ask_often();
+  other.join();
+  EXPECT_EQ(wrong, 0);
 }
 
 // Mutations: the square of a distance overflows, or vanishes.

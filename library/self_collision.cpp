@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <atomic>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -80,6 +82,12 @@ Exclusions exclusions_of(const TriangleMesh& mesh, std::span<const Vec3> referen
   return out;
 }
 
+// A number as messages say it: in as few digits as tell it from every other one.
+std::string text_of(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
 // Runs the call, and turns errors of the input into the library's.
 template <class Call>
 auto checked(const Call& call) {
@@ -88,6 +96,31 @@ auto checked(const Call& call) {
   } catch (const InputError& error) {
     throw std::invalid_argument(error.what());
   }
+}
+
+// What an object holds, unless it has been moved from.
+template <class Engine>
+Engine& held(const std::unique_ptr<Engine>& engine) {
+  if (!engine)
+    throw std::invalid_argument("this SelfCollision has been moved from; use the one it was moved to");
+  return *engine;
+}
+
+// Asks an object, unless another thread is asking it.
+template <class Engine, class Call>
+auto ask(const std::unique_ptr<Engine>& engine, const Call& call) {
+  struct Turn {
+    std::atomic_flag& taken;
+    explicit Turn(std::atomic_flag& flag) : taken(flag) {
+      if (taken.test_and_set(std::memory_order_acquire))
+        throw std::logic_error(
+            "this SelfCollision is answering another thread; give each thread one of its own");
+    }
+    ~Turn() { taken.clear(std::memory_order_release); }
+  };
+  Engine& own = held(engine);
+  const Turn turn(own.in_use);
+  return checked([&] { return call(own); });
 }
 
 // The obstacles of the options as one mesh.
@@ -126,12 +159,18 @@ std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& ob
 
 class SelfCollision::Engine {
  public:
+  std::atomic_flag in_use;  // by a call
+
   Engine(const Faces& faces, const Positions& reference, Options options)
       : options_(std::move(options)),
         reference_(copy_of(rows_of(reference, "reference positions"))),
         mesh_(triangles_of(faces), reference_.size(), "faces"),
         beside_(beside_of(options_.obstacles)) {
     require_finite(reference_, "reference positions");
+    // Positions that were never filled in. Every pair of triangles would cross.
+    if (mesh_.triangle_count() > 1 &&
+        std::ranges::all_of(reference_, [&](const Vec3& p) { return p == reference_[0]; }))
+      throw InputError("reference positions: all vertices are in one place; give the pose at rest");
     if (options_.threads < 1 || options_.threads > kMostThreads)
       throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
                        std::to_string(kMostThreads));
@@ -212,7 +251,7 @@ class SelfCollision::Engine {
 
   void candidates(const Motion& motion, double radius, Candidates& out) {
     if (!(radius >= 0) || !std::isfinite(radius))
-      throw InputError("candidates: radius " + std::to_string(radius) + "; give a length of at least 0");
+      throw InputError("candidates: radius " + text_of(radius) + "; give a finite length of at least 0");
     search().find(motion, Thickness(radius), found_);
     append(mesh_, out);
     if (!obstacles_) return;
@@ -226,7 +265,8 @@ class SelfCollision::Engine {
     const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * cap);
     const Thickness reach(options_.thickness + 2 * cap + slack, options_.vertex_thickness);
     if (!(cap >= 0) || !std::isfinite(reach.largest()))
-      throw InputError("vertex_bounds: cap " + std::to_string(cap) + "; give a finite length of at least 0");
+      throw InputError("vertex_bounds: cap " + text_of(cap) +
+                       "; give a length of at least 0 of which twice, with the thickness, is finite");
     const Motion rest(pose, pose);
     VertexBounds bounds(mesh_.vertex_count(), cap);
     search().find(rest, reach, found_);
@@ -265,7 +305,7 @@ class SelfCollision::Engine {
   Thickness checked_thickness() const {
     const auto require_length = [](double length, const std::string& name) {
       if (!(length >= 0) || !std::isfinite(length))
-        throw InputError("options: " + name + " is " + std::to_string(length) +
+        throw InputError("options: " + name + " is " + text_of(length) +
                          "; give a finite length of at least 0");
     };
     require_length(options_.thickness, "thickness");
@@ -404,43 +444,43 @@ SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
 
 void SelfCollision::place_obstacle(std::size_t obstacle, const Positions& positions) {
-  checked([&] { engine_->move(obstacle, positions, positions); });
+  ask(engine_, [&](Engine& engine) { engine.move(obstacle, positions, positions); });
 }
 
 void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) {
-  checked([&] { engine_->move(obstacle, start, end); });
+  ask(engine_, [&](Engine& engine) { engine.move(obstacle, start, end); });
 }
 
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
-  return checked([&] {
-    engine_->step(engine_->motion(start, end), true, true);
-    return !engine_->crosses() && !engine_->time();
+  return ask(engine_, [&](Engine& engine) {
+    engine.step(engine.motion(start, end), true, true);
+    return !engine.crosses() && !engine.time();
   });
 }
 
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
-  checked([&] {
-    const Motion motion = engine_->motion(start, end);
-    engine_->step(motion, true);
-    engine_->write(motion, out);
+  ask(engine_, [&](Engine& engine) {
+    const Motion motion = engine.motion(start, end);
+    engine.step(motion, true);
+    engine.write(motion, out);
   });
 }
 
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
-  checked([&] {
-    const Motion motion = engine_->motion(start, end);
-    engine_->step(motion, false);
-    engine_->write(motion, out);
+  ask(engine_, [&](Engine& engine) {
+    const Motion motion = engine.motion(start, end);
+    engine.step(motion, false);
+    engine.write(motion, out);
   });
 }
 
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {
-  return checked([&] {
+  return ask(engine_, [&](Engine& engine) {
     if (!(safety > 0 && safety <= 1))
-      throw InputError("largest_step: safety " + std::to_string(safety) + "; give a number in (0, 1]");
-    engine_->step(engine_->motion(start, end), true);
-    if (engine_->crosses()) return 0.0;
-    const std::optional<double> time = engine_->time();
+      throw InputError("largest_step: safety " + text_of(safety) + "; give a number in (0, 1]");
+    engine.step(engine.motion(start, end), true);
+    if (engine.crosses()) return 0.0;
+    const std::optional<double> time = engine.time();
     if (!time) return 1.0;
     // The time of a contact is off by at most 2^-50, and the product rounds by less than that.
     constexpr double kSlack = 0x1p-49;
@@ -450,36 +490,36 @@ double SelfCollision::largest_step(const Positions& start, const Positions& end,
 
 SelfCollision::Candidates SelfCollision::candidates(const Positions& start, const Positions& end,
                                                     double radius) {
-  return checked([&] {
+  return ask(engine_, [&](Engine& engine) {
     Candidates out;
-    const Motion motion = engine_->motion(start, end);
-    engine_->check_finite(motion.start(), "start positions");
-    engine_->check_finite(motion.end(), "end positions");
-    engine_->candidates(motion, radius, out);
+    const Motion motion = engine.motion(start, end);
+    engine.check_finite(motion.start(), "start positions");
+    engine.check_finite(motion.end(), "end positions");
+    engine.candidates(motion, radius, out);
     return out;
   });
 }
 
 std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
-  return checked([&] {
-    const std::span<const Vec3> pose = rows_of(positions, engine_->mesh().vertex_count(), "positions");
-    engine_->check_finite(pose, "positions");
-    return engine_->vertex_bounds(pose, cap);
+  return ask(engine_, [&](Engine& engine) {
+    const std::span<const Vec3> pose = rows_of(positions, engine.mesh().vertex_count(), "positions");
+    engine.check_finite(pose, "positions");
+    return engine.vertex_bounds(pose, cap);
   });
 }
 
 std::vector<std::byte> SelfCollision::preparation() const {
-  return engine_->preparation();
+  return ask(engine_, [](const Engine& engine) { return engine.preparation(); });
 }
 
 std::size_t SelfCollision::vertex_count() const {
-  return engine_->mesh().vertex_count();
+  return held(engine_).mesh().vertex_count();
 }
 std::size_t SelfCollision::face_count() const {
-  return engine_->mesh().triangle_count();
+  return held(engine_).mesh().triangle_count();
 }
 bool SelfCollision::closed() const {
-  return engine_->mesh().closed_and_oriented();
+  return held(engine_).mesh().closed_and_oriented();
 }
 
 }  // namespace cscd

@@ -214,6 +214,19 @@ TEST(VertexBounds, AreComparedWithHalvesAndWithPlanes) {
   EXPECT_GT(planes, bounds);
 }
 
+// Mutation: products of coordinates overflow, or vanish.
+TEST(VertexBounds, DoNotDependOnTheUnit) {
+  const FaceRows faces{{0, 1, 2}, {3, 4, 5}};
+  const Rows pose{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1}, {2, 1, 1}, {1, 2, 2}};
+  const std::vector<double> expected = SelfCollision(faces, pose).vertex_bounds(pose, 8);
+  for (const double unit : {0x1p-900, 0x1p-400, 0x1p400, 0x1p900}) {
+    const Rows scaled = unit * pose;
+    const std::vector<double> found = SelfCollision(faces, scaled).vertex_bounds(scaled, 8 * unit);
+    for (std::size_t v = 0; v < expected.size(); ++v)
+      EXPECT_NEAR(found[v] / unit, expected[v], 1e-12) << unit;
+  }
+}
+
 TEST(VertexBounds, RefuseWhatIsNoLength) {
   const FaceRows face{{0, 1, 2}};
   const Rows pose{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

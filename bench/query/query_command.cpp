@@ -260,7 +260,7 @@ void add_query(CLI::App& app) {
       "clips is answered as a list, `clips`, unless --clip names one; with --clip all any file is.\n\n"
       "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close: "
       "then\n"
-      "something comes that near and nothing touches. What crosses at rest (eyes in sockets, "
+      "something comes that near and nothing touches (with --first, as far as is looked). What crosses at rest (eyes in sockets, "
       "clothes\n"
       "in skin) is how a character is made: pairs of triangles that cross in the bind pose, or in frame 0 of "
       "a\n"

@@ -35,12 +35,16 @@ void VertexBounds::add(const TriangleMesh& mesh, const Motion& motion, std::span
     }
     const double error = 128 * kUnitRoundoff * largest;
     pair.least = thickness.of(mesh, features) + error;
-    const Vec3 way = (edges ? nearest_of_edges(at) : nearest_of_vertex_face(at)).way;
-    const double length = way.norm();
-    // Outside of this range products may underflow or overflow, and a shorter way is mere rounding.
-    if (largest > 1e-100 && largest < 1e100 && length > error && length < 1e101) {
-      for (std::size_t i = 0; i < 4; ++i)
-        pair.height[i] = (i < pair.split ? 1 : -1) * (at[i].dot(way) / length);
+    // Outside of this range numbers may underflow or overflow. Inside, a power of two makes the largest
+    // coordinate about 1, so that products do not. A way that is as short as the error is mere rounding.
+    if (largest > 1e-290 && largest < 1e300) {
+      const double unit = std::ldexp(1.0, std::ilogb(largest));
+      for (Vec3& p : at) p /= unit;
+      const Vec3 way = (edges ? nearest_of_edges(at) : nearest_of_vertex_face(at)).way;
+      const double length = way.norm();
+      if (length > error / unit)
+        for (std::size_t i = 0; i < 4; ++i)
+          pair.height[i] = (i < pair.split ? 1 : -1) * (at[i].dot(way) / length * unit);
       pair.apart = lowest(pair, true, {}) + lowest(pair, false, {}) > pair.least;
     }
     pairs_.push_back(pair);

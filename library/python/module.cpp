@@ -88,7 +88,13 @@ PYBIND11_MODULE(_cscd, module) {
       .def_readonly("weights", &SelfCollision::Contact::weights,
                     "Barycentric weights in the face, or the shares of the way along both edges, [3].")
       .def_readonly("normal_velocity", &SelfCollision::Contact::normal_velocity,
-                    "Of the first feature away from the second, in lengths a step.");
+                    "Of the first feature away from the second, in lengths a step.")
+      .def("__repr__", [](const SelfCollision::Contact& c) {
+        const auto& [p, q, r, s] = c.vertices;
+        return py::str(c.edges ? "<cscd.Contact: edges {} {} and {} {}, at t = {}>"
+                               : "<cscd.Contact: vertex {} and face {} {} {}, at t = {}>")
+            .format(p, q, r, s, c.time);
+      });
 
   py::class_<SelfCollision::Answer>(module, "Answer", "What is known of one step.")
       .def_readonly("contacts", &SelfCollision::Answer::contacts, "List of Contact, by time.")

@@ -49,7 +49,8 @@ namespace cscd {
 // as it was before. Where memory runs out in the middle of a step, std::bad_alloc passes through, and the
 // next steps are answered as by any other object.
 //
-// An object may be used by one thread at a time. Different objects are independent of each other. The
+// An object may be used by one thread at a time: a call that finds another thread at work throws
+// std::logic_error and changes nothing. Different objects are independent of each other. The
 // constructor copies what it is given; the positions of a step are read during the call alone.
 class CSCD_EXPORT SelfCollision {
  public:
@@ -206,8 +207,10 @@ class CSCD_EXPORT SelfCollision {
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
   // Returns 1 for a free step, otherwise `safety`, in (0, 1], times the earliest time, rounded down; 0 if
-  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t], so
-  // that with a thickness the shorter step ends with everything farther apart than that.
+  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t] on
+  // the exact lines. The positions that you store, such as start + t (end - start), are rounded, and may be
+  // off by some units in the last place. Where steps become that short, ask is_free(start, stored), and take
+  // a shorter step if it is not.
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`

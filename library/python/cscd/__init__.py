@@ -83,7 +83,7 @@ class SelfCollision(_cscd.SelfCollision):
 
     A step is two arrays of positions, [vertices, 3] float: every vertex moves in a straight line from the first to
     the second. Answers are exact for the numbers as they are given. Wrong input raises ValueError.
-    One object is used by one thread at a time; different objects are independent.
+    One object is used by one thread at a time, and RuntimeError tells a second one so; different objects are independent.
     """
 
     def __init__(self, faces, reference, *, threads=1, check_positions=True, check_start=True, exclude=None, obstacles=(),
@@ -129,7 +129,11 @@ class SelfCollision(_cscd.SelfCollision):
         return super().all_contacts(*_step(start, end))
 
     def largest_step(self, start, end, safety=0.9):
-        """Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step."""
+        """Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step.
+
+        That is about the exact lines. Positions that you store, such as start + t * (end - start), are rounded: where steps
+        become very short, ask is_free(start, stored) before you go on from there.
+        """
         return super().largest_step(*_step(start, end), float(numbers(safety, "safety", REAL)))
 
     def candidates(self, start, end, radius):

@@ -108,6 +108,29 @@ class SelfCollision(unittest.TestCase):
         self.assertEqual(edge_edge.shape[1], 4)
         self.assertNotIn([3, 4], self.body.candidates(self.before, self.before, 0.5)[0].tolist())
 
+    def test_a_contact_says_what_it_is(self):
+        after = self.before.copy()
+        after[4:] -= [0, 0, 2]
+        first = self.body.first_contact(self.before, after).contacts[0]
+        self.assertRegex(repr(first), r"^<cscd.Contact: (vertex \d+ and face|edges \d+ \d+ and) [\d ]+, at t = 0\.\d+>$")
+
+    def test_a_second_thread_is_turned_away(self):
+        after, wrong = self.before - [0, 0, 1e-3], []
+
+        def ask():
+            for _ in range(3000):
+                try:
+                    self.body.is_free(self.before, after)
+                except RuntimeError as error:
+                    wrong.extend([] if "another thread" in str(error) else [error])
+
+        threads = [threading.Thread(target=ask) for _ in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
     def test_a_thickness(self):
         thick = cscd.SelfCollision(self.faces, self.before, thickness=0.25, vertex_thickness=np.full(8, 0.125))
         after = fallen(self.before, 0.75)
