@@ -84,7 +84,7 @@ class CSCD_EXPORT SelfCollision {
   // obstacles, "a vertex" is a vertex of the mesh or of an obstacle.
   struct Exclusions {
     // Vertices that never collide with each other, such as a part of the mesh that the caller moves as one
-    // body; empty, or one entry a vertex.
+    // body; empty, or one entry a vertex. Surfaces beside the mesh are Options::obstacles.
     std::vector<bool> obstacle;
     // The group of each vertex, from 0, and pairs of groups that do not collide; a group may be paired with
     // itself. Empty, or one entry a vertex.
