@@ -1,0 +1,424 @@
+#include "core/crossing/overlaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/crossing/sheet_distance.h"
+
+namespace cscd {
+namespace {
+
+constexpr std::int32_t kNone = -1;
+
+std::size_t index(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+// Disjoint sets; a root holds minus the number of its elements, or of what they stand for.
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t i) {
+  while (parent[index(i)] >= 0) {
+    std::int32_t& up = parent[index(i)];
+    if (parent[index(up)] >= 0) up = parent[index(up)];
+    i = up;
+  }
+  return i;
+}
+void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  if (a == b) return;
+  if (parent[index(a)] > parent[index(b)]) std::swap(a, b);
+  parent[index(a)] += parent[index(b)];
+  parent[index(b)] = a;
+}
+
+}  // namespace
+
+OverlapFinder::OverlapFinder(const TriangleMesh& mesh)
+    : mesh_(mesh), open_(static_cast<std::size_t>(mesh.component_count()), false) {
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const EdgeId id{static_cast<std::int32_t>(e)};
+    const std::span<const TriangleId> both = mesh.triangles_at(id);
+    const auto runs_forward = [&](TriangleId t) {
+      const Triangle& c = mesh.corners(t);
+      const auto first = std::ranges::find(c, mesh.ends(id)[0]) - c.begin();
+      return c[static_cast<std::size_t>((first + 1) % 3)] == mesh.ends(id)[1];
+    };
+    if (both.size() == 2 && runs_forward(both[0]) != runs_forward(both[1])) continue;
+    for (const TriangleId t : both) open_[index(mesh.component(t))] = true;
+  }
+}
+
+// The search of one pose.
+class PoseOverlaps {
+ public:
+  PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> positions, bool each_distance)
+      : finder_(finder), mesh_(finder.mesh_), positions_(positions), each_distance_(each_distance) {}
+
+  Overlaps find(std::span<const CrossingPair> pairs) {
+    out_.crossing = find_curves(mesh_, positions_, pairs);
+    if (crossing().curves.empty()) return std::move(out_);
+    cut();
+    join_fragments();
+    choose_regions();
+    for (std::size_t r = 0; r < regions_.size(); ++r) flood(r);
+    gather_other_sheets();
+    for (std::size_t r = 0; r < regions_.size(); ++r) measure(r);
+    group();
+    clean();
+    return std::move(out_);
+  }
+
+ private:
+  // Edges of one component and the faces of one, the same or another, that they pierce.
+  struct Group {
+    std::int32_t own, other;           // components
+    std::vector<std::int32_t> parent;  // [fragments], joined where the other component does not part them
+    auto operator<=>(const Group& with) const {
+      return std::pair(own, other) <=> std::pair(with.own, with.other);
+    }
+    bool operator==(const Group& with) const { return own == with.own && other == with.other; }
+  };
+  struct Seed {
+    VertexId vertex;
+    std::int32_t image;
+  };
+  struct Found {
+    std::size_t group;
+    CrossingRegion region;
+    std::vector<Seed> seeds;
+    std::vector<std::int32_t> images;  // that bound it; sorted
+  };
+
+  const CrossingCurves& crossing() const { return out_.crossing; }
+  std::int32_t component(EdgeId edge) const { return mesh_.component(mesh_.triangles_at(edge).front()); }
+
+  // Joins all vertices between which no curve runs to fragments.
+  void cut() {
+    finder_.parent_.assign(mesh_.vertex_count(), -1);
+    finder_.is_pierced_.resize(mesh_.edge_count(), 0);
+    finder_.is_on_curve_.resize(mesh_.vertex_count(), 0);
+    finder_.visited_.resize(mesh_.vertex_count(), kNone);
+    for (const Piercing& p : crossing().piercings) finder_.is_pierced_[+p.edge] = 1;
+    for (const CrossingCurve& curve : crossing().curves)
+      for (const CrossingCurve::Node& node : curve.nodes)
+        if (node.piercing < 0) finder_.is_on_curve_[+node.vertex] = 1;
+    const std::span<const Edge> edges = mesh_.edges();
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      if (!finder_.is_pierced_[e] && !is_on_curve(edges[e][0]) && !is_on_curve(edges[e][1]))
+        unite(finder_.parent_, static_cast<std::int32_t>(edges[e][0]),
+              static_cast<std::int32_t>(edges[e][1]));
+  }
+  bool is_on_curve(VertexId v) const { return finder_.is_on_curve_[+v] != 0; }
+
+  std::int32_t vertex_root(VertexId v) { return root_of(finder_.parent_, static_cast<std::int32_t>(v)); }
+  std::int32_t fragment(VertexId v) const {
+    const std::int32_t root = root_of(finder_.parent_, static_cast<std::int32_t>(v));
+    return static_cast<std::int32_t>(std::ranges::lower_bound(roots_, root) - roots_.begin());
+  }
+
+  // How faces of a component part the ends of an edge, of which piercing p is the first: not at all if they
+  // pierce it an even number of times, and else so that one end lies behind more of them.
+  struct Parting {
+    bool parts = false;
+    VertexId behind{-1}, before{-1};
+  };
+  Parting parting(std::size_t p, std::int32_t other) const {
+    int balance = 0;  // of faces that have end 0 behind them; odd if their number is
+    const std::vector<Piercing>& all = crossing().piercings;
+    const EdgeId edge = all[p].edge;
+    const Edge& ends = mesh_.ends(edge);
+    for (; p < all.size() && all[p].edge == edge; ++p)
+      if (mesh_.component(all[p].face) == other) balance += all[p].behind == ends[0] ? 1 : -1;
+    return {balance % 2 != 0, ends[balance > 0 ? 0 : 1], ends[balance > 0 ? 1 : 0]};
+  }
+
+  // For each pair of components, joins the fragments of one that the other component does not part: those at
+  // both ends of an edge that its faces pierce an even number of times.
+  void join_fragments() {
+    const std::vector<Piercing>& all = crossing().piercings;
+    for (const Piercing& p : all) {
+      roots_.push_back(vertex_root(p.behind));
+      roots_.push_back(vertex_root(p.before));
+      groups_.push_back({component(p.edge), mesh_.component(p.face), {}});
+    }
+    const auto make_unique = [](auto& items) {
+      std::ranges::sort(items);
+      items.erase(std::unique(items.begin(), items.end()), items.end());
+    };
+    make_unique(roots_);
+    make_unique(groups_);
+    std::vector<std::int32_t> sizes;
+    for (const std::int32_t root : roots_) sizes.push_back(finder_.parent_[index(root)]);
+    for (Group& group : groups_) group.parent = sizes;
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      if (p > 0 && all[p].edge == all[p - 1].edge) continue;
+      if (is_on_curve(all[p].behind) || is_on_curve(all[p].before)) continue;
+      const std::int32_t own = component(all[p].edge);
+      for (Group& group : groups_)
+        if (group.own == own && !parting(p, group.other).parts)
+          unite(group.parent, fragment(all[p].behind), fragment(all[p].before));
+    }
+    for (const std::int32_t root : roots_) {
+      const VertexId v{root};
+      vertices_of_component_[mesh_.component(mesh_.triangles_at(v).front())] -= finder_.parent_[index(root)];
+    }
+  }
+
+  // Chooses the region on one side of each curve, on each of its sheets.
+  void choose_regions() {
+    region_of_image_.assign(2 * crossing().curves.size(), kNone);
+    std::map<std::pair<std::size_t, std::int32_t>, std::size_t> known;
+    for (std::size_t c = 0; c < crossing().curves.size(); ++c)
+      for (const CrossingCurve::Node& node : crossing().curves[c].nodes) {
+        if (node.piercing < 0) continue;
+        const Piercing& piercing = crossing().piercings[index(node.piercing)];
+        const Group key{component(piercing.edge), mesh_.component(piercing.face), {}};
+        const Parting p = parting(first_piercing(piercing.edge), key.other);
+        if (!p.parts || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
+        const auto g = static_cast<std::size_t>(std::ranges::lower_bound(groups_, key) - groups_.begin());
+        std::vector<std::int32_t>& parent = groups_[g].parent;
+        const std::int32_t behind = root_of(parent, fragment(p.behind)),
+                           before = root_of(parent, fragment(p.before));
+        if (behind == before) continue;
+        const bool is_behind = takes_behind(groups_[g], behind, before);
+        const auto image = static_cast<std::int32_t>(2 * c + node.edge_sheet);
+        const auto [at, added] = known.try_emplace({g, is_behind ? behind : before}, regions_.size());
+        if (added) regions_.push_back({g, {}, {}, {}});
+        Found& found = regions_[at->second];
+        found.region.behind = is_behind && !finder_.open_[index(key.other)];
+        found.seeds.push_back({is_behind ? p.behind : p.before, image});
+        found.images.push_back(image);
+        region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);
+      }
+    for (Found& found : regions_) {
+      std::ranges::sort(found.images);
+      found.images.erase(std::unique(found.images.begin(), found.images.end()), found.images.end());
+    }
+  }
+
+  // Whether the part behind the other sheet is the region. Sizes are minus the numbers of vertices.
+  bool takes_behind(const Group& group, std::int32_t behind, std::int32_t before) {
+    const std::int32_t inner = -group.parent[index(behind)], outer = -group.parent[index(before)];
+    if (finder_.open_[index(group.other)]) return inner <= outer;
+    return group.own != group.other || 2 * inner <= vertices_of_component_[group.own] || inner <= outer;
+  }
+
+  // Collects the vertices of a region, from all its curves inwards.
+  void flood(std::size_t r) {
+    Found& found = regions_[r];
+    std::vector<VertexId>& list = found.region.vertices;
+    const std::int32_t other = groups_[found.group].other;
+    const auto take = [&](VertexId v, std::int32_t image) {
+      if (finder_.visited_[+v] == static_cast<std::int32_t>(r)) return;
+      finder_.visited_[+v] = static_cast<std::int32_t>(r);
+      list.push_back(v);
+      found.region.image.push_back(image);
+    };
+    for (const Seed& seed : found.seeds) take(seed.vertex, seed.image);
+    for (std::size_t i = 0; i < list.size(); ++i)
+      for (const TriangleId t : mesh_.triangles_at(list[i])) {
+        const Triangle& c = mesh_.corners(t);
+        found.region.area +=
+            (positions_[+c[1]] - positions_[+c[0]]).cross(positions_[+c[2]] - positions_[+c[0]]).norm() / 6;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const EdgeId edge = mesh_.edges_of(t)[k];
+          const Edge& ends = mesh_.ends(edge);
+          if (ends[0] != list[i] && ends[1] != list[i]) continue;
+          const VertexId next = ends[0] == list[i] ? ends[1] : ends[0];
+          if (!is_on_curve(next) &&
+              !(finder_.is_pierced_[+edge] && parting(first_piercing(edge), other).parts))
+            take(next, found.region.image[i]);
+        }
+      }
+  }
+  std::size_t first_piercing(EdgeId edge) const {
+    return static_cast<std::size_t>(
+        std::ranges::lower_bound(crossing().piercings, edge, {}, &Piercing::edge) -
+        crossing().piercings.begin());
+  }
+
+  // For each image, the triangles that have a vertex of its own, or that its curve runs through.
+  void gather_other_sheets() {
+    sheet_.resize(region_of_image_.size());
+    for (std::size_t m = 0; m < sheet_.size(); ++m)
+      for (const auto& pair : crossing().curves[m / 2].segments) sheet_[m].push_back(pair[m % 2]);
+    for (const Found& found : regions_)
+      for (std::size_t i = 0; i < found.region.vertices.size(); ++i)
+        for (const TriangleId t : mesh_.triangles_at(found.region.vertices[i]))
+          sheet_[index(found.region.image[i])].push_back(t);
+  }
+
+  std::vector<TriangleId> component_triangles(std::int32_t component) const {
+    std::vector<TriangleId> out;
+    for (std::size_t t = 0; t < mesh_.triangle_count(); ++t)
+      if (const TriangleId id{static_cast<std::int32_t>(t)}; mesh_.component(id) == component)
+        out.push_back(id);
+    return out;
+  }
+
+  // Whether a curve has no vertex beyond it on one sheet: no edge that it meets there has its ends on two
+  // sides. What it cuts off then lies in the triangles through which it runs. A curve between vertices at
+  // which the surface turns inside out cuts off one piece of both sheets.
+  bool has_no_vertex(std::int32_t image) const {
+    const CrossingCurve& curve = crossing().curves[index(image / 2)];
+    using End = CrossingCurve::End;
+    if (!curve.closed() && (curve.first != End::vertex || curve.last != End::vertex)) return false;
+    return std::ranges::none_of(curve.nodes, [&](const CrossingCurve::Node& node) {
+      if (node.piercing < 0 || (curve.closed() && node.edge_sheet != image % 2)) return false;
+      const Piercing& p = crossing().piercings[index(node.piercing)];
+      return parting(first_piercing(p.edge), mesh_.component(p.face)).parts;
+    });
+  }
+
+  // The other sheet of the vertices of a region that belong to one image.
+  std::vector<TriangleId> other_sheet(std::int32_t image, std::size_t r) {
+    const std::int32_t opposite = image ^ 1, other = region_of_image_[index(opposite)];
+    std::vector<TriangleId> out = sheet_[index(opposite)];
+    if (other == kNone && !has_no_vertex(opposite)) {
+      const Group& group = groups_[regions_[r].group];
+      regions_[r].region.other_is_open = true;
+      if (group.own != group.other) return component_triangles(group.other);
+    } else if (other != kNone && other != static_cast<std::int32_t>(r)) {
+      for (const std::int32_t also : regions_[index(other)].images)
+        if (also != opposite) out.insert(out.end(), sheet_[index(also)].begin(), sheet_[index(also)].end());
+    }
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  void measure(std::size_t r) {
+    CrossingRegion& region = regions_[r].region;
+    if (each_distance_) region.distance.assign(region.vertices.size(), 0);
+    bool is_upper_only = false;
+    for (const std::int32_t image : regions_[r].images) {
+      const std::vector<TriangleId> other = other_sheet(image, r);
+      const Group& group = groups_[regions_[r].group];
+      is_upper_only = is_upper_only || (group.own == group.other && regions_[r].region.other_is_open);
+      const SheetDistance to(mesh_, positions_, other);
+      // The vertices that are farthest from the curves come first: they are deepest most often, and then the
+      // others need no search.
+      for (std::size_t i = region.vertices.size(); i-- > 0;) {
+        if (region.image[i] != image) continue;
+        const Vec3& x = positions_[+region.vertices[i]];
+        const SheetDistance::Nearest nearest = to.nearest(x, each_distance_ ? 0 : region.depth.lower);
+        if (each_distance_) region.distance[i] = nearest.distance;
+        if (nearest.distance <= region.depth.lower && region.depth.vertex != VertexId{-1}) continue;
+        region.depth.lower = nearest.distance;
+        region.depth.vertex = region.vertices[i];
+        region.depth.nearest = nearest.triangle;
+      }
+    }
+    if (region.depth.vertex != VertexId{-1}) {
+      const Triangle& c = mesh_.corners(region.depth.nearest);
+      const Vec3& x = positions_[+region.depth.vertex];
+      region.depth.out =
+          -nearest_of_vertex_face({x, positions_[+c[0]], positions_[+c[1]], positions_[+c[2]]}).way;
+    }
+    region.depth.upper = region.depth.lower + reach(regions_[r].images, region.vertices);
+    if (is_upper_only) region.depth.lower = 0;
+  }
+
+  // How far a point of what the images bound can be from all vertices there and all points of the curves.
+  // Within one triangle, that part is a union of triangles between such points, and any point of a triangle
+  // is within 1 / sqrt(3) of its longest edge of some corner.
+  double reach(std::span<const std::int32_t> images, std::span<const VertexId> vertices) const {
+    std::vector<std::pair<TriangleId, Vec3>> points;
+    for (const std::int32_t image : images) {
+      const CrossingCurve& curve = crossing().curves[index(image / 2)];
+      for (std::size_t i = 0; i < curve.segments.size(); ++i)
+        for (const std::size_t node : {i, (i + 1) % curve.nodes.size()})
+          points.emplace_back(curve.segments[i][index(image % 2)],
+                              crossing().point(curve.nodes[node], positions_));
+    }
+    for (const VertexId v : vertices)
+      for (const TriangleId t : mesh_.triangles_at(v)) points.emplace_back(t, positions_[+v]);
+    std::ranges::sort(points, {}, [](const auto& p) { return p.first; });
+    double most = 0;
+    for (std::size_t i = 0; i < points.size();) {
+      Vec3 low = points[i].second, high = low;
+      const TriangleId t = points[i].first;
+      const std::size_t first = i;
+      for (; i < points.size() && points[i].first == t; ++i) {
+        low = low.cwiseMin(points[i].second);
+        high = high.cwiseMax(points[i].second);
+      }
+      double widest = 0;
+      if (i - first <= 8)
+        for (std::size_t a = first; a < i; ++a)
+          for (std::size_t b = a + 1; b < i; ++b)
+            widest = std::max(widest, (points[a].second - points[b].second).squaredNorm());
+      else
+        widest = (high - low).squaredNorm();
+      most = std::max(most, widest);
+    }
+    return std::sqrt(most) * std::numbers::inv_sqrt3;
+  }
+
+  // Joins curves that bound one region, and the two sheets of each, to overlaps.
+  void group() {
+    std::vector<std::int32_t> parent(crossing().curves.size(), -1);
+    for (const Found& found : regions_)
+      for (const std::int32_t image : found.images) unite(parent, found.images.front() / 2, image / 2);
+    std::map<std::int32_t, std::size_t> number;
+    for (std::size_t c = 0; c < parent.size(); ++c) {
+      const auto curve = static_cast<std::int32_t>(c);
+      const auto [at, added] = number.try_emplace(root_of(parent, curve), out_.overlaps.size());
+      if (added) out_.overlaps.emplace_back();
+      Overlap& overlap = out_.overlaps[at->second];
+      overlap.curves.push_back(curve);
+      // What has no vertex beyond the other sheet is bounded by points of the curve alone.
+      for (const std::int32_t image : {2 * curve, 2 * curve + 1})
+        if (region_of_image_[index(image)] == kNone)
+          overlap.depth.upper = std::max(overlap.depth.upper, reach(std::span(&image, 1), {}));
+    }
+    for (Found& found : regions_)
+      out_.overlaps[number.at(root_of(parent, found.images.front() / 2))].regions.push_back(
+          std::move(found.region));
+    for (Overlap& overlap : out_.overlaps) {
+      std::ranges::stable_sort(overlap.regions, std::ranges::greater{},
+                               [](const CrossingRegion& r) { return r.depth.lower; });
+      if (overlap.regions.empty()) continue;
+      double upper = overlap.depth.upper;
+      for (const CrossingRegion& region : overlap.regions) upper = std::max(upper, region.depth.upper);
+      overlap.depth = overlap.regions.front().depth;
+      overlap.depth.upper = upper;
+    }
+    std::ranges::stable_sort(out_.overlaps, std::ranges::greater{},
+                             [](const Overlap& o) { return o.depth.lower; });
+  }
+
+  // Leaves the finder's marks as they were.
+  void clean() {
+    for (const Piercing& p : crossing().piercings) finder_.is_pierced_[+p.edge] = 0;
+    for (const CrossingCurve& curve : crossing().curves)
+      for (const CrossingCurve::Node& node : curve.nodes)
+        if (node.piercing < 0) finder_.is_on_curve_[+node.vertex] = 0;
+    for (const Overlap& overlap : out_.overlaps)
+      for (const CrossingRegion& region : overlap.regions)
+        for (const VertexId v : region.vertices) finder_.visited_[+v] = kNone;
+  }
+
+  OverlapFinder& finder_;
+  const TriangleMesh& mesh_;
+  std::span<const Vec3> positions_;
+  bool each_distance_;
+  Overlaps out_;
+  std::vector<std::int32_t> roots_;  // of the fragments at piercings; sorted
+  std::vector<Group> groups_;        // sorted
+  std::map<std::int32_t, std::int32_t> vertices_of_component_;
+  std::vector<Found> regions_;
+  std::vector<std::int32_t> region_of_image_;   // [images], or kNone
+  std::vector<std::vector<TriangleId>> sheet_;  // [images]
+};
+
+Overlaps OverlapFinder::find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
+                             bool each_distance) {
+  if (pairs.empty()) return {};
+  return PoseOverlaps(*this, positions, each_distance).find(pairs);
+}
+
+}  // namespace cscd

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/vec3.h"
+#include "core/crossing/curves.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace cscd {
+
+// How deep a region lies beyond the other sheet.
+struct CrossingDepth {
+  // The largest distance of a vertex to the other sheet, up to rounding, and what no point of the region
+  // exceeds.
+  double lower = 0, upper = 0;
+  VertexId vertex{-1};      // the deepest, and
+  TriangleId nearest{-1};   // the triangle of the other sheet that is nearest to it
+  Vec3 out = Vec3::Zero();  // the way from the deepest vertex to the nearest point of that triangle
+};
+
+// What crossing curves cut off one sheet: vertices that lie on the other side of the other sheet.
+//
+// An *image* of a curve is its course on one of its two sheets: number 2 c + s is that of curve c on sheet s.
+// Each vertex belongs to the image that is nearest along edges. Its depth is the distance to what the same
+// curve cuts off the other sheet: to all triangles that have a vertex there, or that the curve runs through.
+struct CrossingRegion {
+  // The region lies behind the faces of the other sheet, inside a closed body. Otherwise it is the smaller
+  // side of the curves: the other sheet is open, or one surface crosses itself and more than half of its
+  // vertices lie behind.
+  bool behind = true;
+  // What the curves cut off the other sheet is not bounded: a curve ends on it, or has no vertex of it
+  // beyond. The distance is then that to the other component, or within one component to the curves'
+  // triangles alone; there the depth is an upper bound, and `lower` is 0.
+  bool other_is_open = false;
+  std::vector<VertexId> vertices;   // from the curves inwards
+  std::vector<std::int32_t> image;  // [vertices]
+  std::vector<double> distance;     // [vertices], of each to the other sheet; only where it was asked for
+  double area = 0;                  // a third of each triangle for each of its corners here
+  CrossingDepth depth;
+};
+
+// Curves and the regions that they cut off, as far as they hang together: two pieces of the surface that lie
+// in each other.
+struct Overlap {
+  std::vector<std::int32_t> curves;
+  std::vector<CrossingRegion> regions;  // deepest first
+  // Of the deepest region. Without regions only `upper` says something: no vertex lies in the other sheet.
+  CrossingDepth depth;
+};
+
+struct Overlaps {
+  CrossingCurves crossing;
+  std::vector<Overlap> overlaps;  // deepest first
+};
+
+// Finds what lies in what, one pose after another of one mesh. Where nothing crosses, a call does nothing.
+class OverlapFinder {
+ public:
+  explicit OverlapFinder(const TriangleMesh& mesh);  // `mesh` must outlive the object
+
+  // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_distance` every vertex of
+  // every region gets its distance.
+  Overlaps find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
+                bool each_distance = false);
+
+ private:
+  friend class PoseOverlaps;
+  const TriangleMesh& mesh_;
+  std::vector<bool> open_;                // [components], whether it has an edge without two proper sides
+  std::vector<std::int32_t> parent_;      // [vertices]; the parent, or minus the number of vertices of a root
+  std::vector<std::uint8_t> is_pierced_;  // [edges]
+  std::vector<std::uint8_t> is_on_curve_;  // [vertices], whether a curve ends there
+  std::vector<std::int32_t> visited_;      // [vertices], by which region
+};
+
+}  // namespace cscd

@@ -1,0 +1,268 @@
+#include "core/crossing/overlaps.h"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <random>
+#include <set>
+#include <string>
+
+#include "core/detect/start/embedding.h"
+#include "core/elementary/exact/static_contact.h"
+#include "core/elementary/exact/triangles_meet.h"
+#include "core/geometry/feature_distance.h"
+#include "core/mesh/adjacency.h"
+#include "core/mesh/test_shapes.h"
+
+// Random closed surfaces, judged by the definitions: all pairs of triangles, and parities along rays.
+namespace cscd {
+namespace {
+
+using End = CrossingCurve::End;
+
+// How many surfaces of each kind; more by CSCD_RANDOM_SURFACES=10000.
+int count() {
+  const char* asked = std::getenv("CSCD_RANDOM_SURFACES");
+  return asked != nullptr ? std::atoi(asked) : 1000;
+}
+
+TriangleId triangle(std::size_t t) {
+  return TriangleId{static_cast<std::int32_t>(t)};
+}
+
+std::vector<CrossingPair> all_pairs(const TriangleMesh& mesh, std::span<const Vec3> x) {
+  std::vector<CrossingPair> out;
+  for (std::size_t a = 0; a < mesh.triangle_count(); ++a)
+    for (std::size_t b = a + 1; b < mesh.triangle_count(); ++b)
+      if (triangles_meet(mesh, x, triangle(a), triangle(b))) out.emplace_back(triangle(a), triangle(b));
+  return out;
+}
+
+// Two shapes of one component each, turned, dented and pushed into each other.
+struct Pushed {
+  explicit Pushed(unsigned seed) : random(seed) {
+    const auto shape = [&] {
+      switch (random() % 4) {
+        case 0:
+          return test::octahedron();
+        case 1:
+          return test::icosphere(1);
+        case 2:
+          return test::moved(test::torus(8, 5), Vec3::Zero(), 0.5);
+        default:
+          return test::moved(test::capped_tube(5, 4, 0.3, 2), {-1, 0, 0});
+      }
+    };
+    const test::Shape first = shape();
+    half = first.positions.size();
+    shapes = test::together(first, shape());
+    const Vec3 move = 1.2 * draw();
+    const Eigen::AngleAxisd turn(3 * some(random), draw().normalized());
+    for (std::size_t v = 0; v < shapes.positions.size(); ++v) {
+      Vec3& x = shapes.positions[v];
+      if (v >= half) x = turn * x + move;
+      x += 0.1 * draw();
+    }
+  }
+  Vec3 draw() { return {some(random), some(random), some(random)}; }
+
+  std::mt19937 random;
+  std::uniform_real_distribution<double> some{-1, 1};
+  std::size_t half = 0;
+  test::Shape shapes;
+};
+
+// Whether a point lies inside a closed component: an odd number of its triangles lie on a ray.
+bool is_inside(const TriangleMesh& mesh, std::span<const Vec3> x, std::int32_t component, const Vec3& p) {
+  const Vec3 far = p + Vec3(91.3, 57.7, 33.1);
+  bool odd = false;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& c = mesh.triangles()[t];
+    if (mesh.component(triangle(t)) == component)
+      odd ^= segment_touches_triangle(p, far, x[+c[0]], x[+c[1]], x[+c[2]]);
+  }
+  return odd;
+}
+
+// Each pair that crosses is in one curve once; neighbouring segments have neighbouring triangles; curves end
+// at shared vertices alone, as the surface is closed.
+void expect_curves_right(const TriangleMesh& mesh, const CrossingCurves& found,
+                         std::span<const CrossingPair> pairs) {
+  std::set<CrossingPair> seen;
+  std::size_t known = 0;
+  for (const CrossingCurve& curve : found.curves) {
+    EXPECT_TRUE(curve.closed() || (curve.first == End::vertex && curve.last == End::vertex));
+    ASSERT_EQ(curve.nodes.size(), curve.segments.size() + !curve.closed());
+    for (std::size_t i = 0; i < curve.segments.size(); ++i) {
+      const auto [a, b] = curve.segments[i];
+      EXPECT_TRUE(seen.insert(std::minmax(a, b)).second);
+      known += std::ranges::binary_search(pairs, CrossingPair(std::minmax(a, b)));
+      if (!curve.closed() && i + 1 == curve.segments.size()) continue;
+      const CrossingCurve::Node& node = curve.nodes[(i + 1) % curve.nodes.size()];
+      const Piercing& p = found.piercings[static_cast<std::size_t>(node.piercing)];
+      const auto& next = curve.segments[(i + 1) % curve.segments.size()];
+      // A curve may come back with its sheets exchanged.
+      const bool exchanged = i + 1 == curve.segments.size() && next[1U - node.edge_sheet] != p.face;
+      EXPECT_EQ(p.face, curve.segments[i][1U - node.edge_sheet]);
+      EXPECT_EQ(p.face, next[exchanged ? node.edge_sheet : 1U - node.edge_sheet]);
+      const auto at_edge = mesh.triangles_at(p.edge);
+      const std::set<TriangleId> both{curve.segments[i][node.edge_sheet],
+                                      next[exchanged ? 1U - node.edge_sheet : node.edge_sheet]};
+      EXPECT_EQ(both, std::set<TriangleId>(at_edge.begin(), at_edge.end()));
+    }
+  }
+  EXPECT_EQ(known + found.touching, pairs.size());
+  if (found.degenerate == 0) {
+    EXPECT_EQ(known, seen.size());
+  }
+}
+
+TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
+  int with_regions = 0, deep = 0;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    Pushed pushed(static_cast<unsigned>(n));
+    const TriangleMesh mesh = pushed.shapes.mesh();
+    const std::vector<Vec3>& x = pushed.shapes.positions;
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, x);
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(x, pairs, true);
+    expect_curves_right(mesh, found.crossing, pairs);
+    if (HasFailure()) return;
+
+    bool embedded[2] = {true, true}, cross = false;
+    for (const auto& [a, b] : pairs) {
+      if (mesh.component(a) == mesh.component(b))
+        embedded[mesh.component(a)] = false;
+      else
+        cross = true;
+    }
+    if (!embedded[0] || !embedded[1] || !cross) continue;
+    std::set<VertexId> inside, beyond;
+    for (std::size_t v = 0; v < x.size(); ++v)
+      if (is_inside(mesh, x, v < pushed.half ? 1 : 0, x[v])) inside.insert(VertexId{static_cast<int>(v)});
+    for (const Overlap& overlap : found.overlaps)
+      for (const CrossingRegion& region : overlap.regions) {
+        EXPECT_TRUE(region.behind);
+        EXPECT_FALSE(region.other_is_open);
+        for (const VertexId v : region.vertices) EXPECT_TRUE(beyond.insert(v).second);
+        with_regions += 1;
+      }
+    EXPECT_EQ(beyond, inside);
+
+    // Where all hangs together, the other sheet is all triangles that lie inside or are cut.
+    if (found.overlaps.size() != 1) continue;
+    std::set<TriangleId> sheet;
+    for (const auto& [a, b] : pairs) sheet.insert({a, b});
+    for (const VertexId v : inside)
+      for (const TriangleId t : mesh.triangles_at(v)) sheet.insert(t);
+    const auto distance_to_other = [&](const Vec3& p, std::int32_t own) {
+      double least = 1e300;
+      for (const TriangleId t : sheet) {
+        const Triangle& c = mesh.corners(t);
+        if (mesh.component(t) != own)
+          least = std::min(least, squared_point_triangle_distance(p, x[+c[0]], x[+c[1]], x[+c[2]]));
+      }
+      return std::sqrt(least);
+    };
+    const Overlap& overlap = found.overlaps.front();
+    double deepest = 0;
+    for (const VertexId v : inside)
+      deepest = std::max(deepest, distance_to_other(x[+v], +v < pushed.half ? 0 : 1));
+    if (found.crossing.curves.size() == 1) {
+      EXPECT_NEAR(overlap.depth.lower, deepest, 1e-12);
+    }
+    EXPECT_GE(overlap.depth.lower, deepest - 1e-12);
+    EXPECT_LE(overlap.depth.lower, overlap.depth.upper);
+    if (overlap.depth.vertex != VertexId{-1}) {
+      EXPECT_TRUE(inside.contains(overlap.depth.vertex));
+      EXPECT_NEAR(overlap.depth.out.norm(), overlap.depth.lower, 1e-12);
+    }
+    // Any point of a sheet that lies inside the other.
+    for (int i = 0; i < 300; ++i) {
+      const std::size_t t = pushed.random() % mesh.triangle_count();
+      const Triangle& c = mesh.triangles()[t];
+      const double u = std::abs(pushed.some(pushed.random)), w = std::abs(pushed.some(pushed.random));
+      const double r = std::sqrt(u);
+      const Vec3 p = (1 - r) * x[+c[0]] + r * (1 - w) * x[+c[1]] + r * w * x[+c[2]];
+      const std::int32_t own = mesh.component(triangle(t));
+      if (!is_inside(mesh, x, 1 - own, p)) continue;
+      EXPECT_LE(distance_to_other(p, own), overlap.depth.upper + 1e-12);
+      deep += 1;
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(with_regions, count() / 2);
+  EXPECT_GT(deep, count());
+}
+
+// On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane.
+TEST(Overlaps, HaveWholeCurvesWhereSurfacesTouchExactly) {
+  std::size_t degenerate = 0, touching = 0;
+  for (int n = 0; n < count() / 5; ++n) {
+    SCOPED_TRACE(n);
+    Pushed pushed(static_cast<unsigned>(n));
+    for (Vec3& x : pushed.shapes.positions) x = (4 * x).array().round() / 4;
+    const TriangleMesh mesh = pushed.shapes.mesh();
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, pushed.shapes.positions);
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(pushed.shapes.positions, pairs);
+    expect_curves_right(mesh, found.crossing, pairs);
+    degenerate += found.crossing.degenerate;
+    touching += found.crossing.touching;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(degenerate, 100U);
+  EXPECT_GT(touching, 100U);
+}
+
+// A ball whose vertices are moved so far that it crosses itself. Every closed curve of a ball parts it, so an
+// edge changes sides if and only if it is pierced an odd number of times.
+TEST(Overlaps, PartSurfacesThatCrossThemselves) {
+  int crossing = 0;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    std::mt19937 random(static_cast<unsigned>(n));
+    std::uniform_real_distribution<double> some(-1, 1);
+    test::Shape ball = n % 2 != 0 ? test::icosphere(1) : test::capped_tube(6, 6, 0.4, 2);
+    for (Vec3& x : ball.positions) x += 0.35 * Vec3(some(random), some(random), some(random));
+    const TriangleMesh mesh = ball.mesh();
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, ball.positions);
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(ball.positions, pairs);
+    expect_curves_right(mesh, found.crossing, pairs);
+    std::vector<int> piercings(mesh.edge_count(), 0), side(mesh.vertex_count(), -1);
+    for (const Piercing& p : found.crossing.piercings) ++piercings[+p.edge];
+    for (const CrossingCurve& curve : found.crossing.curves)
+      for (const CrossingCurve::Node& node : curve.nodes)
+        if (node.piercing < 0) side[+node.vertex] = 2;
+    for (std::size_t first = 0; first < side.size(); ++first) {
+      if (side[first] >= 0) continue;
+      std::vector<std::size_t> open{first};
+      side[first] = 0;
+      while (!open.empty()) {
+        const std::size_t v = open.back();
+        open.pop_back();
+        for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+          const Edge& ends = mesh.edges()[e];
+          if (+ends[0] != v && +ends[1] != v) continue;
+          const std::size_t other = +ends[0] == v ? +ends[1] : +ends[0];
+          if (side[other] == 2) continue;
+          const int expected = side[v] ^ (piercings[e] & 1);
+          if (side[other] < 0) side[other] = expected, open.push_back(other);
+          EXPECT_EQ(side[other], expected);
+        }
+      }
+    }
+    for (const Overlap& overlap : found.overlaps)
+      for (const CrossingRegion& region : overlap.regions) {
+        EXPECT_LT(2 * region.vertices.size(), mesh.vertex_count() + 1);
+        EXPECT_LE(region.depth.lower, region.depth.upper);
+      }
+    crossing += !found.overlaps.empty();
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(crossing, count() / 2);
+}
+
+}  // namespace
+}  // namespace cscd
