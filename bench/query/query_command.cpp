@@ -34,6 +34,7 @@ constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all 
 struct QueryOptions : AnswerRequest {
   std::string strategy, output, start_pairs, preparation;
   bool force = false, fail_on_contact = false;
+  std::optional<WrittenLength> fail_deeper_than;
 };
 
 // Returns what an earlier run left in the file; nothing if there is no such file yet.
@@ -78,14 +79,19 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
   if (!options.preparation.empty() && input.preparation.empty())
     write_preparation(options.preparation, answerer.saved_preparation(), strategy);
   ClipAnswer answer = prepared_answer(input, names, strategy, elementary, options.answers, answerer);
+  OverlapEvents events(input, names);
   Progress progress("query " + options.input, range.last - range.first);
   for (std::size_t i = range.first; i < range.last; ++i) {
     watchdog.restart();
     IntervalAnswer interval = answerer.answer(i);
-    answer.summary.add(interval, input.clip->load(i).motion, names);
+    const Motion motion = input.clip->load(i).motion;
+    answer.summary.add(interval, motion, names);
+    interval.event_of_contact = events.add(interval, motion.start()).event_of_contact;
     if (keep_intervals) answer.intervals.push_back(std::move(interval));
     progress.advance();
   }
+  answer.events = events.all();
+  answer.summary.overlap_ms = events.milliseconds();
   if (answerer.new_triangles() > 0)
     std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
                 options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());
@@ -96,6 +102,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
 struct Said {
   IntervalVerdict verdict = IntervalVerdict::clear;  // of a clip that touches or crosses, if there is one
   json document = nullptr;                           // unless it was asked for
+  bool too_deep = false;                             // for --fail-deeper-than
 };
 
 Said say_clip(const QueryOptions& options, Input input, bool with_json) {
@@ -106,6 +113,11 @@ Said say_clip(const QueryOptions& options, Input input, bool with_json) {
   const ClipAnswer answer = answer_clip(options, input, names, with_json);
   std::printf("%s", clip_text(answer).c_str());
   Said said{answer.summary.verdict()};
+  if (options.fail_deeper_than) {
+    const double most = options.fail_deeper_than->length(input.thickness.edge);
+    said.too_deep =
+        std::ranges::any_of(answer.events, [&](const OverlapEvent& e) { return e.depth.lower > most; });
+  }
   if (!with_json) return said;
   said.document = clip_json(answer, most_start_pairs(options.start_pairs));
   said.document["schema"] = kSchema;
@@ -201,6 +213,7 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
         say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model), with_json);
     verdicts.add(seen.clips[clip].name, one.verdict);
     if (collides(one.verdict)) all.verdict = one.verdict;
+    all.too_deep = all.too_deep || one.too_deep;
     if (with_json) all.document["clips"].push_back(std::move(one.document));
   }
   if (verdicts.answered() == 0)
@@ -240,6 +253,7 @@ void query(QueryOptions options) {
     output->commit(said.document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   }
   if (options.fail_on_contact && collides(said.verdict)) throw kContactFound;
+  if (said.too_deep) throw kContactFound;
 }
 
 }  // namespace
@@ -270,7 +284,10 @@ void add_query(CLI::App& app) {
       "strategy\n"
       "answers that interval instead (--unproven: do not). Whoever wants the earliest contact and no later "
       "ones\n"
-      "has it sooner with --first.");
+      "has it sooner with --first.\n\n"
+      "Where triangles cross at starts, the text lists the ten places in which the surface lies deepest in "
+      "itself:\n"
+      "which piece in which, how deep, and from when to when. The JSON has all of them.");
   add_answer_options(*command, *options);
   command->add_option("--strategy", options->strategy,
                       "culling strategy (cscd list); without it, the best that the input allows");
@@ -285,6 +302,16 @@ void add_query(CLI::App& app) {
       "how many of the pairs of triangles that cross at a start are listed, or all; default 1000");
   command->add_flag("--fail-on-contact", options->fail_on_contact,
                     "exit with status 3 when anything touches, crosses, or comes within the thickness");
+  command
+      ->add_option_function<std::string>(
+          "--fail-deeper-than",
+          [options = options.get()](const std::string& text) {
+            options->fail_deeper_than = parse_length("--fail-deeper-than", text);
+          },
+          "exit with status 3 when a piece of the surface lies deeper in another at the start of an "
+          "interval: "
+          "a length such as 0.01, or 0.2e for mean edges of the pose at rest")
+      ->type_name("LENGTH");
   command->callback([options] { query(*options); });
 }
 

@@ -74,6 +74,22 @@ TEST_F(Query, GivesJsonWhereThatIsAskedAndTextBesideIt) {
   EXPECT_EQ(json::parse(text("answer.json"))["input"], "small");
 }
 
+TEST_F(Query, SaysHowDeepItLiesInItself) {
+  const json events = answer("figure.glb --clip hug")["summary"]["events"];
+  ASSERT_FALSE(events.empty());
+  double deepest = 0;
+  for (const json& event : events) deepest = std::max(deepest, event["depth"]["at_least"].get<double>());
+  ASSERT_GT(deepest, 0);
+  const auto status = [&](const std::string& length) {
+    return run("cscd query figure.glb --clip hug --fail-deeper-than " + length).status;
+  };
+  EXPECT_EQ(status(std::to_string(0.9 * deepest)), 3);
+  EXPECT_EQ(status(std::to_string(1.1 * deepest)), 0);
+  EXPECT_TRUE(has(run("cscd query figure.glb --clip hug").out, "  lies in itself in "));
+  EXPECT_TRUE(answer("small")["summary"]["events"].empty());
+  expect_refused(run("cscd query small --fail-deeper-than much"), "--fail-deeper-than much");
+}
+
 TEST_F(Query, FailsOnContactWhereThatIsAsked) {
   EXPECT_EQ(run("cscd query figure.glb --clip hug --fail-on-contact").status, 3);
   EXPECT_EQ(run("cscd query figure.glb --clip hug").status, 0);

@@ -1,7 +1,6 @@
 #include "core/crossing/curves.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "core/crossing/generic_side.h"
 #include "core/mesh/adjacency.h"
@@ -15,8 +14,10 @@ struct SegmentEnd {
   TriangleId face;
   std::int32_t segment;
   std::uint8_t end;
+  VertexId behind;  // the end of the edge that lies behind the face
 
-  auto key() const { return std::pair(edge, face); }
+  // What lies there, as one number: comparing numbers is most of the work of sorting.
+  std::uint64_t key() const { return static_cast<std::uint64_t>(+edge) << 32 | +face; }
 };
 
 // Where an edge meets the plane of a face, from rounded heights above that plane.
@@ -33,6 +34,8 @@ class CurveFinder {
       : mesh_(mesh), positions_(positions), sides_(positions) {}
 
   CrossingCurves find(std::span<const CrossingPair> pairs) {
+    segments_.reserve(pairs.size());
+    ends_.reserve(2 * pairs.size());
     for (const CrossingPair& pair : pairs) add(pair);
     complete(pairs);
     number_piercings();
@@ -58,13 +61,17 @@ class CurveFinder {
     std::uint8_t found = 0;
     const auto number = static_cast<std::int32_t>(segments_.size());
     const auto look = [&](TriangleId with_edges, TriangleId face) {
-      for (const EdgeId id : mesh_.edges_of(with_edges)) {
-        const Edge& edge = mesh_.ends(id);
-        const Triangle& corners = mesh_.corners(face);
-        int behind = 0;
-        if (contains(corners, edge[0]) || contains(corners, edge[1]) || found == 2) continue;
-        if (!sides_.pierces(edge, corners, behind)) continue;
-        ends_.push_back({id, face, number, found++});
+      const Triangle &corners = mesh_.corners(with_edges), &plane = mesh_.corners(face);
+      if (found == 2) return;
+      std::array<int, 3> side{};  // 0 for a vertex of the face
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!contains(plane, corners[k])) side[k] = sides_.side(plane[0], plane[1], plane[2], corners[k]);
+      for (std::size_t k = 0; k < 3 && found < 2; ++k) {
+        const std::size_t next = k == 2 ? 0 : k + 1;
+        if (side[k] * side[next] >= 0) continue;
+        const EdgeId edge = mesh_.edges_of(with_edges)[k];
+        if (!sides_.passes_inside(mesh_.ends(edge), plane)) continue;
+        ends_.push_back({edge, face, number, found++, corners[side[k] > 0 ? k : next]});
       }
     };
     look(pair.first, pair.second);
@@ -82,7 +89,7 @@ class CurveFinder {
   void complete(std::span<const CrossingPair> pairs) {
     std::vector<CrossingPair> added;
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-      const auto [edge, face, segment, end] = ends_[i];
+      const auto [edge, face, segment, end, behind] = ends_[i];
       for (const TriangleId other : mesh_.triangles_at(edge)) {
         if (other == face) continue;
         const CrossingPair pair = std::minmax(other, face);
@@ -95,17 +102,17 @@ class CurveFinder {
   }
 
   void number_piercings() {
-    std::ranges::sort(ends_, {}, [](const SegmentEnd& e) { return std::tuple(e.edge, e.face, e.segment); });
+    std::ranges::sort(ends_, {}, &SegmentEnd::key);
+    out_.piercings.reserve(ends_.size() / 2 + 1);
+    first_.reserve(ends_.size() / 2 + 2);
     taken_.assign(segments_.size(), false);
     for (std::size_t i = 0; i < ends_.size();) {
       const auto number = static_cast<std::int32_t>(out_.piercings.size());
-      const auto [edge, face] = ends_[i].key();
+      const auto [edge, face, segment, end, behind] = ends_[i];
       const Edge& both = mesh_.ends(edge);
-      int behind = 0;
-      sides_.pierces(both, mesh_.corners(face), behind);
-      out_.piercings.push_back({edge, face, both[static_cast<std::size_t>(behind)],
-                                both[static_cast<std::size_t>(1 - behind)],
-                                piercing_point(positions_, both, mesh_.corners(face))});
+      const VertexId before = both[behind == both[0] ? 1 : 0];
+      out_.piercings.push_back(
+          {edge, face, behind, before, piercing_point(positions_, both, mesh_.corners(face))});
       first_.push_back(i);
       for (const auto key = ends_[i].key(); i < ends_.size() && ends_[i].key() == key; ++i)
         segments_[static_cast<std::size_t>(ends_[i].segment)].piercing[ends_[i].end] = number;

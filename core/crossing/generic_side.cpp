@@ -41,14 +41,10 @@ int GenericSides::side(VertexId a, VertexId b, VertexId c, VertexId p) {
   return 1;
 }
 
-bool GenericSides::pierces(const Edge& edge, const Triangle& face, int& behind) {
+bool GenericSides::passes_inside(const Edge& edge, const Triangle& face) {
   const auto [a, b, c] = face;
-  const int first = side(a, b, c, edge[0]);
-  if (side(a, b, c, edge[1]) == first) return false;
   const int turn = side(edge[0], edge[1], a, b);
-  if (side(edge[0], edge[1], b, c) != turn || side(edge[0], edge[1], c, a) != turn) return false;
-  behind = first > 0 ? 0 : 1;
-  return true;
+  return side(edge[0], edge[1], b, c) == turn && side(edge[0], edge[1], c, a) == turn;
 }
 
 }  // namespace cscd

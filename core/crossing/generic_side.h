@@ -20,9 +20,9 @@ class GenericSides {
   // The side of the plane a, b, c on which p lies: +1 behind, so that a, b and c run clockwise seen from p.
   // The four vertices must differ.
   int side(VertexId a, VertexId b, VertexId c, VertexId p);
-  // Whether the edge passes through the face. The two must share no vertex. `behind` is then the end that
-  // lies behind the face: 0 or 1.
-  bool pierces(const Edge& edge, const Triangle& face, int& behind);
+  // Whether the edge passes through the face, if its ends are known to lie on two sides of the face's plane.
+  // The two must share no vertex.
+  bool passes_inside(const Edge& edge, const Triangle& face);
 
   // How often floating point could not tell, and how often the exact answer for t = 0 was "in the plane".
   std::size_t degenerate() const { return degenerate_; }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "core/crossing/sheet_distance.h"
 
@@ -98,16 +100,17 @@ class PoseOverlaps {
   // Joins all vertices between which no curve runs to fragments.
   void cut() {
     finder_.parent_.assign(mesh_.vertex_count(), -1);
-    finder_.is_pierced_.resize(mesh_.edge_count(), 0);
+    finder_.pierced_.resize(mesh_.edge_count(), kNone);
+    finder_.is_cut_.resize(mesh_.triangle_count(), 0);
+    finder_.listed_.resize(mesh_.triangle_count(), 0);
     finder_.is_on_curve_.resize(mesh_.vertex_count(), 0);
     finder_.visited_.resize(mesh_.vertex_count(), kNone);
-    for (const Piercing& p : crossing().piercings) finder_.is_pierced_[+p.edge] = 1;
-    for (const CrossingCurve& curve : crossing().curves)
-      for (const CrossingCurve::Node& node : curve.nodes)
-        if (node.piercing < 0) finder_.is_on_curve_[+node.vertex] = 1;
+    for (std::size_t p = crossing().piercings.size(); p-- > 0;)
+      finder_.pierced_[+crossing().piercings[p].edge] = static_cast<std::int32_t>(p);
+    mark(1);
     const std::span<const Edge> edges = mesh_.edges();
     for (std::size_t e = 0; e < edges.size(); ++e)
-      if (!finder_.is_pierced_[e] && !is_on_curve(edges[e][0]) && !is_on_curve(edges[e][1]))
+      if (finder_.pierced_[e] < 0 && !is_on_curve(edges[e][0]) && !is_on_curve(edges[e][1]))
         unite(finder_.parent_, static_cast<std::int32_t>(edges[e][0]),
               static_cast<std::int32_t>(edges[e][1]));
   }
@@ -119,18 +122,17 @@ class PoseOverlaps {
     return static_cast<std::int32_t>(std::ranges::lower_bound(roots_, root) - roots_.begin());
   }
 
-  // How faces of a component part the ends of an edge, of which piercing p is the first: not at all if they
-  // pierce it an even number of times, and else so that one end lies behind more of them.
+  // How faces of a component part the ends of an edge: not at all if they pierce it an even number of times,
+  // and else so that one end lies behind more of them.
   struct Parting {
     bool parts = false;
     VertexId behind{-1}, before{-1};
   };
-  Parting parting(std::size_t p, std::int32_t other) const {
+  Parting parting(EdgeId edge, std::int32_t other) const {
     int balance = 0;  // of faces that have end 0 behind them; odd if their number is
     const std::vector<Piercing>& all = crossing().piercings;
-    const EdgeId edge = all[p].edge;
     const Edge& ends = mesh_.ends(edge);
-    for (; p < all.size() && all[p].edge == edge; ++p)
+    for (std::size_t p = index(finder_.pierced_[+edge]); p < all.size() && all[p].edge == edge; ++p)
       if (mesh_.component(all[p].face) == other) balance += all[p].behind == ends[0] ? 1 : -1;
     return {balance % 2 != 0, ends[balance > 0 ? 0 : 1], ends[balance > 0 ? 1 : 0]};
   }
@@ -158,13 +160,20 @@ class PoseOverlaps {
       if (is_on_curve(all[p].behind) || is_on_curve(all[p].before)) continue;
       const std::int32_t own = component(all[p].edge);
       for (Group& group : groups_)
-        if (group.own == own && !parting(p, group.other).parts)
+        if (group.own == own && !parting(all[p].edge, group.other).parts)
           unite(group.parent, fragment(all[p].behind), fragment(all[p].before));
     }
     for (const std::int32_t root : roots_) {
       const VertexId v{root};
       vertices_of_component_[mesh_.component(mesh_.triangles_at(v).front())] -= finder_.parent_[index(root)];
     }
+  }
+
+  std::size_t group_of(const Piercing& p) const {
+    const std::pair key(component(p.edge), mesh_.component(p.face));
+    const auto at =
+        std::ranges::lower_bound(groups_, key, {}, [](const Group& g) { return std::pair(g.own, g.other); });
+    return static_cast<std::size_t>(at - groups_.begin());
   }
 
   // Chooses the region on one side of each curve, on each of its sheets.
@@ -175,10 +184,9 @@ class PoseOverlaps {
       for (const CrossingCurve::Node& node : crossing().curves[c].nodes) {
         if (node.piercing < 0) continue;
         const Piercing& piercing = crossing().piercings[index(node.piercing)];
-        const Group key{component(piercing.edge), mesh_.component(piercing.face), {}};
-        const Parting p = parting(first_piercing(piercing.edge), key.other);
+        const std::size_t g = group_of(piercing);
+        const Parting p = parting(piercing.edge, groups_[g].other);
         if (!p.parts || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
-        const auto g = static_cast<std::size_t>(std::ranges::lower_bound(groups_, key) - groups_.begin());
         std::vector<std::int32_t>& parent = groups_[g].parent;
         const std::int32_t behind = root_of(parent, fragment(p.behind)),
                            before = root_of(parent, fragment(p.before));
@@ -188,7 +196,9 @@ class PoseOverlaps {
         const auto [at, added] = known.try_emplace({g, is_behind ? behind : before}, regions_.size());
         if (added) regions_.push_back({g, {}, {}, {}});
         Found& found = regions_[at->second];
-        found.region.behind = is_behind && !finder_.open_[index(key.other)];
+        found.region.own = groups_[g].own;
+        found.region.other = groups_[g].other;
+        found.region.behind = is_behind && !finder_.open_[index(groups_[g].other)];
         found.seeds.push_back({is_behind ? p.behind : p.before, image});
         found.images.push_back(image);
         region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);
@@ -228,16 +238,10 @@ class PoseOverlaps {
           const Edge& ends = mesh_.ends(edge);
           if (ends[0] != list[i] && ends[1] != list[i]) continue;
           const VertexId next = ends[0] == list[i] ? ends[1] : ends[0];
-          if (!is_on_curve(next) &&
-              !(finder_.is_pierced_[+edge] && parting(first_piercing(edge), other).parts))
+          if (!is_on_curve(next) && !(finder_.pierced_[+edge] >= 0 && parting(edge, other).parts))
             take(next, found.region.image[i]);
         }
       }
-  }
-  std::size_t first_piercing(EdgeId edge) const {
-    return static_cast<std::size_t>(
-        std::ranges::lower_bound(crossing().piercings, edge, {}, &Piercing::edge) -
-        crossing().piercings.begin());
   }
 
   // For each image, the triangles that have a vertex of its own, or that its curve runs through.
@@ -260,44 +264,61 @@ class PoseOverlaps {
   }
 
   // Whether a curve has no vertex beyond it on one sheet: no edge that it meets there has its ends on two
-  // sides. What it cuts off then lies in the triangles through which it runs. A curve between vertices at
-  // which the surface turns inside out cuts off one piece of both sheets.
+  // sides. What it cuts off then lies in the triangles through which it runs.
   bool has_no_vertex(std::int32_t image) const {
     const CrossingCurve& curve = crossing().curves[index(image / 2)];
     using End = CrossingCurve::End;
     if (!curve.closed() && (curve.first != End::vertex || curve.last != End::vertex)) return false;
     return std::ranges::none_of(curve.nodes, [&](const CrossingCurve::Node& node) {
-      if (node.piercing < 0 || (curve.closed() && node.edge_sheet != image % 2)) return false;
+      if (node.piercing < 0 || node.edge_sheet != image % 2) return false;
       const Piercing& p = crossing().piercings[index(node.piercing)];
-      return parting(first_piercing(p.edge), mesh_.component(p.face)).parts;
+      return parting(p.edge, mesh_.component(p.face)).parts;
     });
   }
 
-  // The other sheet of the vertices of a region that belong to one image.
-  std::vector<TriangleId> other_sheet(std::int32_t image, std::size_t r) {
+  // The other sheet of what belongs to one image, in region `own` or in none. Sets `is_open` where that is
+  // not bounded (CrossingRegion::other_is_open).
+  std::vector<TriangleId> other_sheet(std::int32_t image, std::int32_t own, bool& is_open) const {
     const std::int32_t opposite = image ^ 1, other = region_of_image_[index(opposite)];
-    std::vector<TriangleId> out = sheet_[index(opposite)];
+    std::vector<TriangleId> out;
+    const std::uint32_t list = ++finder_.lists_;
+    const auto add = [&](std::int32_t of) {
+      for (const TriangleId t : sheet_[index(of)])
+        if (std::exchange(finder_.listed_[+t], list) != list) out.push_back(t);
+    };
+    add(opposite);
     if (other == kNone && !has_no_vertex(opposite)) {
-      const Group& group = groups_[regions_[r].group];
-      regions_[r].region.other_is_open = true;
-      if (group.own != group.other) return component_triangles(group.other);
-    } else if (other != kNone && other != static_cast<std::int32_t>(r)) {
-      for (const std::int32_t also : regions_[index(other)].images)
-        if (also != opposite) out.insert(out.end(), sheet_[index(also)].begin(), sheet_[index(also)].end());
+      is_open = true;
+      const std::int32_t component = mesh_.component(out.front());
+      if (component != mesh_.component(sheet_[index(image)].front())) return component_triangles(component);
+    } else if (other != kNone && other != own) {
+      for (const std::int32_t also : regions_[index(other)].images) add(also);
     }
-    std::ranges::sort(out);
-    out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
+  }
+
+  // Takes a point into account.
+  static void deepen(CrossingDepth& depth, const Vec3& point, VertexId vertex,
+                     const SheetDistance::Nearest& nearest) {
+    if (nearest.distance <= depth.lower && depth.nearest != TriangleId{-1}) return;
+    depth.lower = nearest.distance;
+    depth.point = point;
+    depth.vertex = vertex;
+    depth.nearest = nearest.triangle;
+  }
+  void point_out(CrossingDepth& depth) const {
+    if (depth.nearest == TriangleId{-1}) return;
+    const Triangle& c = mesh_.corners(depth.nearest);
+    depth.out =
+        -nearest_of_vertex_face({depth.point, positions_[+c[0]], positions_[+c[1]], positions_[+c[2]]}).way;
   }
 
   void measure(std::size_t r) {
     CrossingRegion& region = regions_[r].region;
     if (each_distance_) region.distance.assign(region.vertices.size(), 0);
-    bool is_upper_only = false;
     for (const std::int32_t image : regions_[r].images) {
-      const std::vector<TriangleId> other = other_sheet(image, r);
-      const Group& group = groups_[regions_[r].group];
-      is_upper_only = is_upper_only || (group.own == group.other && regions_[r].region.other_is_open);
+      const std::vector<TriangleId> other =
+          other_sheet(image, static_cast<std::int32_t>(r), region.other_is_open);
       const SheetDistance to(mesh_, positions_, other);
       // The vertices that are farthest from the curves come first: they are deepest most often, and then the
       // others need no search.
@@ -306,20 +327,47 @@ class PoseOverlaps {
         const Vec3& x = positions_[+region.vertices[i]];
         const SheetDistance::Nearest nearest = to.nearest(x, each_distance_ ? 0 : region.depth.lower);
         if (each_distance_) region.distance[i] = nearest.distance;
-        if (nearest.distance <= region.depth.lower && region.depth.vertex != VertexId{-1}) continue;
-        region.depth.lower = nearest.distance;
-        region.depth.vertex = region.vertices[i];
-        region.depth.nearest = nearest.triangle;
+        deepen(region.depth, x, region.vertices[i], nearest);
       }
     }
-    if (region.depth.vertex != VertexId{-1}) {
-      const Triangle& c = mesh_.corners(region.depth.nearest);
-      const Vec3& x = positions_[+region.depth.vertex];
-      region.depth.out =
-          -nearest_of_vertex_face({x, positions_[+c[0]], positions_[+c[1]], positions_[+c[2]]}).way;
-    }
+    point_out(region.depth);
     region.depth.upper = region.depth.lower + reach(regions_[r].images, region.vertices);
-    if (is_upper_only) region.depth.lower = 0;
+    if (region.other_is_open && region.own == region.other) region.depth.lower = 0;
+  }
+
+  // The depth of what a curve cuts off one sheet without a vertex: edges go in and come out again.
+  CrossingDepth depth_of_edges(std::int32_t image) const {
+    CrossingDepth depth;
+    bool is_open = false;
+    std::vector<std::pair<double, const Piercing*>> on_edge;
+    std::optional<SheetDistance> to;
+    std::vector<TriangleId> other;
+    for (const CrossingCurve::Node& node : crossing().curves[index(image / 2)].nodes) {
+      if (node.piercing < 0 || node.edge_sheet != image % 2) continue;
+      const Piercing& from = crossing().piercings[index(node.piercing)];
+      const Edge& ends = mesh_.ends(from.edge);
+      if (from.behind != ends[1]) continue;  // the edge goes in at `from`, seen from its first end
+      const Vec3 way = positions_[+ends[1]] - positions_[+ends[0]];
+      const Piercing* out = nullptr;
+      for (auto p = index(finder_.pierced_[+from.edge]);
+           p < crossing().piercings.size() && crossing().piercings[p].edge == from.edge; ++p) {
+        const Piercing& at = crossing().piercings[p];
+        if (mesh_.component(at.face) != mesh_.component(from.face) || way.dot(at.point - from.point) <= 0)
+          continue;
+        if (out == nullptr || way.dot(at.point - out->point) < 0) out = &at;
+      }
+      if (out == nullptr || out->behind != ends[0]) continue;
+      if (!to) {
+        other = other_sheet(image, kNone, is_open);
+        to.emplace(mesh_, positions_, other);
+      }
+      const Vec3 middle = (from.point + out->point) / 2;
+      deepen(depth, middle, VertexId{-1}, to->nearest(middle, depth.lower));
+    }
+    point_out(depth);
+    depth.upper = depth.lower + reach(std::span(&image, 1), {});
+    if (is_open) depth = {.upper = depth.upper};
+    return depth;
   }
 
   // How far a point of what the images bound can be from all vertices there and all points of the curves.
@@ -334,10 +382,19 @@ class PoseOverlaps {
           points.emplace_back(curve.segments[i][index(image % 2)],
                               crossing().point(curve.nodes[node], positions_));
     }
-    for (const VertexId v : vertices)
-      for (const TriangleId t : mesh_.triangles_at(v)) points.emplace_back(t, positions_[+v]);
-    std::ranges::sort(points, {}, [](const auto& p) { return p.first; });
     double most = 0;
+    for (const VertexId v : vertices)
+      for (const TriangleId t : mesh_.triangles_at(v)) {
+        if (finder_.is_cut_[+t]) {
+          points.emplace_back(t, positions_[+v]);
+          continue;
+        }
+        const Triangle& c = mesh_.corners(t);
+        if (v != c[0] && !is_on_curve(c[0])) continue;  // each triangle once
+        for (std::size_t k = 0; k < 3; ++k)
+          most = std::max(most, (positions_[+c[k]] - positions_[+c[(k + 1) % 3]]).squaredNorm());
+      }
+    std::ranges::sort(points, {}, [](const auto& p) { return p.first; });
     for (std::size_t i = 0; i < points.size();) {
       Vec3 low = points[i].second, high = low;
       const TriangleId t = points[i].first;
@@ -358,6 +415,12 @@ class PoseOverlaps {
     return std::sqrt(most) * std::numbers::inv_sqrt3;
   }
 
+  static void deepest_of(CrossingDepth& depth, const CrossingDepth& other) {
+    const double upper = std::max(depth.upper, other.upper);
+    if (depth.nearest == TriangleId{-1} || other.lower > depth.lower) depth = other;
+    depth.upper = upper;
+  }
+
   // Joins curves that bound one region, and the two sheets of each, to overlaps.
   void group() {
     std::vector<std::int32_t> parent(crossing().curves.size(), -1);
@@ -370,10 +433,8 @@ class PoseOverlaps {
       if (added) out_.overlaps.emplace_back();
       Overlap& overlap = out_.overlaps[at->second];
       overlap.curves.push_back(curve);
-      // What has no vertex beyond the other sheet is bounded by points of the curve alone.
       for (const std::int32_t image : {2 * curve, 2 * curve + 1})
-        if (region_of_image_[index(image)] == kNone)
-          overlap.depth.upper = std::max(overlap.depth.upper, reach(std::span(&image, 1), {}));
+        if (region_of_image_[index(image)] == kNone) deepest_of(overlap.depth, depth_of_edges(image));
     }
     for (Found& found : regions_)
       out_.overlaps[number.at(root_of(parent, found.images.front() / 2))].regions.push_back(
@@ -381,22 +442,24 @@ class PoseOverlaps {
     for (Overlap& overlap : out_.overlaps) {
       std::ranges::stable_sort(overlap.regions, std::ranges::greater{},
                                [](const CrossingRegion& r) { return r.depth.lower; });
-      if (overlap.regions.empty()) continue;
-      double upper = overlap.depth.upper;
-      for (const CrossingRegion& region : overlap.regions) upper = std::max(upper, region.depth.upper);
-      overlap.depth = overlap.regions.front().depth;
-      overlap.depth.upper = upper;
+      for (const CrossingRegion& region : overlap.regions) deepest_of(overlap.depth, region.depth);
     }
     std::ranges::stable_sort(out_.overlaps, std::ranges::greater{},
                              [](const Overlap& o) { return o.depth.lower; });
   }
 
+  void mark(std::uint8_t as) {
+    for (const CrossingCurve& curve : crossing().curves) {
+      for (const auto& pair : curve.segments)
+        for (const TriangleId t : pair) finder_.is_cut_[+t] = as;
+      for (const CrossingCurve::Node& node : curve.nodes)
+        if (node.piercing < 0) finder_.is_on_curve_[+node.vertex] = as;
+    }
+  }
   // Leaves the finder's marks as they were.
   void clean() {
-    for (const Piercing& p : crossing().piercings) finder_.is_pierced_[+p.edge] = 0;
-    for (const CrossingCurve& curve : crossing().curves)
-      for (const CrossingCurve::Node& node : curve.nodes)
-        if (node.piercing < 0) finder_.is_on_curve_[+node.vertex] = 0;
+    mark(0);
+    for (const Piercing& p : crossing().piercings) finder_.pierced_[+p.edge] = kNone;
     for (const Overlap& overlap : out_.overlaps)
       for (const CrossingRegion& region : overlap.regions)
         for (const VertexId v : region.vertices) finder_.visited_[+v] = kNone;

@@ -13,12 +13,13 @@ namespace cscd {
 
 // How deep a region lies beyond the other sheet.
 struct CrossingDepth {
-  // The largest distance of a vertex to the other sheet, up to rounding, and what no point of the region
-  // exceeds.
+  // The largest distance to the other sheet, up to rounding, of a vertex or of a point between two piercings
+  // of an edge; and what no point of the region exceeds.
   double lower = 0, upper = 0;
-  VertexId vertex{-1};      // the deepest, and
-  TriangleId nearest{-1};   // the triangle of the other sheet that is nearest to it
-  Vec3 out = Vec3::Zero();  // the way from the deepest vertex to the nearest point of that triangle
+  Vec3 point = Vec3::Zero();  // the deepest such point
+  VertexId vertex{-1};        // -1 between two piercings
+  TriangleId nearest{-1};  // the triangle of the other sheet that is nearest to it; -1 where nothing is known
+  Vec3 out = Vec3::Zero();  // the way from the point to the nearest point of that triangle
 };
 
 // What crossing curves cut off one sheet: vertices that lie on the other side of the other sheet.
@@ -27,6 +28,7 @@ struct CrossingDepth {
 // Each vertex belongs to the image that is nearest along edges. Its depth is the distance to what the same
 // curve cuts off the other sheet: to all triangles that have a vertex there, or that the curve runs through.
 struct CrossingRegion {
+  std::int32_t own = 0, other = 0;  // the components of this sheet and of the other
   // The region lies behind the faces of the other sheet, inside a closed body. Otherwise it is the smaller
   // side of the curves: the other sheet is open, or one surface crosses itself and more than half of its
   // vertices lie behind.
@@ -47,8 +49,7 @@ struct CrossingRegion {
 struct Overlap {
   std::vector<std::int32_t> curves;
   std::vector<CrossingRegion> regions;  // deepest first
-  // Of the deepest region. Without regions only `upper` says something: no vertex lies in the other sheet.
-  CrossingDepth depth;
+  CrossingDepth depth;  // of the deepest region, or of an edge where no vertex lies in the other sheet
 };
 
 struct Overlaps {
@@ -69,11 +70,14 @@ class OverlapFinder {
  private:
   friend class PoseOverlaps;
   const TriangleMesh& mesh_;
-  std::vector<bool> open_;                // [components], whether it has an edge without two proper sides
-  std::vector<std::int32_t> parent_;      // [vertices]; the parent, or minus the number of vertices of a root
-  std::vector<std::uint8_t> is_pierced_;  // [edges]
+  std::vector<bool> open_;             // [components], whether it has an edge without two proper sides
+  std::vector<std::int32_t> parent_;   // [vertices]; the parent, or minus the number of vertices of a root
+  std::vector<std::int32_t> pierced_;  // [edges], the first piercing, or -1
   std::vector<std::uint8_t> is_on_curve_;  // [vertices], whether a curve ends there
-  std::vector<std::int32_t> visited_;      // [vertices], by which region
+  std::vector<std::uint8_t> is_cut_;       // [triangles], whether a curve runs through
+  std::vector<std::uint32_t> listed_;      // [triangles], in which list last
+  std::uint32_t lists_ = 0;
+  std::vector<std::int32_t> visited_;  // [vertices], by which region
 };
 
 }  // namespace cscd

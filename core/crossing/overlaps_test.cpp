@@ -117,7 +117,7 @@ void expect_curves_right(const TriangleMesh& mesh, const CrossingCurves& found,
 }
 
 TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
-  int with_regions = 0, deep = 0;
+  int with_regions = 0, deep = 0, between = 0;
   for (int n = 0; n < count(); ++n) {
     SCOPED_TRACE(n);
     Pushed pushed(static_cast<unsigned>(n));
@@ -168,7 +168,12 @@ TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
     double deepest = 0;
     for (const VertexId v : inside)
       deepest = std::max(deepest, distance_to_other(x[+v], +v < pushed.half ? 0 : 1));
-    if (found.crossing.curves.size() == 1) {
+    if (overlap.depth.vertex == VertexId{-1} && overlap.depth.lower > 0) {
+      const std::int32_t own = 1 - mesh.component(overlap.depth.nearest);
+      EXPECT_TRUE(is_inside(mesh, x, 1 - own, overlap.depth.point));
+      EXPECT_NEAR(overlap.depth.lower, distance_to_other(overlap.depth.point, own), 1e-12);
+      between += 1;
+    } else if (found.crossing.curves.size() == 1) {
       EXPECT_NEAR(overlap.depth.lower, deepest, 1e-12);
     }
     EXPECT_GE(overlap.depth.lower, deepest - 1e-12);
@@ -193,6 +198,7 @@ TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
   }
   EXPECT_GT(with_regions, count() / 2);
   EXPECT_GT(deep, count());
+  EXPECT_GT(between, count() / 50);
 }
 
 // On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane.

@@ -189,15 +189,16 @@ void Session::say_start(StepAnswer& out) {
       return setup_.exclusions->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
     });
   out.ignored_pairs.clear();
-  out.rest_pairs = 0;
+  out.explained_pairs.clear();
   out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
     const bool ignored = options_.ignored != nullptr &&
                          options_.ignored->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
     if (ignored) out.ignored_pairs.push_back(pair);
     const bool explained = !ignored && left_out_.explains(pair);
-    out.rest_pairs += explained;
+    if (explained) out.explained_pairs.push_back(pair);
     return ignored || explained;
   });
+  out.rest_pairs = out.explained_pairs.size();
 }
 
 void Session::begin(const Motion& motion) {

@@ -19,10 +19,11 @@ namespace cscd {
 // those that crossings at rest explain (see RestCrossings) are left out of everything but the two counts that
 // say so.
 struct StepAnswer {
-  ContactSet found;                         // sorted
-  Crossings start;                          // pairs of triangles that cross at the start
-  std::size_t rest_pairs = 0;               // of the pairs that cross at rest, how many cross at this start
-  std::size_t rest_contacts = 0;            // contacts left out, as a pair that crosses at rest carries them
+  ContactSet found;               // sorted
+  Crossings start;                // pairs of triangles that cross at the start
+  std::size_t rest_pairs = 0;     // of the pairs that cross at rest, how many cross at this start
+  std::size_t rest_contacts = 0;  // contacts left out, as a pair that crosses at rest carries them
+  std::vector<CrossingPair> explained_pairs;  // sorted; those `rest_pairs`
   std::vector<CrossingPair> ignored_pairs;  // sorted; those that cross at the start (SessionOptions::ignored)
   ContactSet ignored;                       // sorted; contacts, likewise
   bool starts_embedded = true;              // nothing at all crosses at the start, whether left out or not

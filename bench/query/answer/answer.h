@@ -26,6 +26,9 @@ struct IntervalAnswer : StepAnswer {
   // touch that do. `close_at_start` counts those that are close when the interval starts.
   std::map<FeaturePair, double> touching;
   std::size_t close_at_start = 0;
+  // [contacts], the numbers of the events to which they belong (OverlapEvents::Here); empty where none
+  // begins.
+  std::vector<std::size_t> event_of_contact;
 };
 
 using AnswerOptions = SessionOptions;

@@ -123,14 +123,38 @@ json moment_json(const Input& input, const ClipMoment& moment) {
           {"seconds", seconds ? json(*seconds) : json()}};
 }
 
+json event_json(const Input& input, const OverlapEvent& event) {
+  const auto moment = [&](std::size_t interval) { return moment_json(input, {interval, 0}); };
+  json out = {{"first", event.names.first},
+              {"second", event.names.second},
+              {"begins", moment(event.first)},
+              {"deepest", moment(event.deepest)},
+              {"ends", moment(event.last)},
+              {"depth", {{"at_least", event.depth.lower}, {"at_most", event.depth.upper}}},
+              {"point", vector_json(event.point)},
+              {"out", event.depth.nearest == TriangleId{-1} ? json() : vector_json(event.depth.out)},
+              {"vertices", event.vertices},
+              {"area", event.area},
+              {"side", event.vertices == 0 ? json() : json(event.behind ? "behind" : "smaller")},
+              {"other_is_open", event.other_is_open},
+              {"pairs", event.pairs},
+              {"curves", event.curves},
+              {"contacts", event.contacts},
+              {"depth_at", event.depth_at}};
+  return out;
+}
+
 json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::size_t most_start_pairs) {
   const Input& input = clip.input;
   const Motion motion = input.clip->load(answer.index).motion;
   const bool is_thick = input.thickness.length > 0;
   json contacts = json::array(), undecided = json::array(), start_pairs = json::array(), collides;
-  for (const Contact& contact : answer.found.contacts) {
+  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
+    const Contact& contact = answer.found.contacts[i];
     json& list = contact.verdict == Verdict::contact ? contacts : undecided;
     list.push_back(contact_json(input, clip.names, contact, motion));
+    if (i < answer.event_of_contact.size() && answer.event_of_contact[i] != OverlapEvents::kNone)
+      list.back()["event"] = answer.event_of_contact[i];
     if (!is_thick || &list != &contacts) continue;
     const auto touch = answer.touching.find(contact.pair);
     list.back()["touch_time"] = touch == answer.touching.end() ? json() : json(touch->second);
@@ -185,7 +209,9 @@ json rest_json(const ClipAnswer& answer) {
 
 json summary_json(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
-  json strategies = json::array(), met = json::array(), ignored = json::array(), first, worst;
+  json strategies = json::array(), met = json::array(), ignored = json::array(), events = json::array(),
+       first, worst;
+  for (const OverlapEvent& event : answer.events) events.push_back(event_json(answer.input, event));
   for (const auto& [name, count] : s.strategies) strategies.push_back({{"name", name}, {"intervals", count}});
   for (const auto& [names, count] : most_first(s.met))
     met.push_back({{"first", names.first}, {"second", names.second}, {"intervals", count}});
@@ -212,6 +238,7 @@ json summary_json(const ClipAnswer& answer) {
               {"ms",
                {{"query", s.query_ms},
                 {"embedding", s.embedding_ms},
+                {"overlap", s.overlap_ms},
                 {"wall", s.wall_ms},
                 {"load", s.load_ms},
                 {"preparation", answer.preparation_ms}}},
@@ -220,6 +247,7 @@ json summary_json(const ClipAnswer& answer) {
               {"first", std::move(first)},
               {"worst", std::move(worst)},
               {"met", std::move(met)},
+              {"events", std::move(events)},
               {"with_ignored", s.with_ignored},
               {"ignored", std::move(ignored)}};
   if (answer.input.thickness.length > 0) {

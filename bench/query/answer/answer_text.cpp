@@ -13,6 +13,7 @@ namespace cscd::bench {
 namespace {
 
 constexpr std::size_t kMostListed = 5;  // of pairs of names, in a text
+constexpr std::size_t kMostEvents = 10;
 
 std::string number(double value) {
   char digits[32];
@@ -28,6 +29,7 @@ std::string frame_text(double value) {
 }
 
 std::string many(std::size_t count, const std::string& one) {
+  if (one == "vertex" && count != 1) return std::to_string(count) + " vertices";
   return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
@@ -123,6 +125,27 @@ std::string thickness_text(const ClipAnswer& answer) {
   return out + ")";
 }
 
+// "1.2 cm" where the input tells its unit, else "0.0123".
+std::string distance_text(const Input& input, double length) {
+  const double unit = input.import ? input.import->centimetres_per_unit : 0;
+  return unit > 0 ? number(unit * length) + " cm" : number(length);
+}
+
+// "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
+std::string event_text(const Input& input, const OverlapEvent& event) {
+  std::string out =
+      event.names.first +
+      (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
+  const std::string most = "at most " + distance_text(input, event.depth.upper);
+  out += event.depth.lower > 0 ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
+                               : most + " deep";
+  if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
+  const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
+  if (event.first == event.last) return out + ", frame " + frame(event.first);
+  return out + ", frames " + frame(event.first) + " to " + frame(event.last) + ", deepest at " +
+         frame(event.deepest);
+}
+
 // The predicate of a verdict: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -159,6 +182,20 @@ std::string verdict_predicate(const ClipAnswer& answer) {
          meeting_text(first.names, first.crosses ? "crosses"
                                    : is_thick    ? "comes close to"
                                                  : "touches");
+}
+
+std::string events_text(const ClipAnswer& answer) {
+  const std::vector<OverlapEvent>& events = answer.events;
+  if (events.empty()) return {};
+  std::string out = "  lies in itself in " + many(events.size(), "place") +
+                    (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
+  const std::vector<std::size_t> order = deepest_first(events);
+  for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
+    out += "    " + event_text(answer.input, events[order[i]]) + "\n";
+  std::size_t within = 0;
+  for (const OverlapEvent& event : events) within += event.contacts;
+  if (within > 0) out += "    " + many(within, "contact") + " within these; all others are new\n";
+  return out;
 }
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
@@ -227,9 +264,12 @@ std::string clip_text(const ClipAnswer& answer) {
   for (const std::string* line :
        {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
+  out += events_text(answer);
   return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
-         number(s.embedding_ms) + " to know what crosses at the starts; " + number(answer.preparation_ms) +
-         " ms to prepare and " + number(s.load_ms) + " ms to read frames came on top\n";
+         number(s.embedding_ms) + " to know what crosses at the starts; " +
+         (s.overlap_ms > 0 ? number(s.overlap_ms) + " ms to measure what lies in what, " : "") +
+         number(answer.preparation_ms) + " ms to prepare and " + number(s.load_ms) +
+         " ms to read frames came on top\n";
 }
 
 std::string details_text(const ClipAnswer& answer) {

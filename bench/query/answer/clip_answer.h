@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/query/answer/answer.h"
+#include "bench/query/answer/overlap_events.h"
 #include "bench/query/answer/surface_names.h"
 #include "bench/query/input/input.h"
 
@@ -58,7 +59,7 @@ struct AnswerSummary {
   std::size_t with_ignored = 0;  // intervals in which something is
   // With a thickness: pairs that are close at the starts of intervals, and the number of such intervals.
   std::size_t close_at_start = 0, with_close_at_start = 0;
-  double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0;
+  double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0, overlap_ms = 0;
 
   std::size_t intervals() const;
   std::size_t count(IntervalVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
@@ -91,6 +92,7 @@ struct ClipAnswer {
   // only where some may be.
   std::size_t close_at_rest = 0, left_out_at_rest = 0;
   AnswerSummary summary = {};
+  std::vector<OverlapEvent> events = {};       // in the order in which they begin
   std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
 };
 

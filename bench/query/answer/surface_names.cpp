@@ -100,6 +100,11 @@ std::string SurfaceNames::place_of(TriangleId triangle) const {
   return bone < 0 ? part_of(triangle) : name_of_bone(bone);
 }
 
+std::int32_t SurfaceNames::place_number(TriangleId triangle) const {
+  const std::int32_t bone = bone_of(triangle);
+  return bone < 0 ? -1 - static_cast<std::int32_t>(label_of_triangle_[+triangle]) : bone;
+}
+
 TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const {
   const TriangleMesh& mesh = input_.mesh;
   const TriangleId face{pair.b};

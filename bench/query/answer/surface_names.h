@@ -29,6 +29,8 @@ class SurfaceNames {
   std::string name_of_bone(std::int32_t bone) const;
   // Where a triangle is for an animator: the bone that moves most of its corners, or else its part.
   std::string place_of(TriangleId triangle) const;
+  // A number that two triangles share if and only if they are at one place.
+  std::int32_t place_number(TriangleId triangle) const;
   // A triangle that has the first, or the second, feature of a pair. Both belong to one pair of triangles
   // that is not ignored, where there is one.
   TriangleId triangle_of(const FeaturePair& pair, bool second) const;

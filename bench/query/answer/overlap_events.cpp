@@ -1,0 +1,214 @@
+#include "bench/query/answer/overlap_events.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "core/base/stopwatch.h"
+#include "core/detect/start/crossings.h"
+
+namespace cscd::bench {
+namespace {
+
+// All pairs that cross at a start, whatever is left out of the answer.
+std::vector<CrossingPair> all_pairs(const IntervalAnswer& answer) {
+  std::vector<CrossingPair> all = answer.start.pairs;
+  all.insert(all.end(), answer.explained_pairs.begin(), answer.explained_pairs.end());
+  all.insert(all.end(), answer.ignored_pairs.begin(), answer.ignored_pairs.end());
+  std::ranges::sort(all);
+  return all;
+}
+
+CrossingPair pair_of(const std::array<TriangleId, 2>& segment) {
+  return std::minmax(segment[0], segment[1]);
+}
+
+// The event that most of the marks name, among those whose first two numbers are listed; kNone for none.
+class Votes {
+ public:
+  template <class Marks>
+  void add(const Marks& marks, std::int32_t a, std::int32_t b) {
+    for (auto at = std::ranges::lower_bound(marks, std::tuple(a, b, std::size_t{0}));
+         at != marks.end() && std::get<0>(*at) == a && std::get<1>(*at) == b; ++at)
+      ++count_[std::get<2>(*at)];
+  }
+  std::size_t most() const {
+    const auto most = std::ranges::max_element(count_, {}, [](const auto& entry) { return entry.second; });
+    return most == count_.end() ? OverlapEvents::kNone : most->first;
+  }
+
+ private:
+  std::map<std::size_t, std::size_t> count_;
+};
+
+}  // namespace
+
+OverlapEvents::OverlapEvents(const Input& input, const SurfaceNames& names)
+    : input_(input), names_(names), finder_(input.mesh) {}
+
+bool OverlapEvents::is_event(const Overlaps& all, const Overlap& overlap,
+                             const IntervalAnswer& answer) const {
+  if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return true;
+  std::size_t pairs = 0, counted = 0;
+  for (const std::int32_t curve : overlap.curves)
+    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
+      ++pairs;
+      counted += answer.start.contains(pair_of(segment));
+    }
+  return 2 * counted > pairs;
+}
+
+NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) const {
+  // The side of each curve on which the deepest region lies; 0 where that bounds none.
+  std::map<std::int32_t, std::size_t> side;
+  if (!overlap.regions.empty())
+    for (const std::int32_t image : overlap.regions.front().image)
+      side.try_emplace(image / 2, static_cast<std::size_t>(image % 2));
+  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::size_t, std::array<TriangleId, 2>>> count;
+  for (const std::int32_t curve : overlap.curves) {
+    const auto own = side.find(curve);
+    if (!side.empty() && own == side.end()) continue;
+    const std::size_t s = own == side.end() ? 0 : own->second;
+    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
+      auto& [times, example] = count[{names_.place_number(segment[s]), names_.place_number(segment[1 - s])}];
+      ++times;
+      example = {segment[s], segment[1 - s]};
+    }
+  }
+  const auto& [one, other] = std::ranges::max_element(count, {}, [](const auto& entry) {
+                               return entry.second.first;
+                             })->second.second;
+  return {names_.place_of(one), names_.place_of(other)};
+}
+
+std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& overlap,
+                                           const NamePair& names) const {
+  Votes by_vertex, by_pair;
+  for (const CrossingRegion& region : overlap.regions)
+    for (const VertexId v : region.vertices)
+      by_vertex.add(vertices_, static_cast<std::int32_t>(v), region.other);
+  if (const std::size_t event = by_vertex.most(); event != kNone) return event;
+  for (const std::int32_t curve : overlap.curves)
+    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
+      const auto [a, b] = pair_of(segment);
+      by_pair.add(pairs_, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+    }
+  if (const std::size_t event = by_pair.most(); event != kNone) return event;
+  const NamePair swapped{names.second, names.first};
+  for (const std::size_t event : going_on_)
+    if (events_[event].names == names || events_[event].names == swapped) return event;
+  return kNone;
+}
+
+void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap,
+                           const NamePair& names, std::size_t interval, std::span<const Vec3> start) {
+  const bool is_new = event.depth_at.empty();
+  if (is_new) event.first = interval;
+  event.last = interval;
+  event.depth_at.resize(interval - event.first + 1, 0.0);
+  event.depth_at.back() = std::max(event.depth_at.back(), overlap.depth.lower);
+  const auto order = [](const CrossingDepth& depth) { return std::tuple(depth.lower, depth.upper); };
+  if (!is_new && order(overlap.depth) <= order(event.depth)) return;
+  event.names = names;
+  event.deepest = interval;
+  event.depth = overlap.depth;
+  event.curves = overlap.curves.size();
+  event.pairs = event.vertices = 0;
+  event.area = 0;
+  const auto curve = [&](std::int32_t c) -> const CrossingCurve& {
+    return all.crossing.curves[static_cast<std::size_t>(c)];
+  };
+  for (const std::int32_t c : overlap.curves) event.pairs += curve(c).segments.size();
+  if (!overlap.regions.empty()) {
+    const CrossingRegion& deepest = overlap.regions.front();
+    event.vertices = deepest.vertices.size();
+    event.area = deepest.area;
+    event.behind = deepest.behind;
+    event.other_is_open = deepest.other_is_open;
+  }
+  event.point = event.depth.nearest != TriangleId{-1}
+                    ? event.depth.point
+                    : all.crossing.point(curve(overlap.curves.front()).nodes.front(), start);
+}
+
+OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<const Vec3> start,
+                                       bool each_distance) {
+  const Stopwatch watch;
+  Here here;
+  std::vector<Mark> vertices, pairs;
+  std::vector<std::size_t> going_on;
+  if (answer.start.total > 0) {
+    here.overlaps = finder_.find(start, all_pairs(answer), each_distance);
+    for (const Overlap& overlap : here.overlaps.overlaps) {
+      here.event.push_back(kNone);
+      if (!is_event(here.overlaps, overlap, answer)) continue;
+      const NamePair names = names_of(here.overlaps, overlap);
+      std::size_t event = continued_event(here.overlaps, overlap, names);
+      if (event == kNone) {
+        event = events_.size();
+        events_.emplace_back();
+      }
+      extend(events_[event], here.overlaps, overlap, names, answer.index, start);
+      here.event.back() = event;
+      going_on.push_back(event);
+      for (const CrossingRegion& region : overlap.regions)
+        for (const VertexId v : region.vertices)
+          vertices.emplace_back(static_cast<std::int32_t>(v), region.other, event);
+      for (const std::int32_t curve : overlap.curves)
+        for (const auto& segment : here.overlaps.crossing.curves[static_cast<std::size_t>(curve)].segments) {
+          const auto [a, b] = pair_of(segment);
+          pairs.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), event);
+        }
+    }
+  }
+  here.event_of_contact = events_of_contacts(here, answer);
+  std::ranges::sort(vertices);
+  std::ranges::sort(pairs);
+  std::ranges::sort(going_on);
+  vertices_ = std::move(vertices);
+  pairs_ = std::move(pairs);
+  going_on_ = std::move(going_on);
+  milliseconds_ += watch.milliseconds();
+  return here;
+}
+
+std::vector<std::size_t> OverlapEvents::events_of_contacts(const Here& here, const IntervalAnswer& answer) {
+  // The triangles of either sheet: those that curves run through or that have a vertex beyond the other.
+  std::vector<std::pair<TriangleId, std::size_t>> lies_in;
+  for (std::size_t i = 0; i < here.event.size(); ++i) {
+    if (here.event[i] == kNone) continue;
+    const Overlap& overlap = here.overlaps.overlaps[i];
+    for (const std::int32_t curve : overlap.curves)
+      for (const auto& segment : here.overlaps.crossing.curves[static_cast<std::size_t>(curve)].segments)
+        for (const TriangleId t : segment) lies_in.emplace_back(t, here.event[i]);
+    for (const CrossingRegion& region : overlap.regions)
+      for (const VertexId v : region.vertices)
+        for (const TriangleId t : input_.mesh.triangles_at(v)) lies_in.emplace_back(t, here.event[i]);
+  }
+  std::ranges::sort(lies_in);
+  const auto events_of = [&](TriangleId t) {
+    return std::ranges::equal_range(lies_in, t, {}, [](const auto& entry) { return entry.first; });
+  };
+  std::vector<std::size_t> out;
+  for (const Contact& contact : answer.found.contacts) {
+    std::size_t found = kNone;
+    for (const auto& [s, t] : carriers(input_.mesh, contact.pair))
+      for (const auto& entry : events_of(s))
+        for (const auto& other : events_of(t))
+          if (entry.second == other.second) found = std::min(found, entry.second);
+    out.push_back(found);
+    if (found != kNone) ++events_[found].contacts;
+  }
+  return out;
+}
+
+std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events) {
+  std::vector<std::size_t> order(events.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) {
+    return std::tuple(events[i].depth.lower, events[i].depth.upper);
+  });
+  return order;
+}
+
+}  // namespace cscd::bench

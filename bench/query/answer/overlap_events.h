@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/surface_names.h"
+#include "core/crossing/overlaps.h"
+
+namespace cscd::bench {
+
+// Two pieces of the surface that lie in each other for some time: "left hand in thigh". It is known at the
+// starts of intervals, at each of which it is an Overlap.
+struct OverlapEvent {
+  NamePair names;                                // which place lies in which, where it is deepest
+  std::size_t first = 0, deepest = 0, last = 0;  // intervals
+  // All below is said of the start of interval `deepest`.
+  CrossingDepth depth;
+  Vec3 point = Vec3::Zero();  // the deepest, or where none is known, some point of a curve
+  std::size_t pairs = 0, curves = 0;
+  // Of the deepest region (CrossingRegion). There is none where no vertex lies in the other sheet.
+  std::size_t vertices = 0;
+  double area = 0;
+  bool behind = true, other_is_open = false;
+  std::vector<double> depth_at;  // of intervals first to last; 0 where it pauses
+  std::size_t contacts = 0;      // of these intervals, between its pieces
+};
+
+// The numbers of events in the order of their depths, deepest first.
+std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events);
+
+// Follows overlaps from interval to interval. An overlap continues the event with whose regions it shares
+// most vertices; or else pairs of triangles; or else the event between the same two places that nothing
+// continues. Overlaps of which most pairs of triangles cross at rest, or are ignored, are no events.
+class OverlapEvents {
+ public:
+  OverlapEvents(const Input& input, const SurfaceNames& names);  // both must outlive it
+
+  // `start` are the positions at the interval's start. Intervals come in growing order. Returns what overlaps
+  // there, with the number of each one's event.
+  struct Here {
+    Overlaps overlaps;
+    std::vector<std::size_t> event;  // [overlaps.overlaps]; kNone for those that are no events
+    // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
+    // each other when the interval starts; kNone for new contacts.
+    std::vector<std::size_t> event_of_contact;
+  };
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  Here add(const IntervalAnswer& answer, std::span<const Vec3> start, bool each_distance = false);
+
+  // All events, in the order in which they begin.
+  const std::vector<OverlapEvent>& all() const { return events_; }
+  double milliseconds() const { return milliseconds_; }
+
+ private:
+  std::vector<std::size_t> events_of_contacts(const Here& here, const IntervalAnswer& answer);
+
+  using Mark =
+      std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event
+
+  bool is_event(const Overlaps& all, const Overlap& overlap, const IntervalAnswer& answer) const;
+  std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names) const;
+  NamePair names_of(const Overlaps& all, const Overlap& overlap) const;
+  void extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap, const NamePair& names,
+              std::size_t interval, std::span<const Vec3> start);
+
+  const Input& input_;
+  const SurfaceNames& names_;
+  OverlapFinder finder_;
+  std::vector<OverlapEvent> events_;
+  std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted
+  std::vector<std::size_t> going_on_;   // events of the last interval; sorted
+  double milliseconds_ = 0;
+};
+
+}  // namespace cscd::bench
