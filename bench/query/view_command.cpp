@@ -20,6 +20,7 @@
 #include "bench/query/options/answer_options.h"
 #include "bench/query/view/clip_recording.h"
 #include "bench/query/view/html.h"
+#include "bench/query/view/overlap_recording.h"
 #include "bench/query/view/recording.h"
 #include "bench/query/view_page.h"
 #include "core/base/error.h"
@@ -91,6 +92,8 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
     contestants.emplace_back(
         new Contestant{std::move(answerer), StrategyRecording(std::move(answer), clip.grid())});
   }
+  OverlapEvents events(input, names);
+  OverlapRecording overlaps;
   input.use_bones = true;  // strategies that do without take no notice
   {
     Progress progress("view " + options.input, range.last - range.first);
@@ -102,6 +105,9 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
         const IntervalAnswer answer = contestant->answerer.answer(i);
         contestant->recording.add(answer, input.clip->load(i), texts);
         touches = touches || !answer.found.contacts.empty();
+        // All strategies see the same starts.
+        if (contestant == contestants.front())
+          overlaps.add(events.add(answer, input.clip->load(i).motion.start(), true));
       }
       if (touches && input.clip->header().predicted) clip.add_predicted_end(input.clip->load(i).motion.end());
       progress.advance();
@@ -110,6 +116,8 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   }
   watchdog.restart();
 
+  overlaps.write(sections);
+  for (const auto& contestant : contestants) contestant->recording.take(events);
   const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s)
@@ -120,6 +128,7 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
                  {"thickness", input.thickness.asked.thickness.text},
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
+                 {"events", event_lines(input, events.all())},
                  {"rest", rest_json(contestants.front()->recording.answer())},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);

@@ -198,7 +198,7 @@ class PoseOverlaps {
         Found& found = regions_[at->second];
         found.region.own = groups_[g].own;
         found.region.other = groups_[g].other;
-        found.region.behind = is_behind && !finder_.open_[index(groups_[g].other)];
+        found.region.behind = found.region.behind && is_behind && !finder_.open_[index(groups_[g].other)];
         found.seeds.push_back({is_behind ? p.behind : p.before, image});
         found.images.push_back(image);
         region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);

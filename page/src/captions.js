@@ -49,7 +49,8 @@ export class Captions {
       }
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
-    } else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
+    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), item(YELLOW, "lies in another piece"), item(RED, "deepest; lines: where they cross"));
+    else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
     else if (mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
     else if (mode === "place" || mode === "part") rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[mode]));
     else if (mode === "patch") rows.push(element("b", strategy.has_patches ? "patches of up to 16 triangles, the unit of work" : `${strategy.name} has no patches`));

@@ -88,6 +88,12 @@ function boxesOf(places, { frames, vertices }) {
 // Whether a triangle's bit is set in the row of an interval.
 export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.ceil(triangles / 8) + (t >> 3)] >> (t & 7)) & 1;
 
+// An event of the summary, with intervals that count from the recording's first.
+function eventOf({ clip, strategies }, number) {
+  const event = strategies[0].summary.events[number], from = (moment) => moment.interval - clip.first_interval;
+  return { first: from(event.begins), deepest: from(event.deepest), last: from(event.ends), point: event.point, depths: event.depth_at };
+}
+
 // Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
 // origin: `toView` scales a point of the scene.
 export async function loadRecording() {
@@ -127,6 +133,10 @@ export async function loadRecording() {
     place: arrays.place,
     part: arrays.part,
     bones: arrays.bones,
+    insideOffset: offsets(arrays.inside_count),  // [intervals + 1], of what lies in another piece of the surface at the start
+    insideVertex: arrays.inside_vertex,
+    insideDepth: arrays.inside_depth,
+    events: header.events.map(({ event, text }) => ({ text, ...eventOf(header, event) })),
     strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
     // A unit of observers' places is four steps of the grid.
     observerToView: (place, axis) => (4 * place) / 65535 - middle[axis],

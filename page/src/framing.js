@@ -49,8 +49,8 @@ export class Framing {
 
   // Looks at a moment that has a place, from where least hides it.
   showMoment(strategy, moment, point, smooth) {
-    const { stage, marker } = this, { contact, pair, interval } = moment;
-    this.setAnchor(contact !== undefined ? strategy.contact_vertex[4 * contact] : this.recording.corners[3 * strategy.crossing[2 * pair]]);
+    const { stage, marker } = this, { contact, pair, interval, event } = moment;
+    this.setAnchor(event ? this.nearestVertex(point) : contact !== undefined ? strategy.contact_vertex[4 * contact] : this.recording.corners[3 * strategy.crossing[2 * pair]]);
     const whole = stage.surface.bounds(), points = [point];
     let spread = 0;  // of what lies near the moment's point
     const take = (other) => {
@@ -70,6 +70,16 @@ export class Framing {
       this.opened = true;
     }
     stage.look(point, stage.distanceFor(radius), stage.clearestDirection(points, whole.radius), smooth);
+  }
+
+  nearestVertex(point) {
+    const { surface } = this.stage, place = new THREE.Vector3();
+    let nearest = 0, least = Infinity;
+    for (let v = 0; v < this.recording.clip.vertices; ++v) {
+      const distance = surface.point(v, place).distanceToSquared(point);
+      if (distance < least) [nearest, least] = [v, distance];
+    }
+    return nearest;
   }
 
   // The mean length of the edges of triangles that have a corner near a point; 0 where none has.

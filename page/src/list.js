@@ -5,6 +5,7 @@ import { both, contactVerb, contactWord, many, momentText } from "./words.js";
 
 const MOST_ROWS = 1500;  // browsers grow slow with more
 const MOST_CONTACTS = 200;
+const MOST_EVENTS = 10;
 
 export class MomentList {
   // `select` is called with a moment that was clicked.
@@ -45,7 +46,15 @@ export class MomentList {
     });
     if (moments.length > MOST_ROWS) rows.push(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
     if (moments.length === 0) rows.push(element("p", strategy.close ? "Nothing comes close." : "Nothing touches."));
-    this.box.replaceChildren(...rows);
+    const events = this.recording.events.slice(0, MOST_EVENTS).map((event) => {
+      const row = element("button", undefined, "event");
+      row.moment = { interval: event.deepest, event };
+      row.append(element("span", event.text, "what"));
+      return row;
+    });
+    const more = this.recording.events.length - events.length;
+    if (events.length > 0) events.unshift(element("p", `Lies in itself in ${many(this.recording.events.length, "place")}${more > 0 ? ", deepest in" : ""}:`));
+    this.box.replaceChildren(...events, ...rows);
   }
 
   expand(strategy, interval) {
@@ -71,7 +80,8 @@ export class MomentList {
     if (!chosen) return;
     const one = chosen.contact === undefined ? null
       : Array.from(this.box.querySelectorAll("button.one")).find((row) => row.moment.contact === chosen.contact);
-    const row = one || this.rowOf.get(chosen.interval);
+    const event = chosen.event && Array.from(this.box.querySelectorAll("button.event")).find((row) => row.moment.event === chosen.event);
+    const row = event || one || this.rowOf.get(chosen.interval);
     if (!row) return;
     row.setAttribute("aria-current", "true");
     const place = row.getBoundingClientRect(), frame = this.box.getBoundingClientRect();

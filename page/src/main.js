@@ -108,6 +108,7 @@ class Viewer {
     this.setPlaying(false);
     const t = timeOf(this.active, moment);
     this.chosen = moment;
+    if (moment.event) this.mode = "depth";
     this.pinned = { interval: moment.interval, t, predicted: this.recording.endOfInterval.has(moment.interval) };
     this.position = moment.interval + t;
     this.refresh();

@@ -25,6 +25,7 @@ export class Marker {
   // The place of a moment (moments.js), or null where there is none.
   pointOf(strategy, moment) {
     if (!moment) return null;
+    if (moment.event) return new THREE.Vector3(...moment.event.point.map((x, axis) => this.recording.toView(x, axis)));
     if (moment.contact !== undefined) return this.contactPoint(strategy, moment.interval, moment.contact);
     if (moment.pair === undefined) return null;
     const { corners } = this.recording, sum = new THREE.Vector3(), point = new THREE.Vector3();

@@ -3,18 +3,19 @@ import { bitOf } from "./data.js";
 import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, RED, rgb, SKIN, SKY, YELLOW } from "./palette.js";
 
 // Ways of colouring that change from interval to interval.
-const CHANGING = ["verdict", "cluster", "positive"];
+const CHANGING = ["verdict", "depth", "cluster", "positive"];
 const PAINT = CLUSTERS.map(rgb);
 
 // Which cover of drvbc_fast a way of colouring is about: 0 is the first.
 export const coverOf = (mode) => (mode.startsWith("cover") ? Number(mode.slice(5)) : 0);
 
 // Ways of colouring that show how the engine works, which whoever makes it wants to see.
-export const isOfEngine = (mode) => !["verdict", "place", "part", "often"].includes(mode);
+export const isOfEngine = (mode) => !["verdict", "depth", "place", "part", "often"].includes(mode);
 
 // The ways of colouring that a recording has something to say in, as [name, text].
-export function modesOf({ strategies, clip, place, part }) {
+export function modesOf({ strategies, clip, place, part, events }) {
   const modes = [["verdict", "verdict"]], some = (what) => strategies.some(what);
+  if (events.length > 0) modes.push(["depth", "depth"]);
   if (new Set(place).size > 1) modes.push(["place", clip.bones > 0 ? "bone" : "part"]);
   if (clip.bones > 0 && new Set(part).size > 1) modes.push(["part", "part"]);
   modes.push(["often", "how often"]);
@@ -52,7 +53,7 @@ export class Painter {
       set(t, skin);
       out[4 * t + 3] = 255;
     }
-    look.glow.visible = mode === "verdict";
+    look.glow.visible = mode === "verdict" || mode === "depth";
     const setGlowing = (t, colour) => {
       set(t, colour);
       out[4 * t + 3] = 0;
@@ -65,6 +66,13 @@ export class Painter {
       if (strategy.contacts[interval] > 0)
         for (let t = 0; t < triangles; ++t) if (bitOf(strategy.touched, triangles, interval, t)) setGlowing(t, touched);
       for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) setGlowing(strategy.crossing[i], crossed);
+    } else if (mode === "depth") {
+      const depths = this.depthsAt(interval), most = this.mostDepth(), low = rgb(YELLOW), high = rgb(RED), { corners } = this.recording;
+      if (depths.size === 0) return;
+      for (let t = 0; t < triangles; ++t) {
+        const deep = [0, 1, 2].map((k) => depths.get(corners[3 * t + k]) ?? -1), deepest = Math.max(...deep);
+        if (deepest >= 0) setGlowing(t, low.map((x, i) => x + (deepest / most) * (high[i] - x)));
+      }
     } else if (mode === "often") {
       const often = this.oftenTouched(strategy), most = often.reduce((a, b) => Math.max(a, b), 1), low = rgb(YELLOW), high = rgb(RED);
       for (let t = 0; t < triangles; ++t)
@@ -80,6 +88,19 @@ export class Painter {
       const groups = this.groupsOf(index, mode, interval), none = rgb(GREY);
       if (groups) for (let t = 0; t < triangles; ++t) set(t, groups.of[t] < 0 ? none : PAINT[groups.colours[groups.of[t]]]);
     }
+  }
+
+  // How deep each vertex lies in another piece of the surface, where one does at the start of an interval.
+  depthsAt(interval) {
+    const { insideOffset, insideVertex, insideDepth } = this.recording, depths = new Map();
+    for (let i = insideOffset[interval]; i < insideOffset[interval + 1]; ++i)
+      depths.set(insideVertex[i], Math.max(insideDepth[i], depths.get(insideVertex[i]) ?? 0));
+    return depths;
+  }
+
+  mostDepth() {
+    this.most ??= this.recording.insideDepth.reduce((a, b) => Math.max(a, b), 0) || 1;
+    return this.most;
   }
 
   // The colour in which an observer is drawn, by the number of its cluster: that of its triangles. Null where the surface is

@@ -36,6 +36,19 @@ export class Timeline {
     this.draw();
   }
 
+  // A line that is as high as what lies deepest in another piece of the surface at each start.
+  drawDepth(context, x, top, bottom, colour) {
+    const { events, intervals } = this.recording, depth = new Float64Array(intervals);
+    for (const { first, depths } of events) depths.forEach((d, i) => { depth[first + i] = Math.max(depth[first + i], d); });
+    const most = depth.reduce((a, b) => Math.max(a, b), 0);
+    if (most === 0) return;
+    context.strokeStyle = colour;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    depth.forEach((d, i) => context.lineTo(x(i), bottom - (d / most) * (bottom - top)));
+    context.stroke();
+  }
+
   labelOf(position) {
     const { frame, seconds } = momentOf(this.recording, position);
     return seconds === null ? String(Math.round(frame)) : `${Math.round(frame)} · ${seconds.toFixed(2)} s`;
@@ -66,6 +79,7 @@ export class Timeline {
       const h = Math.max(4, (amount(i) / most) * (bottom - top));
       context.fillRect(x(i), bottom - h, Math.max(1.5, x(i + 1) - x(i) - 0.3), h);
     }
+    this.drawDepth(context, x, top, bottom, colour("--text"));
     context.font = "11px system-ui, sans-serif";
     context.fillStyle = colour("--text");
     for (const i of Timeline.worst(strategy)) {

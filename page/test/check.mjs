@@ -183,6 +183,19 @@ try {
     await page.click("#together");
   }
 
+  // What lies in itself is listed, and a click leads to where it is deepest, in colours of its depth.
+  const events = await page.evaluate(() => window.cscd.recording.events.map(({ deepest }) => deepest));
+  require((await page.locator("button.event").count()) === Math.min(10, events.length), "not every event is listed");
+  if (events.length > 0) {
+    await page.locator("button.event").last().click();
+    await settle();
+    require((await page.evaluate(() => window.cscd.position)) === events[Math.min(10, events.length) - 1], "an event does not lead to its deepest frame");
+    const deep = await look();
+    await picture("event");
+    await page.locator("#modes button[value=place], #modes button[value=often]").first().click();
+    require(different(deep, await look()) > 0, "an event is not coloured by its depth");
+  }
+
   // Names from files are text.
   require((await page.locator("img, iframe, object, embed, link").count()) === 0, "a name became an element");
 

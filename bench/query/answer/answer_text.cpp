@@ -131,21 +131,6 @@ std::string distance_text(const Input& input, double length) {
   return unit > 0 ? number(unit * length) + " cm" : number(length);
 }
 
-// "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
-std::string event_text(const Input& input, const OverlapEvent& event) {
-  std::string out =
-      event.names.first +
-      (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
-  const std::string most = "at most " + distance_text(input, event.depth.upper);
-  out += event.depth.lower > 0 ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
-                               : most + " deep";
-  if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
-  const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
-  if (event.first == event.last) return out + ", frame " + frame(event.first);
-  return out + ", frames " + frame(event.first) + " to " + frame(event.last) + ", deepest at " +
-         frame(event.deepest);
-}
-
 // The predicate of a verdict: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -182,20 +167,6 @@ std::string verdict_predicate(const ClipAnswer& answer) {
          meeting_text(first.names, first.crosses ? "crosses"
                                    : is_thick    ? "comes close to"
                                                  : "touches");
-}
-
-std::string events_text(const ClipAnswer& answer) {
-  const std::vector<OverlapEvent>& events = answer.events;
-  if (events.empty()) return {};
-  std::string out = "  lies in itself in " + many(events.size(), "place") +
-                    (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
-  const std::vector<std::size_t> order = deepest_first(events);
-  for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
-    out += "    " + event_text(answer.input, events[order[i]]) + "\n";
-  std::size_t within = 0;
-  for (const OverlapEvent& event : events) within += event.contacts;
-  if (within > 0) out += "    " + many(within, "contact") + " within these; all others are new\n";
-  return out;
 }
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
@@ -253,9 +224,41 @@ Sentences sentences(const ClipAnswer& answer) {
 
 }  // namespace
 
+std::string event_text(const Input& input, const OverlapEvent& event) {
+  std::string out =
+      event.names.first +
+      (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
+  const std::string most = "at most " + distance_text(input, event.depth.upper);
+  out += event.depth.lower > 0 ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
+                               : most + " deep";
+  if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
+  const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
+  if (event.first == event.last) return out + ", frame " + frame(event.first);
+  return out + ", frames " + frame(event.first) + " to " + frame(event.last) + ", deepest at " +
+         frame(event.deepest);
+}
+
 std::string verdict_sentence(const ClipAnswer& answer) {
   return subject_of(answer.input) + " " + verdict_predicate(answer) + ".";
 }
+
+namespace {
+
+std::string events_text(const ClipAnswer& answer) {
+  const std::vector<OverlapEvent>& events = answer.events;
+  if (events.empty()) return {};
+  std::string out = "  lies in itself in " + many(events.size(), "place") +
+                    (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
+  const std::vector<std::size_t> order = deepest_first(events);
+  for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
+    out += "    " + event_text(answer.input, events[order[i]]) + "\n";
+  std::size_t within = 0;
+  for (const OverlapEvent& event : events) within += event.contacts;
+  if (within > 0) out += "    " + many(within, "contact") + " within these; all others are new\n";
+  return out;
+}
+
+}  // namespace
 
 std::string clip_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;

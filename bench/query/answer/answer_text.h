@@ -14,6 +14,9 @@ std::string verdict_sentence(const ClipAnswer& answer);
 // Several lines, the verdict first.
 std::string clip_text(const ClipAnswer& answer);
 
+// "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
+std::string event_text(const Input& input, const OverlapEvent& event);
+
 // What clip_text() says below the verdict as one paragraph, for a page that lists by itself what met.
 std::string details_text(const ClipAnswer& answer);
 

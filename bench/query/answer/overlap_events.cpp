@@ -173,6 +173,7 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
 }
 
 std::vector<std::size_t> OverlapEvents::events_of_contacts(const Here& here, const IntervalAnswer& answer) {
+  if (answer.found.contacts.empty()) return {};
   // The triangles of either sheet: those that curves run through or that have a vertex beyond the other.
   std::vector<std::pair<TriangleId, std::size_t>> lies_in;
   for (std::size_t i = 0; i < here.event.size(); ++i) {
@@ -186,6 +187,7 @@ std::vector<std::size_t> OverlapEvents::events_of_contacts(const Here& here, con
         for (const TriangleId t : input_.mesh.triangles_at(v)) lies_in.emplace_back(t, here.event[i]);
   }
   std::ranges::sort(lies_in);
+  lies_in.erase(std::unique(lies_in.begin(), lies_in.end()), lies_in.end());
   const auto events_of = [&](TriangleId t) {
     return std::ranges::equal_range(lies_in, t, {}, [](const auto& entry) { return entry.first; });
   };
