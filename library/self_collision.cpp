@@ -17,6 +17,7 @@
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
 #include "core/session/vertex_bounds.h"
+#include "library/crossings.h"
 
 #include "cscd/cscd.h"
 
@@ -234,7 +235,7 @@ class SelfCollision::Engine {
 
   void write(const Motion& motion, Answer& out) const {
     out.start_crossings.clear();
-    for (const Crossings* crossings : {&answer_.start, &crossed_})
+    for (const cscd::Crossings* crossings : {&answer_.start, &crossed_})
       for (const auto& [a, b] : crossings->pairs)
         out.start_crossings.push_back({static_cast<int>(a), static_cast<int>(b)});
     if (!crossed_.pairs.empty()) std::sort(out.start_crossings.begin(), out.start_crossings.end());
@@ -257,6 +258,11 @@ class SelfCollision::Engine {
     if (!obstacles_) return;
     obstacles_->find_candidates(motion, Thickness(radius), found_);
     append(obstacles_->together(), out);
+  }
+
+  SelfCollision::Crossings crossings(std::span<const Vec3> pose) {
+    if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
+    return crossing_search_->find(pose, exclusions_);
   }
 
   std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap) {
@@ -427,10 +433,11 @@ class SelfCollision::Engine {
   cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
   Question first_{.first = true}, all_{.first = false};
   std::optional<CandidateSearch> search_;
-  StepAnswer answer_;   // about the mesh alone
-  ContactSet touched_;  // of the mesh and obstacles
-  Crossings crossed_;   // of the mesh and obstacles
+  StepAnswer answer_;        // about the mesh alone
+  ContactSet touched_;       // of the mesh and obstacles
+  cscd::Crossings crossed_;  // of the mesh and obstacles
   std::vector<FeaturePair> found_;
+  std::optional<CrossingSearch> crossing_search_;
 };
 
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
@@ -505,6 +512,14 @@ std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, dou
     const std::span<const Vec3> pose = rows_of(positions, engine.mesh().vertex_count(), "positions");
     engine.check_finite(pose, "positions");
     return engine.vertex_bounds(pose, cap);
+  });
+}
+
+SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
+  return checked([&] {
+    const std::span<const Vec3> pose = rows_of(positions, engine_->mesh().vertex_count(), "positions");
+    engine_->check_finite(pose, "positions");
+    return engine_->crossings(pose);
   });
 }
 

@@ -22,6 +22,7 @@ const cscd::Copy CSCD_COPY = {
     .largest_step = &SelfCollision::largest_step,
     .candidates = &SelfCollision::candidates,
     .vertex_bounds = &SelfCollision::vertex_bounds,
+    .crossings = &SelfCollision::crossings,
     .preparation = &SelfCollision::preparation,
     .vertex_count = &SelfCollision::vertex_count,
     .face_count = &SelfCollision::face_count,

@@ -28,6 +28,7 @@ struct Copy {
   double (SelfCollision::*largest_step)(const Positions&, const Positions&, double);
   SelfCollision::Candidates (SelfCollision::*candidates)(const Positions&, const Positions&, double);
   std::vector<double> (SelfCollision::*vertex_bounds)(const Positions&, double);
+  SelfCollision::Crossings (SelfCollision::*crossings)(const Positions&);
   std::vector<std::byte> (SelfCollision::*preparation)() const;
   std::size_t (SelfCollision::*vertex_count)() const;
   std::size_t (SelfCollision::*face_count)() const;

@@ -96,6 +96,10 @@ std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, dou
   return engine_->call(&Copy::vertex_bounds, positions, cap);
 }
 
+SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
+  return engine_->call(&Copy::crossings, positions);
+}
+
 std::vector<std::byte> SelfCollision::preparation() const {
   return engine_->call(&Copy::preparation);
 }

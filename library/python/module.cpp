@@ -40,6 +40,11 @@ py::array_t<int> table_of(const std::vector<std::array<int, kWidth>>& rows) {
   return out;
 }
 
+template <class Number>
+py::array_t<Number> array_of(const std::vector<Number>& numbers) {
+  return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+
 // A table of numbers, row by row.
 template <class Number>
 using Table = py::array_t<Number, py::array::c_style>;
@@ -151,6 +156,48 @@ PYBIND11_MODULE(_cscd, module) {
                std::to_string(a.start_crossings.size()) + " crossings at the start>";
       });
 
+  using Crossings = SelfCollision::Crossings;
+  py::class_<Crossings::Curve>(module, "Curve", "A curve in which two sheets of the surface cross.")
+      .def_readonly("closed", &Crossings::Curve::closed)
+      .def_property_readonly(
+          "faces", [](const Crossings::Curve& c) { return table_of(c.faces); },
+          "[segments, 2] int: the face of one sheet and of the other.")
+      .def_property_readonly(
+          "points",
+          [](const Crossings::Curve& c) {
+            py::array_t<double> out({c.points.size(), std::size_t{3}});
+            for (std::size_t i = 0; i < c.points.size(); ++i)
+              std::copy_n(c.points[i].data(), 3, out.mutable_data(static_cast<py::ssize_t>(i), 0));
+            return out;
+          },
+          "[segments, 3] float, or one more row where the curve is not closed: the ends of the segments.");
+  py::class_<Crossings::Region>(module, "Region", "What curves cut off one sheet.")
+      .def_property_readonly(
+          "vertices", [](const Crossings::Region& r) { return array_of(r.vertices); },
+          "[vertices] int, from the curves inwards.")
+      .def_property_readonly(
+          "distances", [](const Crossings::Region& r) { return array_of(r.distance); },
+          "[vertices] float: of each to what the same curves cut off the other sheet.")
+      .def_readonly("area", &Crossings::Region::area)
+      .def_readonly("behind", &Crossings::Region::behind,
+                    "Whether it lies behind the faces of the other sheet; otherwise it is the smaller side.")
+      .def_readonly("other_is_open", &Crossings::Region::other_is_open,
+                    "Whether what is cut off the other sheet is not bounded.")
+      .def_readonly("depth", &Crossings::Region::depth, "The largest distance of a vertex.")
+      .def_readonly("depth_bound", &Crossings::Region::depth_bound, "What no point of the region exceeds.")
+      .def_readonly("deepest", &Crossings::Region::deepest, "The vertex with the largest distance.")
+      .def_readonly("out", &Crossings::Region::out,
+                    "The way from there to the nearest point of the other sheet, [3].");
+  py::class_<Crossings::Overlap>(module, "Overlap", "Curves and regions that hang together.")
+      .def_readonly("curves", &Crossings::Overlap::curves, "List of Curve.")
+      .def_readonly("regions", &Crossings::Overlap::regions, "List of Region, deepest first.")
+      .def_readonly("depth", &Crossings::Overlap::depth)
+      .def_readonly("depth_bound", &Crossings::Overlap::depth_bound);
+  py::class_<Crossings>(module, "Crossings", "How a pose crosses itself.")
+      .def_readonly("overlaps", &Crossings::overlaps, "List of Overlap, deepest first.")
+      .def_readonly("touching", &Crossings::touching,
+                    "Pairs of faces that meet without passing through each other.");
+
   py::class_<SelfCollision>(module, "SelfCollision")
       .def(py::init([](const Table<int>& faces, const Reals& reference, int threads, bool check_positions,
                        bool check_start, const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
@@ -224,8 +271,12 @@ PYBIND11_MODULE(_cscd, module) {
                const py::gil_scoped_release without_lock;
                bounds = self.vertex_bounds(view(positions), cap);
              }
-             return py::array_t<double>(static_cast<py::ssize_t>(bounds.size()), bounds.data());
+             return array_of(bounds);
            })
+      .def(
+          "crossings",
+          [](SelfCollision& self, const Reals& positions) { return self.crossings(view(positions)); },
+          kWithoutLock)
       .def(
           "preparation",
           [](const SelfCollision& self) {

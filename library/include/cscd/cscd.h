@@ -168,6 +168,41 @@ class CSCD_EXPORT SelfCollision {
     std::vector<std::array<int, 4>> edge_edge;    // the two ends of one edge, of another edge
   };
 
+  // How a pose crosses itself: which pieces of the surface lie in each other, how deep, and along which
+  // curves.
+  struct Crossings {
+    // A curve in which two sheets of the surface cross. Which faces follow each other is exact.
+    struct Curve {
+      std::vector<std::array<int, 2>> faces;  // of each segment: the face of one sheet, of the other sheet
+      // The ends of the segments in order: one more than segments, or as many if the curve is closed.
+      // Rounded.
+      std::vector<Eigen::Vector3d> points;
+      bool closed;  // otherwise it ends at borders, or at a vertex where the surface turns inside out
+    };
+    // What curves cut off one sheet.
+    struct Region {
+      std::vector<int> vertices;     // from the curves inwards
+      std::vector<double> distance;  // of each to what the same curves cut off the other sheet
+      double area;                   // a third of each face for each of its corners here
+      bool behind;  // behind the faces of the other sheet, which is closed; otherwise the smaller side
+      // What is cut off the other sheet is not bounded. Distances are those to the other component, or within
+      // one component no more than upper bounds; then `depth` is 0.
+      bool other_is_open;
+      double depth, depth_bound;  // the largest distance, and what no point of the region exceeds
+      int deepest;                // the vertex with the largest distance
+      Eigen::Vector3d out;        // the way from there to the nearest point of the other sheet
+    };
+    // Curves and regions that hang together. Without regions, no vertex lies in the other sheet; the depth is
+    // then that of points between two piercings of an edge.
+    struct Overlap {
+      std::vector<Curve> curves;
+      std::vector<Region> regions;  // deepest first
+      double depth, depth_bound;
+    };
+    std::vector<Overlap> overlaps;  // deepest first
+    std::size_t touching = 0;       // pairs of faces that meet without passing through each other
+  };
+
   // Prepares a mesh. `reference` is any pose without crossings that is not degenerate, such as the pose at
   // rest; the engine chooses where to look from by it, and answers do not depend on it. The mesh may be open,
   // of several pieces, or not manifold; closed meshes are faster. Prepare again when faces change, or when
@@ -227,6 +262,10 @@ class CSCD_EXPORT SelfCollision {
   // thickness and twice the cap are looked at. Vertices of a pair that is not certainly farther apart than
   // the thickness have the bound 0. From a pose in which nothing crosses, nothing comes to cross.
   std::vector<double> vertex_bounds(const Positions& positions, double cap);
+
+  // Returns how the mesh crosses itself in a pose, obstacles aside. Overlaps of which half of the pairs of
+  // faces, or more, are excluded are left out. A piece that lies wholly inside another crosses nothing.
+  Crossings crossings(const Positions& positions);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
   // damaged, of another version of the library, or of a mesh that had less than half of the faces, raise

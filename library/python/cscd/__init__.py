@@ -17,10 +17,11 @@ import subprocess
 import tempfile
 
 from . import _cscd
-from ._cscd import Answer, Contact, instruction_set
+from ._cscd import Answer, Contact, Crossings, Curve, Overlap, Region, instruction_set
 from ._values import INDEX, REAL, as_array, flag, numbers
 
-__all__ = ["Answer", "Contact", "Exclusions", "SelfCollision", "instruction_set", "read"]
+__all__ = ["Answer", "Contact", "Crossings", "Curve", "Exclusions", "Overlap", "Region", "SelfCollision", "instruction_set",
+           "read"]
 
 
 def _faces(value, name="faces"):
@@ -152,6 +153,15 @@ class SelfCollision(_cscd.SelfCollision):
         leave room for that. Vertices of a pair that is not farther apart than the thickness have the bound 0.
         """
         return super().vertex_bounds(_positions(positions, "positions"), float(numbers(cap, "cap", REAL)))
+
+
+    def crossings(self, positions):
+        """Returns a Crossings: which pieces of the mesh lie in each other in a pose, how deep, and along which curves.
+
+        Obstacles are left out, and so are overlaps of which half of the pairs of faces, or more, are excluded. A piece that
+        lies wholly inside another crosses nothing.
+        """
+        return super().crossings(_positions(positions, "positions"))
 
 
 def _step(start, end):

@@ -67,6 +67,23 @@ class SelfCollision(unittest.TestCase):
         self.assertGreater(len(answer.start_crossings), 0)
         self.assertEqual(self.body.largest_step(inside, inside), 0)
 
+    def test_what_lies_in_what(self):
+        self.assertEqual(self.body.crossings(self.before).overlaps, [])
+        found = self.body.crossings(fallen(self.before, 1.5)).overlaps
+        self.assertEqual(len(found), 1)
+        curve, = found[0].curves
+        self.assertTrue(curve.closed)
+        self.assertEqual(curve.points.shape, (len(curve.faces), 3))
+        np.testing.assert_allclose(curve.points[:, 2], 0.5)  # of the upper one's base
+        np.testing.assert_allclose(found[0].depth, 0.5)
+        self.assertGreaterEqual(found[0].depth_bound, found[0].depth)
+        region = found[0].regions[0]
+        self.assertEqual(region.distances.max(), region.depth)
+        self.assertIn(region.deepest, region.vertices)
+        np.testing.assert_allclose(np.linalg.norm(region.out), region.depth)
+        with self.assertRaisesRegex(ValueError, "positions"):
+            self.body.crossings(self.before[:3])
+
     def test_other_layouts_and_types_are_converted(self):
         after = fallen(self.before, 2)
         for start, end in [(np.asfortranarray(self.before), after), (self.before.astype(np.float32), after),

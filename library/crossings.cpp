@@ -1,0 +1,68 @@
+#include "library/crossings.h"
+
+#include "core/base/error.h"
+
+namespace cscd {
+namespace {
+
+constexpr std::size_t kMostPairs = std::size_t{1} << 22;  // a surface with more has collapsed
+
+SelfCollision::Crossings::Curve written(const CrossingCurves& all, const CrossingCurve& curve,
+                                        std::span<const Vec3> positions) {
+  SelfCollision::Crossings::Curve out;
+  out.closed = curve.closed();
+  for (const auto& [a, b] : curve.segments) out.faces.push_back({static_cast<int>(a), static_cast<int>(b)});
+  for (const CrossingCurve::Node& node : curve.nodes) out.points.push_back(all.point(node, positions));
+  return out;
+}
+
+SelfCollision::Crossings::Region written(const CrossingRegion& region) {
+  SelfCollision::Crossings::Region out;
+  for (const VertexId v : region.vertices) out.vertices.push_back(static_cast<int>(v));
+  out.distance = region.distance;
+  out.area = region.area;
+  out.behind = region.behind;
+  out.other_is_open = region.other_is_open;
+  out.depth = region.depth.lower;
+  out.depth_bound = region.depth.upper;
+  out.deepest = static_cast<int>(region.depth.vertex);
+  out.out = region.depth.out;
+  return out;
+}
+
+}  // namespace
+
+bool CrossingSearch::excludes(const Exclusions& excluded, const CrossingCurves& all,
+                              const Overlap& overlap) const {
+  if (excluded.empty()) return false;
+  std::size_t pairs = 0, left_out = 0;
+  for (const std::int32_t curve : overlap.curves)
+    for (const auto& [a, b] : all.curves[static_cast<std::size_t>(curve)].segments) {
+      ++pairs;
+      left_out += excluded.excludes(mesh_, TrianglePair{a, b});
+    }
+  return 2 * left_out >= pairs;
+}
+
+SelfCollision::Crossings CrossingSearch::find(std::span<const Vec3> positions, const Exclusions& excluded) {
+  const Crossings pairs = pairs_.find_all(positions, kMostPairs);
+  if (!pairs.all_kept())
+    throw InputError("crossings: " + std::to_string(pairs.total) + " pairs of faces cross, more than " +
+                     std::to_string(kMostPairs) + "; the surface has collapsed");
+  const Overlaps found = finder_.find(positions, pairs.pairs, true);
+  SelfCollision::Crossings out;
+  out.touching = found.crossing.touching;
+  for (const Overlap& overlap : found.overlaps) {
+    if (excludes(excluded, found.crossing, overlap)) continue;
+    SelfCollision::Crossings::Overlap& one = out.overlaps.emplace_back();
+    for (const std::int32_t curve : overlap.curves)
+      one.curves.push_back(
+          written(found.crossing, found.crossing.curves[static_cast<std::size_t>(curve)], positions));
+    for (const CrossingRegion& region : overlap.regions) one.regions.push_back(written(region));
+    one.depth = overlap.depth.lower;
+    one.depth_bound = overlap.depth.upper;
+  }
+  return out;
+}
+
+}  // namespace cscd

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+
+#include "core/crossing/overlaps.h"
+#include "core/detect/exclusions.h"
+#include "core/detect/start/embedding.h"
+#include "core/mesh/triangle_mesh.h"
+
+#include "cscd/cscd.h"
+
+namespace cscd {
+
+// Answers SelfCollision::crossings() for one mesh.
+class CrossingSearch {
+ public:
+  CrossingSearch(const TriangleMesh& mesh, std::span<const Vec3> reference)
+      : mesh_(mesh), pairs_(mesh, reference), finder_(mesh) {}
+
+  SelfCollision::Crossings find(std::span<const Vec3> positions, const Exclusions& excluded);
+
+ private:
+  // Whether most of the pairs of an overlap are excluded.
+  bool excludes(const Exclusions& excluded, const CrossingCurves& all, const Overlap& overlap) const;
+
+  const TriangleMesh& mesh_;
+  EmbeddingTest pairs_;
+  OverlapFinder finder_;
+};
+
+}  // namespace cscd
