@@ -33,7 +33,7 @@ constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all 
 
 struct QueryOptions : AnswerRequest {
   std::string strategy, output, start_pairs, preparation;
-  bool force = false, fail_on_contact = false;
+  bool force = false, fail_on_contact = false, new_contacts = false;
   std::optional<WrittenLength> fail_deeper_than;
 };
 
@@ -85,8 +85,10 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     watchdog.restart();
     IntervalAnswer interval = answerer.answer(i);
     const Motion motion = input.clip->load(i).motion;
+    const OverlapEvents::Here here = events.add(interval, motion.start());
+    interval.event_of_contact = here.event_of_contact;
+    if (options.new_contacts) keep_new(interval, here, input.thickness.length > 0);
     answer.summary.add(interval, motion, names);
-    interval.event_of_contact = events.add(interval, motion.start()).event_of_contact;
     if (keep_intervals) answer.intervals.push_back(std::move(interval));
     progress.advance();
   }
@@ -242,6 +244,10 @@ Said say_answers(const QueryOptions& options, bool with_json) {
 
 void query(QueryOptions options) {
   require_sound(options);
+  if (options.new_contacts && options.answers.first)
+    throw InputError(
+        "--new-contacts with --first: the earliest contact may be an old one, after which --first "
+        "looks for no other; leave out one of the two");
   if (!options.strategy.empty()) require_fit(options.thickness, strategy_named(options.strategy));
   most_start_pairs(options.start_pairs);
   std::optional<OutputFile> output;
@@ -312,6 +318,10 @@ void add_query(CLI::App& app) {
           "interval: "
           "a length such as 0.01, or 0.2e for mean edges of the pose at rest")
       ->type_name("LENGTH");
+  command->add_flag(
+      "--new-contacts", options->new_contacts,
+      "leave out contacts and crossings of pieces that lie in each other when an interval starts: "
+      "only what touches anew counts");
   command->callback([options] { query(*options); });
 }
 

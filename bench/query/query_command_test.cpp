@@ -90,6 +90,18 @@ TEST_F(Query, SaysHowDeepItLiesInItself) {
   expect_refused(run("cscd query small --fail-deeper-than much"), "--fail-deeper-than much");
 }
 
+TEST_F(Query, CountsNewContactsAloneWhereThatIsAsked) {
+  const json all = answer("figure.glb --clip hug")["summary"],
+             fresh = answer("figure.glb --clip hug --new-contacts")["summary"];
+  EXPECT_GT(fresh["old"]["contacts"], 0);
+  EXPECT_GT(fresh["old"]["start_pairs"], 0);
+  EXPECT_EQ(all["old"]["contacts"], 0);
+  EXPECT_LT(fresh["intersects_at_start"], all["intersects_at_start"]);
+  EXPECT_EQ(fresh["events"], all["events"]) << "what is left out is known all the same";
+  expect_refused(run("cscd query figure.glb --clip hug --new-contacts --first"),
+                 "--new-contacts with --first");
+}
+
 TEST_F(Query, FailsOnContactWhereThatIsAsked) {
   EXPECT_EQ(run("cscd query figure.glb --clip hug --fail-on-contact").status, 3);
   EXPECT_EQ(run("cscd query figure.glb --clip hug").status, 0);

@@ -7,13 +7,6 @@
 namespace cscd::bench {
 namespace {
 
-IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
-  if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
-  if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
-  if (answer.time()) return IntervalVerdict::close;
-  return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
-}
-
 AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
   options.thickness = input.thickness.thickness();
   options.ignored = input.ignored ? &input.ignored->triangles : nullptr;
@@ -36,6 +29,13 @@ std::string_view to_string(IntervalVerdict verdict) {
       return "close";
   }
   return "";
+}
+
+IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
+  if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
+  if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
+  if (answer.time()) return IntervalVerdict::close;
+  return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
 }
 
 Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,

@@ -29,7 +29,12 @@ struct IntervalAnswer : StepAnswer {
   // [contacts], the numbers of the events to which they belong (OverlapEvents::Here); empty where none
   // begins.
   std::vector<std::size_t> event_of_contact;
+  // With --new-contacts: what is left out because it lies within events.
+  std::size_t old_pairs = 0, old_contacts = 0;
 };
+
+// The verdict that goes by what the answer holds.
+IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
 
 using AnswerOptions = SessionOptions;
 

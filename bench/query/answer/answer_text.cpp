@@ -144,8 +144,10 @@ std::string verdict_predicate(const ClipAnswer& answer) {
                                frame_text(frame_of(input, {s.last_index, 1}));
     const std::string rest = s.with_left_out > 0 ? "what crosses at rest" : "";
     const std::string ignored = s.with_ignored > 0 ? "what is ignored" : "";
-    const std::string both = rest + (rest.empty() || ignored.empty() ? "" : " and ") + ignored;
-    const std::string apart = both.empty() ? "" : ", apart from " + both;
+    std::string apart;
+    for (const std::string& each :
+         {rest, ignored, std::string(s.with_old > 0 ? "what lies in itself already" : "")})
+      if (!each.empty()) apart += (apart.empty() ? ", apart from " : " and ") + each;
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
@@ -254,7 +256,12 @@ std::string events_text(const ClipAnswer& answer) {
     out += "    " + event_text(answer.input, events[order[i]]) + "\n";
   std::size_t within = 0;
   for (const OverlapEvent& event : events) within += event.contacts;
-  if (within > 0) out += "    " + many(within, "contact") + " within these; all others are new\n";
+  if (answer.summary.with_old > 0)
+    out += "    left out, as asked: " + many(answer.summary.old_contacts, "contact") + " and " +
+           many(answer.summary.old_pairs, "crossing pair") + " of triangles within these, in " +
+           many(answer.summary.with_old, "interval") + "\n";
+  else if (within > 0)
+    out += "    " + many(within, "contact") + " within these; all others are new\n";
   return out;
 }
 

@@ -53,6 +53,9 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   ++strategies[std::string(answer.strategy->name)];
   proven += answer.proven;
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
+  old_pairs += answer.old_pairs;
+  old_contacts += answer.old_contacts;
+  with_old += answer.old_pairs + answer.old_contacts > 0;
   close_at_start += answer.close_at_start;
   with_close_at_start += answer.close_at_start > 0;
   add_ignored(answer, names);

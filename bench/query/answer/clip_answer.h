@@ -57,6 +57,8 @@ struct AnswerSummary {
   };
   std::map<NamePair, IgnoredHere> ignored;
   std::size_t with_ignored = 0;  // intervals in which something is
+  // With --new-contacts: what is left out because it lies within events, and from how many intervals.
+  std::size_t old_pairs = 0, old_contacts = 0, with_old = 0;
   // With a thickness: pairs that are close at the starts of intervals, and the number of such intervals.
   std::size_t close_at_start = 0, with_close_at_start = 0;
   double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0, overlap_ms = 0;

@@ -161,7 +161,8 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
         }
     }
   }
-  here.event_of_contact = events_of_contacts(here, answer);
+  find_pieces(here);
+  assign_contacts(here, answer);
   std::ranges::sort(vertices);
   std::ranges::sort(pairs);
   std::ranges::sort(going_on);
@@ -172,36 +173,57 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
   return here;
 }
 
-std::vector<std::size_t> OverlapEvents::events_of_contacts(const Here& here, const IntervalAnswer& answer) {
-  if (answer.found.contacts.empty()) return {};
-  // The triangles of either sheet: those that curves run through or that have a vertex beyond the other.
-  std::vector<std::pair<TriangleId, std::size_t>> lies_in;
+void OverlapEvents::find_pieces(Here& here) const {
   for (std::size_t i = 0; i < here.event.size(); ++i) {
     if (here.event[i] == kNone) continue;
     const Overlap& overlap = here.overlaps.overlaps[i];
     for (const std::int32_t curve : overlap.curves)
       for (const auto& segment : here.overlaps.crossing.curves[static_cast<std::size_t>(curve)].segments)
-        for (const TriangleId t : segment) lies_in.emplace_back(t, here.event[i]);
+        for (const TriangleId t : segment) here.pieces.emplace_back(t, here.event[i]);
     for (const CrossingRegion& region : overlap.regions)
       for (const VertexId v : region.vertices)
-        for (const TriangleId t : input_.mesh.triangles_at(v)) lies_in.emplace_back(t, here.event[i]);
+        for (const TriangleId t : input_.mesh.triangles_at(v)) here.pieces.emplace_back(t, here.event[i]);
   }
-  std::ranges::sort(lies_in);
-  lies_in.erase(std::unique(lies_in.begin(), lies_in.end()), lies_in.end());
+  std::ranges::sort(here.pieces);
+  here.pieces.erase(std::unique(here.pieces.begin(), here.pieces.end()), here.pieces.end());
+}
+
+std::size_t OverlapEvents::Here::event_of(TriangleId a, TriangleId b) const {
   const auto events_of = [&](TriangleId t) {
-    return std::ranges::equal_range(lies_in, t, {}, [](const auto& entry) { return entry.first; });
+    return std::ranges::equal_range(pieces, t, {}, [](const auto& entry) { return entry.first; });
   };
-  std::vector<std::size_t> out;
+  for (const auto& entry : events_of(a))
+    for (const auto& other : events_of(b))
+      if (entry.second == other.second) return entry.second;
+  return kNone;
+}
+
+void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
   for (const Contact& contact : answer.found.contacts) {
     std::size_t found = kNone;
     for (const auto& [s, t] : carriers(input_.mesh, contact.pair))
-      for (const auto& entry : events_of(s))
-        for (const auto& other : events_of(t))
-          if (entry.second == other.second) found = std::min(found, entry.second);
-    out.push_back(found);
+      found = std::min(found, here.event_of(s, t));
+    here.event_of_contact.push_back(found);
     if (found != kNone) ++events_[found].contacts;
   }
-  return out;
+}
+
+void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick) {
+  answer.old_pairs = std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) {
+    return here.event_of(pair.first, pair.second) != OverlapEvents::kNone;
+  });
+  answer.start.total -= answer.old_pairs;
+  std::vector<cscd::Contact> left;
+  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i)
+    if (here.event_of_contact[i] == OverlapEvents::kNone) left.push_back(answer.found.contacts[i]);
+  answer.old_contacts = answer.found.contacts.size() - left.size();
+  answer.found.contacts = std::move(left);
+  answer.event_of_contact.clear();
+  std::erase_if(answer.touching, [&](const auto& entry) {
+    return std::ranges::find(answer.found.contacts, entry.first, &Contact::pair) ==
+           answer.found.contacts.end();
+  });
+  answer.verdict = verdict_of(answer, is_thick);
 }
 
 std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events) {

@@ -48,6 +48,12 @@ class OverlapEvents {
     // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
     // each other when the interval starts; kNone for new contacts.
     std::vector<std::size_t> event_of_contact;
+    // The triangles of the pieces of each event, those that its curves run through and those that have a
+    // vertex beyond. Sorted.
+    std::vector<std::pair<TriangleId, std::size_t>> pieces;
+
+    // An event in which one of the triangles lies in the other; kNone where there is none.
+    std::size_t event_of(TriangleId a, TriangleId b) const;
   };
   static constexpr std::size_t kNone = ~std::size_t{0};
   Here add(const IntervalAnswer& answer, std::span<const Vec3> start, bool each_distance = false);
@@ -57,7 +63,8 @@ class OverlapEvents {
   double milliseconds() const { return milliseconds_; }
 
  private:
-  std::vector<std::size_t> events_of_contacts(const Here& here, const IntervalAnswer& answer);
+  void find_pieces(Here& here) const;
+  void assign_contacts(Here& here, const IntervalAnswer& answer);
 
   using Mark =
       std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event
@@ -76,5 +83,9 @@ class OverlapEvents {
   std::vector<std::size_t> going_on_;   // events of the last interval; sorted
   double milliseconds_ = 0;
 };
+
+// Leaves out of an answer what lies within events: contacts, and pairs that cross at the start. `here` is
+// what OverlapEvents::add() said of the answer.
+void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick);
 
 }  // namespace cscd::bench
