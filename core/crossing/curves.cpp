@@ -1,6 +1,7 @@
 #include "core/crossing/curves.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/crossing/generic_side.h"
 #include "core/mesh/adjacency.h"
@@ -36,9 +37,9 @@ class CurveFinder {
   CrossingCurves find(std::span<const CrossingPair> pairs) {
     segments_.reserve(pairs.size());
     ends_.reserve(2 * pairs.size());
-    for (const CrossingPair& pair : pairs) add(pair);
-    complete(pairs);
-    number_piercings();
+    for (const CrossingPair& pair : pairs) out_.touching += !add(pair);
+    complete();
+    taken_.assign(segments_.size(), false);
     for (std::size_t i = 0; i < segments_.size(); ++i)
       for (int end = 0; end < 2; ++end)
         if (!taken_[i] && end_kind(i, end) != CrossingCurve::End::closed) walk(i, end);
@@ -55,7 +56,8 @@ class CurveFinder {
     VertexId shared{-1};  // takes the place of the second piercing
   };
 
-  void add(const CrossingPair& pair) {
+  // Adds the segment of a pair, unless its triangles touch without passing through each other.
+  bool add(const CrossingPair& pair) {
     const Triangle &a = mesh_.corners(pair.first), &b = mesh_.corners(pair.second);
     Segment segment{pair};
     std::uint8_t found = 0;
@@ -76,36 +78,44 @@ class CurveFinder {
     };
     look(pair.first, pair.second);
     look(pair.second, pair.first);
-    if (found == 0) {
-      ++out_.touching;
-      return;
-    }
+    if (found == 0) return false;
     if (found == 1) segment.shared = *std::ranges::find_if(a, [&](VertexId v) { return contains(b, v); });
     segments_.push_back(segment);
+    return true;
   }
 
   // A curve that goes on into a pair that the caller did not name: two triangles that share a vertex may pass
-  // through each other by nothing that can be measured, and so not meet. Adds such pairs.
-  void complete(std::span<const CrossingPair> pairs) {
-    std::vector<CrossingPair> added;
-    for (std::size_t i = 0; i < ends_.size(); ++i) {
-      const auto [edge, face, segment, end, behind] = ends_[i];
-      for (const TriangleId other : mesh_.triangles_at(edge)) {
-        if (other == face) continue;
-        const CrossingPair pair = std::minmax(other, face);
-        if (std::ranges::binary_search(pairs, pair) || std::ranges::find(added, pair) != added.end())
-          continue;
-        added.push_back(pair);
-        add(pair);
+  // through each other by nothing that can be measured, and so not meet. Adds such pairs until there are
+  // none.
+  void complete() {
+    for (bool added = true; added;) {
+      added = false;
+      number_piercings();
+      for (std::int32_t p = 0; p < static_cast<std::int32_t>(out_.piercings.size()); ++p) {
+        const auto [edge, face] = std::pair(out_.piercings[static_cast<std::size_t>(p)].edge,
+                                            out_.piercings[static_cast<std::size_t>(p)].face);
+        const std::span<const TriangleId> all = mesh_.triangles_at(edge);
+        if (at(p).size() == all.size()) continue;
+        for (const TriangleId other : all)
+          if (const CrossingPair pair = std::minmax(other, face);
+              !is_known(p, pair) && added_.insert(pair).second && add(pair))
+            added = true;
+        if (added) break;  // piercings are numbered anew
       }
     }
+  }
+  bool is_known(std::int32_t piercing, const CrossingPair& pair) const {
+    return std::ranges::any_of(at(piercing), [&](const SegmentEnd& e) {
+      return segments_[static_cast<std::size_t>(e.segment)].triangles == pair;
+    });
   }
 
   void number_piercings() {
     std::ranges::sort(ends_, {}, &SegmentEnd::key);
     out_.piercings.reserve(ends_.size() / 2 + 1);
     first_.reserve(ends_.size() / 2 + 2);
-    taken_.assign(segments_.size(), false);
+    out_.piercings.clear();
+    first_.clear();
     for (std::size_t i = 0; i < ends_.size();) {
       const auto number = static_cast<std::int32_t>(out_.piercings.size());
       const auto [edge, face, segment, end, behind] = ends_[i];
@@ -181,6 +191,7 @@ class CurveFinder {
   std::vector<SegmentEnd> ends_;    // sorted by piercing, once these are numbered
   std::vector<std::size_t> first_;  // [piercings + 1], of each among ends_
   std::vector<bool> taken_;
+  std::set<CrossingPair> added_;  // by complete()
   CrossingCurves out_;
 };
 

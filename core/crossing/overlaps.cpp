@@ -374,40 +374,46 @@ class PoseOverlaps {
   // Within one triangle, that part is a union of triangles between such points, and any point of a triangle
   // is within 1 / sqrt(3) of its longest edge of some corner.
   double reach(std::span<const std::int32_t> images, std::span<const VertexId> vertices) const {
-    std::vector<std::pair<TriangleId, Vec3>> points;
+    std::vector<std::uint64_t> order;  // a triangle in the upper half, and one of its points in the lower
+    std::vector<Vec3> points;
+    const auto add = [&](TriangleId t, const Vec3& point) {
+      order.push_back(static_cast<std::uint64_t>(+t) << 32 | points.size());
+      points.push_back(point);
+    };
     for (const std::int32_t image : images) {
       const CrossingCurve& curve = crossing().curves[index(image / 2)];
       for (std::size_t i = 0; i < curve.segments.size(); ++i)
         for (const std::size_t node : {i, (i + 1) % curve.nodes.size()})
-          points.emplace_back(curve.segments[i][index(image % 2)],
-                              crossing().point(curve.nodes[node], positions_));
+          add(curve.segments[i][index(image % 2)], crossing().point(curve.nodes[node], positions_));
     }
     double most = 0;
     for (const VertexId v : vertices)
       for (const TriangleId t : mesh_.triangles_at(v)) {
+        const Triangle& c = mesh_.corners(t);
         if (finder_.is_cut_[+t]) {
-          points.emplace_back(t, positions_[+v]);
+          add(t, positions_[+v]);
+          for (const VertexId corner : c)
+            if (is_on_curve(corner)) add(t, positions_[+corner]);
           continue;
         }
-        const Triangle& c = mesh_.corners(t);
         if (v != c[0] && !is_on_curve(c[0])) continue;  // each triangle once
         for (std::size_t k = 0; k < 3; ++k)
           most = std::max(most, (positions_[+c[k]] - positions_[+c[(k + 1) % 3]]).squaredNorm());
       }
-    std::ranges::sort(points, {}, [](const auto& p) { return p.first; });
-    for (std::size_t i = 0; i < points.size();) {
-      Vec3 low = points[i].second, high = low;
-      const TriangleId t = points[i].first;
+    std::ranges::sort(order);
+    const auto point = [&](std::size_t i) -> const Vec3& { return points[order[i] & 0xffffffff]; };
+    for (std::size_t i = 0; i < order.size();) {
+      Vec3 low = point(i), high = low;
       const std::size_t first = i;
-      for (; i < points.size() && points[i].first == t; ++i) {
-        low = low.cwiseMin(points[i].second);
-        high = high.cwiseMax(points[i].second);
+      for (; i < order.size() && order[i] >> 32 == order[first] >> 32; ++i) {
+        low = low.cwiseMin(point(i));
+        high = high.cwiseMax(point(i));
       }
       double widest = 0;
       if (i - first <= 8)
         for (std::size_t a = first; a < i; ++a)
           for (std::size_t b = a + 1; b < i; ++b)
-            widest = std::max(widest, (points[a].second - points[b].second).squaredNorm());
+            widest = std::max(widest, (point(a) - point(b)).squaredNorm());
       else
         widest = (high - low).squaredNorm();
       most = std::max(most, widest);

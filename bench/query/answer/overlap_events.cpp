@@ -132,13 +132,13 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
 }
 
 OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<const Vec3> start,
-                                       bool each_distance) {
+                                       const Wanted& wanted) {
   const Stopwatch watch;
   Here here;
   std::vector<Mark> vertices, pairs;
   std::vector<std::size_t> going_on;
   if (answer.start.total > 0) {
-    here.overlaps = finder_.find(start, all_pairs(answer), each_distance);
+    here.overlaps = finder_.find(start, all_pairs(answer), wanted.distances);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);
       if (!is_event(here.overlaps, overlap, answer)) continue;
@@ -161,7 +161,7 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
         }
     }
   }
-  find_pieces(here);
+  if (wanted.pieces || !answer.found.contacts.empty()) find_pieces(here);
   assign_contacts(here, answer);
   std::ranges::sort(vertices);
   std::ranges::sort(pairs);

@@ -48,15 +48,20 @@ class OverlapEvents {
     // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
     // each other when the interval starts; kNone for new contacts.
     std::vector<std::size_t> event_of_contact;
-    // The triangles of the pieces of each event, those that its curves run through and those that have a
-    // vertex beyond. Sorted.
+    // Only where the answer has contacts, or where they are wanted: the triangles of the pieces of each
+    // event, those that its curves run through and those that have a vertex beyond. Sorted.
     std::vector<std::pair<TriangleId, std::size_t>> pieces;
 
     // An event in which one of the triangles lies in the other; kNone where there is none.
     std::size_t event_of(TriangleId a, TriangleId b) const;
   };
   static constexpr std::size_t kNone = ~std::size_t{0};
-  Here add(const IntervalAnswer& answer, std::span<const Vec3> start, bool each_distance = false);
+  struct Wanted {
+    bool distances = false;  // of all vertices, in the regions
+    bool pieces = false;     // also where the answer has no contacts
+  };
+  Here add(const IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
+  Here add(const IntervalAnswer& answer, std::span<const Vec3> start) { return add(answer, start, {}); }
 
   // All events, in the order in which they begin.
   const std::vector<OverlapEvent>& all() const { return events_; }
