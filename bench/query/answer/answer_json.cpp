@@ -244,6 +244,7 @@ json summary_json(const ClipAnswer& answer) {
         {"load", s.load_ms},
         {"preparation", answer.preparation_ms}}},
       {"with_left_out", s.with_left_out},
+      {"left_out_contacts", s.left_out_contacts},
       {"strategies", std::move(strategies)},
       {"first", std::move(first)},
       {"worst", std::move(worst)},

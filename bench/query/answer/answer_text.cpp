@@ -139,15 +139,15 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
                     cross = s.count(IntervalVerdict::intersects_at_start),
                     undecided = s.count(IntervalVerdict::undecided);
+  // What the verdict does not speak of.
+  std::string apart;
+  for (const std::string& each : {std::string(s.with_left_out > 0 ? "what crosses at rest" : ""),
+                                  std::string(s.with_ignored > 0 ? "what is ignored" : ""),
+                                  std::string(s.with_old > 0 ? "what lies in itself already" : "")})
+    if (!each.empty()) apart += (apart.empty() ? ", apart from " : " and ") + each;
   if (!collides(s.verdict())) {
     const std::string frames = " in frames " + frame_text(frame_of(input, {s.first_index, 0})) + " to " +
                                frame_text(frame_of(input, {s.last_index, 1}));
-    const std::string rest = s.with_left_out > 0 ? "what crosses at rest" : "";
-    const std::string ignored = s.with_ignored > 0 ? "what is ignored" : "";
-    std::string apart;
-    for (const std::string& each :
-         {rest, ignored, std::string(s.with_old > 0 ? "what lies in itself already" : "")})
-      if (!each.empty()) apart += (apart.empty() ? ", apart from " : " and ") + each;
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
@@ -165,7 +165,7 @@ std::string verdict_predicate(const ClipAnswer& answer) {
     text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
             " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
   const AnswerSummary::Meeting& first = *s.first;
-  return text + ", first at " + moment_text(input, first.moment) + ": " +
+  return text + apart + ", first at " + moment_text(input, first.moment) + ": " +
          meeting_text(first.names, first.crosses ? "crosses"
                                    : is_thick    ? "comes close to"
                                                  : "touches");
@@ -205,9 +205,10 @@ Sentences sentences(const ClipAnswer& answer) {
                                (both.first == both.second ? " with itself: " : " in " + both.second + ": ") +
                                many(count, "pair");
                       });
-    out.rest += answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
-                                           " (--keep-rest-crossings counts it)"
-                                     : "; counted, as asked";
+    out.rest += answer.rest_left_out
+                    ? "; left out of " + many(s.with_left_out, "interval") + ", with " +
+                          many(s.left_out_contacts, "contact") + " (--keep-rest-crossings counts both)"
+                    : "; counted, as asked";
   }
   std::string answered;
   for (const auto& [name, count] : s.strategies)

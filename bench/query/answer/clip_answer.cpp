@@ -53,6 +53,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   ++strategies[std::string(answer.strategy->name)];
   proven += answer.proven;
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
+  left_out_contacts += answer.rest_contacts;
   old_pairs += answer.old_pairs;
   old_contacts += answer.old_contacts;
   with_old += answer.old_pairs + answer.old_contacts > 0;

@@ -33,6 +33,7 @@ struct AnswerSummary {
   std::map<std::string, std::size_t> strategies;  // how many intervals each answered
   std::size_t proven = 0;
   std::size_t with_left_out = 0;                // intervals from which something was left out
+  std::size_t left_out_contacts = 0;            // of what crosses at rest
   bool moves = false;                           // more than by rounding
   std::size_t first_index = 0, last_index = 0;  // of the intervals, which come in growing order
   // The first moment at which something touches or crosses, and the names of what meets.
