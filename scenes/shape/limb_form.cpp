@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -21,20 +22,26 @@ Vec3 part_across(const Vec3& v, const Vec3& along) {
   return v - v.dot(along) * along;
 }
 
-const Parameters::Table& checked(const Parameters::Table& sections, const std::string& who) {
-  bool usable = !sections.empty();
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    usable = usable && sections[i][0] >= 0 && sections[i][0] <= 1 && sections[i][1] > 0 &&
-             sections[i][2] > 0 && (i == 0 || sections[i][0] > sections[i - 1][0]);
-  if (!usable)
-    throw InputError(who + ": sections must be given in order, at shares from 0 to 1, with positive radii");
-  return sections;
+// The curves of the sections, piece by piece.
+std::vector<KeyCurve> pieces_of(const Parameters::Table& sections, const std::string& who) {
+  std::vector<KeyCurve> pieces;
+  for (std::size_t first = 0, i = 0; i < sections.size(); ++i) {
+    if (!(sections[i][0] >= 0 && sections[i][0] <= 1 && sections[i][1] > 0 && sections[i][2] > 0))
+      throw InputError(who + ": sections must lie at shares from 0 to 1 and have positive radii");
+    if (i + 1 < sections.size() && sections[i + 1][0] > sections[i][0]) continue;
+    pieces.emplace_back(Parameters::Table(sections.begin() + static_cast<std::ptrdiff_t>(first),
+                                          sections.begin() + static_cast<std::ptrdiff_t>(i + 1)),
+                        who);
+    first = i + 1;
+  }
+  if (pieces.empty()) throw InputError(who + ": needs at least one section");
+  return pieces;
 }
 
 }  // namespace
 
 LimbForm::LimbForm(Spec spec, const std::string& who)
-    : spec_(std::move(spec)), curve_(checked(spec_.sections, who), who) {
+    : spec_(std::move(spec)), who_(who), pieces_(pieces_of(spec_.sections, who)) {
   const std::vector<Vec3>& joints = spec_.joints;
   if (joints.size() < 2) throw InputError(who + ": needs at least two joints");
   const std::size_t bones = joints.size() - 1;
@@ -103,41 +110,62 @@ LimbForm::Frame LimbForm::at(double arc) const {
   return {s * a.centre + t * b.centre, s * a.u + t * b.u, s * a.v + t * b.v, s * a.along + t * b.along};
 }
 
-LimbForm::Section LimbForm::section(double arc) const {
+LimbForm::Section LimbForm::section(std::size_t piece, double arc) const {
   const double share = std::clamp(arc / length(), 0.0, 1.0);
-  return {curve_.at(share, 1), curve_.at(share, 2), curve_.at(share, 3), curve_.at(share, 4)};
+  const KeyCurve& curve = pieces_[piece];
+  return {curve.at(share, 1), curve.at(share, 2), curve.at(share, 3), curve.at(share, 4)};
 }
 
-Vec3 LimbForm::point(double arc, const CirclePoint& direction, double scale) const {
-  const Frame frame = at(arc);
-  const Section s = section(arc);
-  return frame.centre + (s.shift_u + scale * s.radius_u * direction.cosine) * frame.u +
-         (s.shift_v + scale * s.radius_v * direction.sine) * frame.v;
+LimbForm::Section LimbForm::section(const Place& place) const {
+  Section s = section(place.piece, place.arc);
+  if (place.towards_next > 0) {
+    const double t = place.towards_next;
+    const Section a = section(place.piece, length()), b = section(place.piece + 1, 0);
+    s = {(1 - t) * a.radius_u + t * b.radius_u, (1 - t) * a.radius_v + t * b.radius_v,
+         (1 - t) * a.shift_u + t * b.shift_u, (1 - t) * a.shift_v + t * b.shift_v};
+  }
+  s.radius_u = place.scale * s.radius_u;
+  s.radius_v = place.scale * s.radius_v;
+  return s;
+}
+
+Vec3 LimbForm::point(const Place& place, const CirclePoint& direction) const {
+  const Frame frame = at(place.arc);
+  const Section s = section(place);
+  return frame.centre + (s.shift_u + s.radius_u * direction.cosine) * frame.u +
+         (s.shift_v + s.radius_v * direction.sine) * frame.v;
 }
 
 LimbForm::Place LimbForm::on_tip(double share) const {
   const CirclePoint point = circle_point(share / 4);
-  return {length() - spec_.tip + spec_.tip * point.sine, point.cosine};
+  return {length() - spec_.tip + spec_.tip * point.sine, point.cosine, pieces_.size() - 1};
 }
 
 std::vector<LimbForm::Stop> LimbForm::stops(double from) const {
   std::vector<Stop> stops;
-  const auto add = [&](const Place& place) {
-    if (stops.empty()) {
-      stops.push_back({0, place});
-      return;
+  const auto add = [&](const Place& place, bool at_edge) {
+    double travelled = 0;
+    if (!stops.empty()) {
+      const Place& before = stops.back().place;
+      const Section a = section(before), b = section(place);
+      const double out = std::max(std::abs(b.radius_u - a.radius_u) + std::abs(b.shift_u - a.shift_u),
+                                  std::abs(b.radius_v - a.radius_v) + std::abs(b.shift_v - a.shift_v));
+      const double on = place.arc - before.arc;
+      travelled = stops.back().travelled + std::sqrt(on * on + out * out);
     }
-    const Place& before = stops.back().place;
-    const Section a = section(before.arc), b = section(place.arc);
-    const double out = std::max(
-        std::abs(place.scale * b.radius_u - before.scale * a.radius_u) + std::abs(b.shift_u - a.shift_u),
-        std::abs(place.scale * b.radius_v - before.scale * a.radius_v) + std::abs(b.shift_v - a.shift_v));
-    const double on = place.arc - before.arc;
-    stops.push_back({stops.back().travelled + std::sqrt(on * on + out * out), place});
+    stops.push_back({travelled, place, at_edge});
   };
   const double straight = length() - spec_.tip;
-  for (int i = 0; i <= kStops; ++i) add({from + (straight - from) * i / kStops, 1});
-  for (int i = 1; i <= kTipStops; ++i) add(on_tip(0.5 * i / kTipStops));
+  for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
+    const bool first = piece == 0, last = piece + 1 == pieces_.size();
+    const double low = first ? from : pieces_[piece].first_frame() * length();
+    const double high = last ? straight : pieces_[piece].last_frame() * length();
+    if (!(low < high))
+      throw InputError(who_ + ": an edge of its sections lies in the collar or in the rounded tip");
+    for (int i = 0; i <= kStops; ++i)
+      add({low + (high - low) * i / kStops, 1, piece}, (i == 0 && !first) || (i == kStops && !last));
+  }
+  for (int i = 1; i <= kTipStops; ++i) add(on_tip(0.5 * i / kTipStops), false);
   return stops;
 }
 
@@ -147,16 +175,45 @@ double LimbForm::silhouette(double from) const {
 
 std::vector<LimbForm::Place> LimbForm::spread(double from, std::size_t count) const {
   const std::vector<Stop> all = stops(from);
+  const double distance = all.back().travelled / static_cast<double>(count);
+  // Places that are moved to the ends of pieces, as a place's number and its stop. The stops at both ends of
+  // an edge follow each other, and both or none get a place.
+  std::vector<std::pair<std::size_t, std::size_t>> moved;
+  for (std::size_t stop = 0; stop + 1 < all.size(); ++stop) {
+    if (!all[stop].at_edge || !all[stop + 1].at_edge) continue;
+    const auto nearest = static_cast<std::size_t>(std::lround(all[stop].travelled / distance));
+    const std::size_t place = std::max(nearest, moved.empty() ? 1 : moved.back().first + 1);
+    if (place + 1 >= count) break;
+    moved.push_back({place, stop});
+    moved.push_back({place + 1, stop + 1});
+    ++stop;
+  }
+  moved.push_back({count, all.size() - 1});
+
   std::vector<Place> places;
-  std::size_t next = 1;
-  for (std::size_t i = 1; i <= count; ++i) {
-    const double goal = all.back().travelled * static_cast<double>(i) / static_cast<double>(count);
-    while (next + 1 < all.size() && all[next].travelled < goal) ++next;
-    const Stop &a = all[next - 1], &b = all[next];
-    const double t =
-        b.travelled > a.travelled ? std::min(1.0, (goal - a.travelled) / (b.travelled - a.travelled)) : 1;
-    places.push_back(
-        {a.place.arc + t * (b.place.arc - a.place.arc), a.place.scale + t * (b.place.scale - a.place.scale)});
+  std::size_t next = 1, base = 0;
+  double base_travelled = 0;
+  for (const auto& [number, stop] : moved) {
+    const double steps = static_cast<double>(number - base);
+    for (std::size_t i = base + 1; i <= number; ++i) {
+      const double goal =
+          base_travelled + (all[stop].travelled - base_travelled) * static_cast<double>(i - base) / steps;
+      while (next + 1 < all.size() && all[next].travelled < goal) ++next;
+      const Stop &a = all[next - 1], &b = all[next];
+      const double t =
+          b.travelled > a.travelled ? std::min(1.0, (goal - a.travelled) / (b.travelled - a.travelled)) : 1;
+      Place place{a.place.arc + t * (b.place.arc - a.place.arc),
+                  a.place.scale + t * (b.place.scale - a.place.scale), a.place.piece};
+      if (b.place.piece > a.place.piece) {
+        if (t == 1)
+          place = b.place;
+        else
+          place.towards_next = t;
+      }
+      places.push_back(place);
+    }
+    base = number;
+    base_travelled = all[stop].travelled;
   }
   return places;
 }

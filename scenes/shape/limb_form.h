@@ -10,6 +10,11 @@ namespace cscd::scenes {
 
 // A round limb. It has elliptic sections along a smooth centre line through joints, and a rounded tip.
 // Places on the centre line are given by *arc length*: the length of the line from the first joint.
+//
+// A section whose share is not above the share of the section before it begins a new *piece* of the limb, as
+// the hand begins where a cuff ends. The surface leads straight from the end of one piece to the beginning of
+// the next. With equal shares this is a square edge, which stands on edge towards the centre line. With a
+// lower share the end of the first piece overhangs the second one.
 class LimbForm {
  public:
   struct Spec {
@@ -30,23 +35,21 @@ class LimbForm {
   double joint(std::size_t i) const;  // the arc length of joint i
   Frame at(double arc) const;         // the line is continued straight beyond both ends
 
-  // The section at an arc length, without the rounding of the tip.
-  struct Section {
-    double radius_u, radius_v, shift_u, shift_v;
-  };
-  Section section(double arc) const;
-  // A point of the surface, in a direction on the unit circle. `scale` is a factor on the radii.
-  Vec3 point(double arc, const CirclePoint& direction, double scale) const;
-
-  // A place on the silhouette: an arc length, and the factor by which the rounding of the tip shrinks the
-  // radii there.
+  // A place on the silhouette.
   struct Place {
-    double arc, scale;
+    double arc;
+    double scale = 1;  // a factor on the radii, with which the tip is rounded
+    std::size_t piece = 0;
+    double towards_next = 0;  // the share of the way from the end of the piece to the next piece
   };
+  // A point of the surface, in a direction on the unit circle.
+  Vec3 point(const Place& place, const CirclePoint& direction) const;
+
   // A place on the rounded tip. `share` is 0 where the tip begins and 1 at its pole.
   Place on_tip(double share) const;
-  // Returns `count` places at equal distances along the silhouette. The first place is one such distance
-  // after `from`, and the last place is in the middle of the rounded tip.
+  // Returns `count` places along the silhouette. The first place is one distance after `from`, and the last
+  // place is in the middle of the rounded tip. Distances are equal, but for the places that are moved to the
+  // ends of pieces. Where there are too few places for that, an edge between two pieces is cut off.
   std::vector<Place> spread(double from, std::size_t count) const;
   // The length of the silhouette over which `spread` divides its places.
   double silhouette(double from) const;
@@ -59,11 +62,18 @@ class LimbForm {
   struct Stop {
     double travelled;
     Place place;
+    bool at_edge;  // at the end of a piece that another one follows, or at the beginning of that one
   };
   std::vector<Stop> stops(double from) const;
+  struct Section {
+    double radius_u, radius_v, shift_u, shift_v;
+  };
+  Section section(std::size_t piece, double arc) const;
+  Section section(const Place& place) const;
 
   Spec spec_;
-  KeyCurve curve_;
+  std::string who_;
+  std::vector<KeyCurve> pieces_;
   std::vector<Sample> samples_;
 };
 

@@ -204,7 +204,7 @@ class Builder {
       exit_.push_back(exit(limb));
       for (const PatchNode& node : outline(grid_, p_.limbs[limb])) {
         auto& [sum, count] = held.try_emplace(node.vertex, Vec3::Zero(), 0).first->second;
-        sum += body_.projected(forms_[limb].point(exit_.back(), node.direction(), p_.limbs[limb].flare));
+        sum += body_.projected(forms_[limb].point({exit_.back(), p_.limbs[limb].flare}, node.direction()));
         ++count;
       }
       for (int i = 1; i < p_.limbs[limb].size; ++i)
@@ -243,7 +243,7 @@ class Builder {
         foot.arc += (x - frame.centre).dot(frame.along);
       }
       const LimbForm::Frame frame = form.at(foot.arc);
-      const Vec3 off = x - form.point(foot.arc, node.direction(), 1);
+      const Vec3 off = x - form.point({foot.arc}, node.direction());
       foot.off_u = off.dot(frame.u);
       foot.off_v = off.dot(frame.v);
       first = std::max(first, foot.arc);
@@ -289,14 +289,14 @@ class Builder {
         const double arc = foot.arc + t * (collar_end - foot.arc);
         const LimbForm::Frame frame = form.at(arc);
         return Placed{
-            form.point(arc, root[side].direction(), 1) + left * (foot.off_u * frame.u + foot.off_v * frame.v),
+            form.point({arc}, root[side].direction()) + left * (foot.off_u * frame.u + foot.off_v * frame.v),
             arc};
       });
     }
     for (const LimbForm::Place& place :
          form.spread(collar_end, static_cast<std::size_t>(limb.rings - collar_rings)))
       add_ring([&](std::size_t side) {
-        return Placed{form.point(place.arc, root[side].direction(), place.scale), place.arc};
+        return Placed{form.point(place, root[side].direction()), place.arc};
       });
 
     // Make the cap out of the patch itself. The last ring takes the place of the patch's outline.
@@ -306,7 +306,7 @@ class Builder {
       for (int j = 1; j < limb.size; ++j) {
         const PatchNode node = patch_node(grid_, limb, i, j);
         const LimbForm::Place place = form.on_tip(1 - node.level() / 2);
-        positions_[+node.vertex] = form.point(place.arc, node.direction(), place.scale);
+        positions_[+node.vertex] = form.point(place, node.direction());
         feel(node.vertex, index, place.arc - exit_[index], place.arc);
       }
     for (int i = 0; i < limb.size; ++i)

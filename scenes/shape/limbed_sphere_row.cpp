@@ -28,8 +28,10 @@ const ParameterRow kLimbRows[] = {
     text_row("bones", "names of the limb's bones, with blanks between; without it NAME_1 and so on")
         .optional(),
     table_row("joints", "length", 3, "x, y, z of each joint, from inside the body to the tip"),
-    table_row("sections", "share, length", 5,
-              "rows of share of the limb's length, radius_u, radius_v, shift_u, shift_v"),
+    table_row(
+        "sections", "share, length", 5,
+        "rows of share of the limb's length, radius_u, radius_v, shift_u, shift_v; a share that does not "
+        "rise makes an edge, square or overhanging"),
     number_row("tip", "length", "length over which the limb's end is rounded", {0, 1e12}).or_else({0}),
     text_row("face", "face of the cube on which the limb grows: -x, +x, -y, +y, -z or +z"),
     integer_row("cell_u", "", "lowest cell of the limb's patch along the face's first axis", {0, 1e6}),

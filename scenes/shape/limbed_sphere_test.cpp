@@ -114,6 +114,38 @@ TEST(LimbedSphere, HasRoundLimbs) {
   EXPECT_GT(on_limb, 300u);
 }
 
+// A cuff stands off the arm: its end is square where the sections on both sides have equal shares, and
+// overhangs the arm where the arm's section has the lower share. The edge takes up one ring of quads.
+TEST(LimbedSphere, HasEdgesWhereSharesDoNotRise) {
+  for (const double under : {0.0, 0.05}) {
+    LimbedSphereParameters p = ball(14);
+    p.limbs = {limb("arm", {2, true}, 5, 5, 4, 60, 14)};
+    p.limbs[0].form.sections = {
+        {0, 0.17, 0.17, 0, 0}, {0.6, 0.17, 0.17, 0, 0}, {0.6 - under, 0.1, 0.1, 0, 0}, {1, 0.1, 0.1, 0, 0}};
+    const Shape shape = limbed_sphere(p);
+    expect_well_formed(shape);
+    const TriangleMesh mesh(shape.triangles, shape.positions.size());
+    EXPECT_TRUE(EmbeddingTest(mesh, shape.positions).embedded(shape.positions)) << under;
+    const double edge = 0.8 + 0.6 * 2.2;  // the arm leads from z = 0.8 to z = 3
+    std::size_t outer = 0, inner = 0, on_edge = 0;
+    for (const Vec3& x : shape.positions) {
+      const double radius = Vec3(x.x(), x.y(), 0).norm();
+      outer += std::abs(x.z() - edge) < 1e-9 && std::abs(radius - 0.17) < 1e-9;
+      inner += std::abs(x.z() - edge + under * 2.2) < 1e-9 && std::abs(radius - 0.1) < 1e-9;
+    }
+    for (const Triangle& t : shape.triangles) {
+      const Vec3 &a = shape.positions[+t[0]], &b = shape.positions[+t[1]], &c = shape.positions[+t[2]];
+      const Vec3 normal = (b - a).cross(c - a).normalized(), middle = (a + b + c) / 3;
+      const double outward = normal.dot(Vec3(middle.x(), middle.y(), 0).normalized());
+      if (middle.z() < 1.5 || middle.z() > 2.7) continue;
+      on_edge += under > 0 ? outward < -0.1 : std::abs(outward) < 1e-9;
+    }
+    EXPECT_EQ(outer, 16u);
+    EXPECT_EQ(inner, 16u);
+    EXPECT_EQ(on_edge, 32u) << "faces the arm's axis, or stands on edge towards it";
+  }
+}
+
 TEST(LimbedSphere, MayHaveLimbsThatShareAnEdgeOfTheirPatches) {
   LimbedSphereParameters p = ball(14);
   for (const int u : {3, 7}) p.limbs.push_back(limb("arm" + std::to_string(u), {1, true}, u, 5, 4, 30, 14));
@@ -167,9 +199,10 @@ TEST(LimbedSphere, SaysWhatCannotBe) {
             "limbed_sphere: limb arm: no room between body, collar and tip; lengthen it");
   EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.joints[2] = p.limbs[0].form.joints[1]; }),
             "limbed_sphere: limb arm: two neighbouring joints are one point");
-  EXPECT_EQ(
-      limb_refusal([](P& p) { p.limbs[0].form.sections[1][0] = 0; }),
-      "limbed_sphere: limb arm: sections must be given in order, at shares from 0 to 1, with positive radii");
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.sections[1][0] = 2; }),
+            "limbed_sphere: limb arm: sections must lie at shares from 0 to 1 and have positive radii");
+  EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.sections[1][0] = 0; }),
+            "limbed_sphere: limb arm: an edge of its sections lies in the collar or in the rounded tip");
   EXPECT_EQ(limb_refusal([](P& p) { p.limbs[0].form.tip = 9; }),
             "limbed_sphere: limb arm: the rounded tip must be shorter than the limb");
   EXPECT_NE(limb_refusal([](P& p) { p.limbs[0].collar = 0; }).find("flare, collar and root_blend"),

@@ -58,12 +58,42 @@ TEST(SurfaceDetails, FoldsRiseAndFallAcrossTheirDirection) {
   }
 }
 
+// A flap has one height up to its rim. It leans along x, so that its edge hangs over the surface beside it.
+// Mutation: the lean is left out.
+TEST(SurfaceDetails, LeanOverTheSurfaceBesideThem) {
+  const Shape before = plain_tube();
+  Shape shape = before;
+  SurfaceDetail detail{{5, 0, 0}, {2, 9, 9}, 0.3, 0, Vec3::Zero()};
+  detail.rim = 0.25;
+  detail.lean = Vec3(2, 0, 0);
+  add_details(std::span(&detail, 1), shape);
+  for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+    const Vec3& x = before.positions[v];
+    const double off = std::hypot((x.x() - 5) / 2, x.y() / 9, x.z() / 9);
+    if (std::hypot(x.y(), x.z()) < 0.9) continue;
+    const Vec3 by = shape.positions[v] - x;
+    const double rise = std::hypot(by.y(), by.z());
+    EXPECT_NEAR(by.x(), 2 * rise, 1e-9);
+    EXPECT_EQ(rise > 0.3 - 1e-9, off <= 0.75) << "at full height up to the rim";
+  }
+  std::size_t beneath = 0;
+  for (const Triangle& t : shape.triangles) {
+    const Vec3 &a = shape.positions[+t[0]], &b = shape.positions[+t[1]], &c = shape.positions[+t[2]];
+    const Vec3 middle = (a + b + c) / 3;
+    beneath += std::hypot(middle.y(), middle.z()) > 0.9 &&
+               (b - a).cross(c - a).dot(Vec3(0, middle.y(), middle.z())) < 0;
+  }
+  EXPECT_GT(beneath, 10u) << "triangles that face the tube's axis";
+}
+
 TEST(SurfaceDetails, AreReadAndMirrored) {
   const Parameters one("here", {{"at", std::vector<double>{1, 2, 3}},
                                 {"reach", std::vector<double>{1, 1, 2}},
                                 {"height", -0.5},
                                 {"wave_length", 4.0},
                                 {"across", std::vector<double>{2, 0, 0}},
+                                {"lean", std::vector<double>{3, 4, 5}},
+                                {"rim", 0.5},
                                 {"mirrored", 1.0}});
   const std::vector<SurfaceDetail> details = read_details(std::span(&one, 1));
   ASSERT_EQ(details.size(), 2u);
@@ -72,6 +102,9 @@ TEST(SurfaceDetails, AreReadAndMirrored) {
   EXPECT_EQ(details[0].across, Vec3(1, 0, 0));
   EXPECT_EQ(details[1].across, Vec3(-1, 0, 0));
   EXPECT_EQ(details[1].height, -0.5);
+  EXPECT_EQ(details[0].lean, Vec3(3, 4, 5));
+  EXPECT_EQ(details[1].lean, Vec3(-3, 4, 5));
+  EXPECT_EQ(details[1].rim, 0.5);
 }
 
 TEST(SurfaceDetails, RefuseWhatIsNoPlace) {
