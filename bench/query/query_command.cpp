@@ -93,6 +93,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     progress.advance();
   }
   answer.events = events.all();
+  answer.not_measured = events.not_measured();
   answer.summary.overlap_ms = events.milliseconds();
   if (answerer.new_triangles() > 0)
     std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
@@ -117,8 +118,10 @@ Said say_clip(const QueryOptions& options, Input input, bool with_json) {
   Said said{answer.summary.verdict()};
   if (options.fail_deeper_than) {
     const double most = options.fail_deeper_than->length(input.thickness.edge);
-    said.too_deep =
-        std::ranges::any_of(answer.events, [&](const OverlapEvent& e) { return e.depth.lower > most; });
+    // A start of which nothing is known may be too deep.
+    said.too_deep = answer.not_measured > 0 || std::ranges::any_of(answer.events, [&](const OverlapEvent& e) {
+                      return e.depth.lower > most;
+                    });
   }
   if (!with_json) return said;
   said.document = clip_json(answer, most_start_pairs(options.start_pairs));

@@ -250,6 +250,7 @@ json summary_json(const ClipAnswer& answer) {
       {"worst", std::move(worst)},
       {"met", std::move(met)},
       {"events", std::move(events)},
+      {"not_measured", answer.not_measured},
       {"old", {{"intervals", s.with_old}, {"start_pairs", s.old_pairs}, {"contacts", s.old_contacts}}},
       {"with_ignored", s.with_ignored},
       {"ignored", std::move(ignored)}};

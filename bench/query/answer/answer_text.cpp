@@ -249,9 +249,13 @@ namespace {
 
 std::string events_text(const ClipAnswer& answer) {
   const std::vector<OverlapEvent>& events = answer.events;
-  if (events.empty()) return {};
-  std::string out = "  lies in itself in " + many(events.size(), "place") +
-                    (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
+  std::string out;
+  if (answer.not_measured > 0)
+    out = "  at the start of " + many(answer.not_measured, "interval") + " more than " +
+          std::to_string(OverlapEvents::kMostPairs) + " pairs cross, too many to say what lies in what\n";
+  if (events.empty()) return out;
+  out += "  lies in itself in " + many(events.size(), "place") +
+         (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
   const std::vector<std::size_t> order = deepest_first(events);
   for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
     out += "    " + event_text(answer.input, events[order[i]]) + "\n";

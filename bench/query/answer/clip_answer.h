@@ -96,6 +96,7 @@ struct ClipAnswer {
   std::size_t close_at_rest = 0, left_out_at_rest = 0;
   AnswerSummary summary = {};
   std::vector<OverlapEvent> events = {};       // in the order in which they begin
+  std::size_t not_measured = 0;                // starts of which events say nothing (OverlapEvents)
   std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
 };
 

@@ -137,7 +137,10 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
   Here here;
   std::vector<Mark> vertices, pairs;
   std::vector<std::size_t> going_on;
-  if (answer.start.total > 0) {
+  const std::size_t crossing =
+      answer.start.total + answer.explained_pairs.size() + answer.ignored_pairs.size();
+  not_measured_ += crossing > kMostPairs;
+  if (answer.start.total > 0 && crossing <= kMostPairs) {
     here.overlaps = finder_.find(start, all_pairs(answer), wanted.distances);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);

@@ -66,6 +66,10 @@ class OverlapEvents {
   // All events, in the order in which they begin.
   const std::vector<OverlapEvent>& all() const { return events_; }
   double milliseconds() const { return milliseconds_; }
+  // At how many starts more than kMostPairs pairs of triangles cross: nothing is said of these. A surface
+  // with so many has collapsed, and pairs that touch exactly take long.
+  static constexpr std::size_t kMostPairs = 100'000;
+  std::size_t not_measured() const { return not_measured_; }
 
  private:
   void find_pieces(Here& here) const;
@@ -87,6 +91,7 @@ class OverlapEvents {
   std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted
   std::vector<std::size_t> going_on_;   // events of the last interval; sorted
   double milliseconds_ = 0;
+  std::size_t not_measured_ = 0;
 };
 
 // Leaves out of an answer what lies within events: contacts, and pairs that cross at the start. `here` is

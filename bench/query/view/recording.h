@@ -72,6 +72,7 @@ class StrategyRecording {
   // Takes the events of all intervals, and the milliseconds that it took to find them.
   void take(const OverlapEvents& events) {
     answer_.events = events.all();
+    answer_.not_measured = events.not_measured();
     answer_.summary.overlap_ms = events.milliseconds();
   }
   const ClipAnswer& answer() const { return answer_; }
