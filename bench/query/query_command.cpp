@@ -18,6 +18,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/answer_json.h"
 #include "bench/query/answer/answer_text.h"
+#include "bench/query/answer/true_answer.h"
 #include "bench/query/input/input.h"
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
@@ -78,6 +79,8 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
   Answerer answerer(input, strategy, elementary, options.answers);
   if (!options.preparation.empty() && input.preparation.empty())
     write_preparation(options.preparation, answerer.saved_preparation(), strategy);
+  std::optional<TrueAnswerer> true_motion;
+  if (input.motion) true_motion.emplace(input, elementary, answerer.rest_crossings(), options.answers);
   ClipAnswer answer = prepared_answer(input, names, strategy, elementary, options.answers, answerer);
   OverlapEvents events(input, names);
   Progress progress("query " + options.input, range.last - range.first);
@@ -85,6 +88,8 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     watchdog.restart();
     IntervalAnswer interval = answerer.answer(i);
     const Motion motion = input.clip->load(i).motion;
+    if (true_motion) true_motion->answer(motion, interval);
+    answer.true_motion.add(interval, names);
     const OverlapEvents::Here here = events.add(interval, motion.start(), {.pieces = options.new_contacts});
     interval.event_of_contact = here.event_of_contact;
     if (options.new_contacts) keep_new(interval, here, input.thickness.length > 0);
@@ -115,7 +120,7 @@ Said say_clip(const QueryOptions& options, Input input, bool with_json) {
   const SurfaceNames names(input);
   const ClipAnswer answer = answer_clip(options, input, names, with_json);
   std::printf("%s", clip_text(answer).c_str());
-  Said said{answer.summary.verdict()};
+  Said said{input.motion ? answer.true_motion.verdict() : answer.summary.verdict()};
   if (options.fail_deeper_than) {
     const double most = options.fail_deeper_than->length(input.thickness.edge);
     // A start of which nothing is known may be too deep.
@@ -226,7 +231,8 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
                      ": has no clip of more than one pose, so nothing moves; pass "
                      "--from-bind-pose to move from the bind pose to one of them");
   std::printf("%s\n", verdicts.sentence(options.input).c_str());
-  all.document["summary"] = verdicts.as_json(options.input, options.thickness.thickness.number > 0);
+  all.document["summary"] =
+      verdicts.as_json(options.input, options.thickness.thickness.number > 0 || options.model.true_motion);
   return all;
 }
 
@@ -247,6 +253,8 @@ Said say_answers(const QueryOptions& options, bool with_json) {
 
 void query(QueryOptions options) {
   require_sound(options);
+  if (options.new_contacts && options.model.true_motion)
+    throw InputError("--new-contacts with --true-motion: is about straight lines; leave out one of the two");
   if (options.new_contacts && options.answers.first)
     throw InputError(
         "--new-contacts with --first: the earliest contact may be an old one, after which --first "
@@ -304,6 +312,10 @@ void add_query(CLI::App& app) {
       "--preparation", options->preparation,
       "file in which what preparing the surface finds out is kept: written if there is none, else read, "
       "which takes a fraction of the time, also where the surface has changed in places since");
+  command->add_flag(
+      "--true-motion", options->model.true_motion,
+      "of a model file, ask also about the paths on which keys and bones carry the surface between "
+      "frames,\nwith proof: its verdicts decide --fail-on-contact");
   command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_option(

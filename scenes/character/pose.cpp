@@ -14,13 +14,6 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-// The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's map.
-ScaleTurnMove parts_at_rest(const Node& node) {
-  if (node.written) return *node.written;
-  const Parts rest = parts_of(node.local);
-  return {rest.move, rest.rotation, Vec3(rest.rest[0].x(), rest.rest[1].y(), rest.rest[2].z())};
-}
-
 Pose world_of(const Character& character, const std::vector<Transform>& local) {
   Pose pose(character.nodes.size());
   for (std::size_t n = 0; n < pose.size(); ++n) {
@@ -31,6 +24,12 @@ Pose world_of(const Character& character, const std::vector<Transform>& local) {
 }
 
 }  // namespace
+
+ScaleTurnMove parts_at_rest(const Node& node) {
+  if (node.written) return *node.written;
+  const Parts rest = parts_of(node.local);
+  return {rest.move, rest.rotation, Vec3(rest.rest[0].x(), rest.rest[1].y(), rest.rest[2].z())};
+}
 
 Pose rest_pose(const Character& character) {
   std::vector<Transform> local;

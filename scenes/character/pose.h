@@ -13,6 +13,9 @@ using Pose = std::vector<Transform>;
 // [parts][targets of the part] weights of the morph targets.
 using MorphWeights = std::vector<std::vector<double>>;
 
+// The node's move, rotation and scale at rest: as the file writes them, or else taken out of the node's map.
+ScaleTurnMove parts_at_rest(const Node& node);
+
 // The pose in which no animation moves the nodes.
 Pose rest_pose(const Character& character);
 

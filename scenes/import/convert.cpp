@@ -13,6 +13,7 @@
 #include "scenes/import/clip_frames.h"
 #include "scenes/import/frame_rate.h"
 #include "scenes/import/surface.h"
+#include "scenes/motion/motion_file.h"
 
 namespace cscd::scenes {
 namespace {
@@ -121,7 +122,22 @@ void require_room(std::size_t frames, std::size_t vertices, std::size_t bones,
                      std::to_string(limits.cache_bytes >> 20) + " MiB that are supported; lower --fps");
 }
 
+void write_motion_of(const Character& character, const ChosenSurface& chosen, const ImportReport& report,
+                     const ImportOptions& options) {
+  if (report.lead_in > 0 || report.chosen_clip < 0)
+    throw InputError(
+        "--true-motion: the way from the bind pose is no motion of the file; leave out one of "
+        "--from-bind-pose and --true-motion");
+  MovingCharacter moving{character, chosen.raw_vertex};
+  moving.character.animations = {character.animations[static_cast<std::size_t>(report.chosen_clip)]};
+  write_motion(moving, options.motion);
+}
+
 void require_simple(const ImportOptions& options) {
+  if (!options.motion.empty())
+    throw InputError(
+        "--true-motion: is a moving surface without bones, of whose motion between frames nothing is "
+        "known but straight lines; leave it out");
   ImportOptions plain;
   plain.fps = options.fps;
   plain.survey = options.survey;
@@ -188,6 +204,8 @@ ImportReport convert(const Character& character, const ImportOptions& options, c
       report.component_bones.push_back(make_skeleton(character, raw.bound, raw.positions, own).node.size());
     }
   write_source_map(source_map(character, raw, chosen, skeleton), sources);
+
+  if (!options.motion.empty() && !options.survey) write_motion_of(character, chosen, report, options);
 
   require_room(frames.count, chosen.raw_vertex.size(), skeleton.node.size(), limits);
   PointCacheWriter writer(

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include "bench/query/input/input.h"
 #include "core/session/session.h"
+#include "core/session/true_motion.h"
 
 namespace cscd::bench {
 
@@ -31,6 +33,10 @@ struct IntervalAnswer : StepAnswer {
   std::vector<std::size_t> event_of_contact;
   // With --new-contacts: what is left out because it lies within events.
   std::size_t old_pairs = 0, old_contacts = 0;
+  // What is known of the true motion, where that was asked for (TrueAnswerer). Everything else is about
+  // straight lines.
+  std::optional<TrueAnswer> motion = std::nullopt;
+  double motion_ms = 0;
 };
 
 // The verdict that goes by what the answer holds.

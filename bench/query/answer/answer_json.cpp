@@ -183,6 +183,7 @@ json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::si
   out["ms"]["load"] = answer.load_ms;
   out["ms"]["wall"] = answer.wall_ms;
   if (is_thick) out["touching"] = answer.touching.size(), out["close_at_start"] = answer.close_at_start;
+  if (answer.motion) out["true_motion"] = true_motion_json(input, answer);
   const json start = moment_json(input, {answer.index, 0});
   out["frame"] = start["frame"];
   out["seconds"] = start["seconds"];
@@ -259,6 +260,7 @@ json summary_json(const ClipAnswer& answer) {
     out["close_at_start"] = s.close_at_start;
     out["with_close_at_start"] = s.with_close_at_start;
   }
+  if (answer.input.motion) out["true_motion"] = true_motion_json(answer.input, answer.true_motion);
   return out;
 }
 

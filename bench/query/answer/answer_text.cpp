@@ -280,6 +280,7 @@ std::string clip_text(const ClipAnswer& answer) {
        {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
+  out += true_motion_text(answer.input, answer.true_motion);
   return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
          number(s.embedding_ms) + " to know what crosses at the starts; " +
          (s.overlap_ms > 0 ? number(s.overlap_ms) + " ms to measure what lies in what, " : "") +

@@ -11,6 +11,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/overlap_events.h"
 #include "bench/query/answer/surface_names.h"
+#include "bench/query/answer/true_answer.h"
 #include "bench/query/input/input.h"
 
 namespace cscd::bench {
@@ -97,6 +98,7 @@ struct ClipAnswer {
   AnswerSummary summary = {};
   std::vector<OverlapEvent> events = {};       // in the order in which they begin
   std::size_t not_measured = 0;                // starts of which events say nothing (OverlapEvents)
+  TrueSummary true_motion = {};                // of no interval where it was not asked for
   std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
 };
 

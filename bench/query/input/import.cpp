@@ -15,6 +15,7 @@
 #include "scenes/base/temporaries.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
+#include "scenes/motion/motion_file.h"
 #include "scenes/sandbox/run_limited.h"
 
 namespace cscd::bench {
@@ -138,11 +139,14 @@ ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
                      ": only query and view take all clips in one run; name one, or give its number");
   const TemporaryFolder folder;
   const fs::path cache = folder.path() / "frames.h5", report = folder.path() / "report",
-                 sources = folder.path() / "sources";
+                 sources = folder.path() / "sources", motion = folder.path() / "motion";
   std::error_code ignored;
   std::vector<std::string> arguments{fs::absolute(path, ignored).string(), cache.string(), report.string(),
                                      sources.string()};
-  const std::vector<std::string> wishes = to_arguments(options.import);
+  const bool has_motion = options.true_motion && !options.import.survey;
+  scenes::ImportOptions import = options.import;
+  if (has_motion) import.motion = motion.string();
+  const std::vector<std::string> wishes = to_arguments(import);
   arguments.insert(arguments.end(), wishes.begin(), wishes.end());
   scenes::Limits limits;
   limits.memory_bytes = options.memory_mib << 20;
@@ -166,7 +170,12 @@ ImportedModel import_model(const fs::path& path, const ModelOptions& options) {
     const scenes::ClipHeader& header = model.clip->header();
     model.sources = scenes::read_source_map(sources, {header.triangles.size(), header.vertex_count,
                                                       model.report.parts.size(), model.report.bones.size()});
+    if (has_motion)
+      model.motion =
+          std::make_shared<const scenes::CharacterMotion>(scenes::read_motion(motion, header.vertex_count));
     return model;  // the open file outlives its name
+  } catch (const scenes::NoBounds& error) {
+    throw InputError(path.string() + ": --true-motion: " + error.what());
   } catch (const InputError& error) {
     throw InputError(path.string() + ": its import gave what cannot be used: " + error.what());
   }

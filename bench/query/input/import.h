@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/mesh/vertex_paths.h"
 #include "scenes/character/options.h"
 #include "scenes/character/report.h"
 #include "scenes/character/source_map.h"
@@ -18,6 +19,7 @@ struct ModelOptions {
   std::size_t memory_mib = 4096;
   double seconds = 60;
   std::size_t answer_memory_mib = 8192;  // of this process, once the file has been read
+  bool true_motion = false;              // the motion between frames is asked for, too
   bool operator==(const ModelOptions&) const = default;
 };
 
@@ -29,6 +31,7 @@ struct ImportedModel {
   std::unique_ptr<scenes::ClipSource> clip;
   scenes::ImportReport report;
   scenes::SourceMap sources;
+  std::shared_ptr<const VertexPaths> motion = nullptr;  // where it is asked for
 };
 
 // Has cscd-import (beside this program) turn a model file into a temporary point cache, under limits, and

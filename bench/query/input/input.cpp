@@ -90,6 +90,11 @@ bool is_model_file(const std::string& name) {
 
 Input open_input(const std::string& name, const ModelOptions& options) {
   const bool model = is_model_file(name);
+  if (!model && options.true_motion)
+    throw InputError(
+        "input " + name +
+        ": --true-motion: between the frames of a scene or a point cache nothing is known but straight "
+        "lines; give a model file (cscd export writes a scene as one)");
   if (!model && options != ModelOptions{})
     throw InputError("input " + name +
                      ": is no model file, so its frames are used as they are; leave out the options of model "
@@ -98,6 +103,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::optional<scenes::ImportReport> import;
   std::optional<scenes::SourceMap> sources;
   std::vector<std::string> bone_names;
+  std::shared_ptr<const VertexPaths> motion;
   Up up;
   if (model) {
     ImportedModel imported = import_model(name, options);
@@ -107,6 +113,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
     bone_names = import->bones;
     up = up_of(*import);
     sources = std::move(imported.sources);
+    motion = std::move(imported.motion);
   } else if (is_point_cache(name)) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
     up = up_of(clip->header());
@@ -124,6 +131,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   Input input{name,           std::move(clip),   std::move(mesh),   std::move(reference),
               std::move(rig), std::move(import), std::move(sources)};
   input.bone_names = std::move(bone_names);
+  input.motion = std::move(motion);
   const bool named = !options.import.clip.empty() || options.import.clip_number;
   input.clip_was_named = named || options.import.survey || !input.import || input.import->clips.size() < 2;
   input.up = std::move(up);

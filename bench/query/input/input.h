@@ -44,10 +44,12 @@ struct Input {
   std::optional<Rig> rig;
   std::optional<scenes::ImportReport> import = std::nullopt;  // of a model file
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
-  bool clip_was_named = true;                                 // else it is the first clip that moves
-  int threads = 1;                                            // for whatever can use them
-  bool use_bones = true;                                      // for strategies that can do without
-  std::vector<std::byte> preparation = {};                    // of an earlier run; empty for none
+  // How the vertices of a model file move between frames; null where that is not asked for.
+  std::shared_ptr<const VertexPaths> motion = nullptr;
+  bool clip_was_named = true;                // else it is the first clip that moves
+  int threads = 1;                           // for whatever can use them
+  bool use_bones = true;                     // for strategies that can do without
+  std::vector<std::byte> preparation = {};   // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
   Up up = {};
   std::shared_ptr<const Ignored> ignored = nullptr;     // null where nothing is

@@ -1,0 +1,221 @@
+#include "bench/query/answer/true_answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "bench/measure/strategies/catalogue.h"
+#include "core/base/error.h"
+#include "core/base/stopwatch.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+// Frames are that far from keys at most, as a share of the time between frames, where both are meant to be
+// one: files hold times in single precision. The spans that are asked about then end at the keys.
+constexpr double kAtKey = 1e-5;
+
+// Shares of the mean edge: what is told apart, and up to which deviation a part is searched as a whole.
+constexpr double kResolution = 0.01, kCoarse = 0.05;
+// Frames and the paths are computed by different code, and at times that differ by what files round. They may
+// differ by this share of the largest coordinate.
+constexpr double kSamePlace = 1e-5;
+
+TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out,
+                             const AnswerOptions& options) {
+  if (input.thickness.length > 0)
+    throw InputError("--true-motion: takes no --thickness; leave one of the two out");
+  return {.resolution = kResolution * input.thickness.edge,
+          .coarse = kCoarse * input.thickness.edge,
+          .ignored = input.ignored ? &input.ignored->triangles : nullptr,
+          .left_out = options.keep_rest_crossings ? nullptr : &left_out};
+}
+
+void require_same(const Motion& straight, std::span<const Vec3> positions, std::size_t interval) {
+  double size = 0, off = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    size = std::max(size, positions[v].cwiseAbs().maxCoeff());
+    off = std::max(off, (positions[v] - straight.start()[v]).norm());
+  }
+  if (off <= kSamePlace * size) return;
+  throw InputError("--true-motion: frame " + std::to_string(interval) + " and the motion through it are " +
+                   json(off).dump() +
+                   " apart, which is a fault of this program; ask about straight lines, without it");
+}
+
+double second_of(const Input& input, std::size_t frame) {
+  const std::size_t frames = input.clip->frame_count();
+  return input.motion->at_corner(second_of_frame(*input.import, frame, frames), kAtKey / input.import->fps);
+}
+
+double at_share(const Input& input, std::size_t interval, double seconds) {
+  const double from = second_of(input, interval), to = second_of(input, interval + 1);
+  return std::clamp((seconds - from) / (to - from), 0.0, 1.0);
+}
+
+std::string short_number(double value, const char* format = "%.4g") {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, format, value);
+  return digits;
+}
+
+bool meets(TrueVerdict verdict) {
+  return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
+}
+
+bool meets(IntervalVerdict verdict) {
+  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
+}
+
+std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
+  const auto frame = [&](double seconds) { return short_number(frame_at(*input.import, seconds), "%.3f"); };
+  const TrueAnswer& answer = first.answer;
+  return "at frame " + frame(answer.from) + " to " + frame(answer.to) + " (" + short_number(answer.to) +
+         " s): " + first.names.first + " touches " +
+         (first.names.first == first.names.second ? "itself" : first.names.second);
+}
+
+}  // namespace
+
+TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
+                           const AnswerOptions& options)
+    : input_(input),
+      left_out_(input.mesh, rest),
+      motion_(*input.motion, input.setup(elementary), complete_fallback(),
+              options_of(input, left_out_, options)) {}
+
+void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
+  const Stopwatch asking;
+  const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
+  if (answer.verdict == IntervalVerdict::intersects_at_start)
+    answer.motion = TrueAnswer{.verdict = TrueVerdict::intersects_at_start, .from = from, .to = from};
+  else {
+    require_same(straight, motion_.positions_at(from), answer.index);
+    // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
+    // because that of the frame is another by rounding.
+    const bool starts_embedded = clear_until_ == from || motion_.embedded_at(from);
+    answer.motion = starts_embedded
+                        ? motion_.answer(from, to)
+                        : TrueAnswer{.verdict = TrueVerdict::intersects_at_start, .from = from, .to = from};
+  }
+  clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
+  answer.motion_ms = asking.milliseconds();
+}
+
+IntervalVerdict final_verdict(const IntervalAnswer& answer) {
+  if (!answer.motion) return answer.verdict;
+  TrueSummary one;
+  one.intervals = 1;
+  ++one.verdicts[static_cast<std::size_t>(answer.motion->verdict)];
+  return one.verdict();
+}
+
+bool differs(const IntervalAnswer& answer) {
+  return answer.motion && meets(answer.motion->verdict) != meets(answer.verdict);
+}
+
+IntervalVerdict TrueSummary::verdict() const {
+  if (count(TrueVerdict::intersects_at_start) > 0) return IntervalVerdict::intersects_at_start;
+  if (count(TrueVerdict::touches) > 0) return IntervalVerdict::touches;
+  if (count(TrueVerdict::close) > 0) return IntervalVerdict::close;
+  return count(TrueVerdict::undecided) > 0 ? IntervalVerdict::undecided : IntervalVerdict::clear;
+}
+
+void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
+  if (!answer.motion) return;
+  const TrueAnswer& own = *answer.motion;
+  ++intervals;
+  ++verdicts[static_cast<std::size_t>(own.verdict)];
+  parts += own.parts, pieces += own.pieces, jumps += own.jumps;
+  ms += answer.motion_ms;
+  if (own.deviation < std::numeric_limits<double>::infinity())
+    deviation = std::max(deviation, own.deviation);
+  else
+    ++without_bound;
+  if (differs(answer)) ++(meets(own.verdict) ? only_true : only_straight);
+  if (own.verdict != TrueVerdict::touches || !own.pair) return;
+  const Meeting here{answer.index, own, {names.place_of(own.pair->first), names.place_of(own.pair->second)}};
+  if (!first) first = here;
+  if (!first_missed && differs(answer)) first_missed = here;
+}
+
+std::string true_motion_text(const Input& input, const TrueSummary& s) {
+  if (!input.import || input.bone_names.empty()) return {};
+  if (!input.motion)
+    return "  answered for straight lines between frames; --true-motion asks about the paths on which bones "
+           "carry "
+           "the surface\n";
+  const auto part = [&](TrueVerdict verdict, const char* words) {
+    return s.count(verdict) > 0 ? std::to_string(s.count(verdict)) + " " + words + ", " : std::string();
+  };
+  std::string out = "  true motion: " + part(TrueVerdict::clear, "clear") +
+                    part(TrueVerdict::touches, "touch") + part(TrueVerdict::close, "too close to tell") +
+                    part(TrueVerdict::undecided, "undecided") +
+                    part(TrueVerdict::intersects_at_start, "cross at their start");
+  out.resize(out.size() - 2);
+  if (s.first) out += "; first contact " + first_text(input, *s.first);
+  out += "\n  straight lines, by which everything above is answered, ";
+  if (s.only_true + s.only_straight == 0)
+    out += "touch in the same intervals";
+  else
+    out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals, and have some in " +
+           std::to_string(s.only_straight) + " in which the true motion has none";
+  if (s.first_missed) out += "; the first that is missed is " + first_text(input, *s.first_missed);
+  out += "\n  the surface leaves straight lines by at most " + short_number(s.deviation);
+  if (input.thickness.edge > 0)
+    out += " (" + short_number(s.deviation / input.thickness.edge) + " mean edges)";
+  if (s.without_bound > 0)
+    out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
+  if (s.jumps > 0)
+    out += "; it jumps " + std::to_string(s.jumps) + " times, and nothing is asked of the way across a jump";
+  return out + "; this took " + short_number(s.ms) + " ms more\n";
+}
+
+json true_motion_json(const Input& input, const IntervalAnswer& answer) {
+  const TrueAnswer& own = *answer.motion;
+  const bool bounded = own.deviation < std::numeric_limits<double>::infinity();
+  json pair;
+  if (own.pair) pair = {static_cast<int>(own.pair->first), static_cast<int>(own.pair->second)};
+  return {{"verdict", to_string(own.verdict)},
+          {"differs", differs(answer)},
+          {"from", at_share(input, answer.index, own.from)},
+          {"to", at_share(input, answer.index, own.to)},
+          {"within", own.verdict == TrueVerdict::close ? json(own.within) : json()},
+          {"pair", std::move(pair)},
+          {"parts_again", own.parts_again},
+          {"deviation", bounded ? json(own.deviation) : json()},
+          {"parts", own.parts},
+          {"pieces", own.pieces},
+          {"jumps", own.jumps},
+          {"ms", answer.motion_ms}};
+}
+
+json true_motion_json(const Input& input, const TrueSummary& s) {
+  json first;
+  if (s.first)
+    first = {{"interval", s.first->interval},
+             {"from", at_share(input, s.first->interval, s.first->answer.from)},
+             {"to", at_share(input, s.first->interval, s.first->answer.to)},
+             {"first", s.first->names.first},
+             {"second", s.first->names.second}};
+  return {{"verdict", to_string(s.verdict())},
+          {"clear", s.count(TrueVerdict::clear)},
+          {"touches", s.count(TrueVerdict::touches)},
+          {"close", s.count(TrueVerdict::close)},
+          {"undecided", s.count(TrueVerdict::undecided)},
+          {"intersects_at_start", s.count(TrueVerdict::intersects_at_start)},
+          {"only_true", s.only_true},
+          {"only_straight", s.only_straight},
+          {"first", std::move(first)},
+          {"deviation", s.deviation},
+          {"without_bound", s.without_bound},
+          {"parts", s.parts},
+          {"pieces", s.pieces},
+          {"jumps", s.jumps},
+          {"ms", s.ms}};
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "bench/query/answer/answer.h"
+#include "bench/query/answer/surface_names.h"
+#include "core/session/true_motion.h"
+
+// Answers about the true motion of a model file beside those about straight lines between its frames.
+namespace cscd::bench {
+
+class TrueAnswerer {
+ public:
+  // Throws InputError where the input or the elementary test does not fit. All arguments must outlive it.
+  TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
+               const AnswerOptions& options);
+
+  // Adds to an answer about straight lines, whose motion is given, what is known of the true motion.
+  void answer(const Motion& straight, IntervalAnswer& answer);
+
+ private:
+  const Input& input_;
+  RestCrossings left_out_;
+  TrueMotion motion_;
+  std::optional<double> clear_until_;  // the end of the last interval, if that is clear
+};
+
+// What an interval comes to: by its true motion where that was asked for, otherwise by straight lines.
+IntervalVerdict final_verdict(const IntervalAnswer& answer);
+// Whether the true motion touches or crosses and straight lines do not, or the other way round.
+bool differs(const IntervalAnswer& answer);
+
+// Sums up the true motion of a clip.
+struct TrueSummary {
+  std::size_t intervals = 0;
+  std::array<std::size_t, 5> verdicts{};  // by TrueVerdict
+  // Intervals that touch or cross by one motion alone: by the true one, and by straight lines.
+  std::size_t only_true = 0, only_straight = 0;
+  std::size_t parts = 0, pieces = 0, jumps = 0;
+  double deviation = 0, ms = 0;   // deviation: the largest bound that is finite
+  std::size_t without_bound = 0;  // intervals of which a vertex has none as a whole
+  // The first contact that straight lines do not have, and the first of all.
+  struct Meeting {
+    std::size_t interval = 0;
+    TrueAnswer answer;
+    NamePair names;
+  };
+  std::optional<Meeting> first, first_missed;
+
+  std::size_t count(TrueVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
+  IntervalVerdict verdict() const;
+  void add(const IntervalAnswer& answer, const SurfaceNames& names);
+};
+
+// Lines for people, of two blanks and a sentence each; empty where no true motion was asked for and none is
+// known.
+std::string true_motion_text(const Input& input, const TrueSummary& summary);
+// Of an interval, and of the whole clip.
+nlohmann::json true_motion_json(const Input& input, const IntervalAnswer& answer);
+nlohmann::json true_motion_json(const Input& input, const TrueSummary& summary);
+
+}  // namespace cscd::bench

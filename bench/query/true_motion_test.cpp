@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/output/schema.h"
+#include "bench/testing/test_generated.h"
+#include "bench/testing/test_shell.h"
+
+// --true-motion from outside: what query says with it.
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+class TrueMotionOption : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  }
+  json answer(const std::string& words) const {
+    const Ran ran = run("cscd query " + words + " --json -");
+    EXPECT_EQ(ran.status, 0) << ran.errors;
+    const auto document = nlohmann::ordered_json::parse(ran.out);
+    EXPECT_EQ(schema_violation(document, "query.schema.json"), "") << words;
+    return json(document);
+  }
+};
+
+// An answer about straight lines alone, without its times.
+json of_lines(json document) {
+  document["summary"].erase("ms");
+  document["summary"].erase("true_motion");
+  for (json& interval : document["intervals"]) {
+    interval.erase("ms");
+    interval.erase("true_motion");
+  }
+  return document;
+}
+
+TEST_F(TrueMotionOption, AnswersBesideStraightLines) {
+  const json lines = answer("figure.glb --clip hug"), both = answer("figure.glb --clip hug --true-motion");
+  EXPECT_EQ(of_lines(lines), of_lines(both));
+  EXPECT_FALSE(lines["summary"].contains("true_motion"));
+  const json& summary = both["summary"]["true_motion"];
+  EXPECT_EQ(summary["verdict"], "intersects_at_start");
+  EXPECT_GT(summary["deviation"], 0);
+  std::size_t count = 0;
+  for (const char* verdict : {"clear", "touches", "close", "undecided", "intersects_at_start"})
+    count += summary[verdict].get<std::size_t>();
+  EXPECT_EQ(count, both["intervals"].size());
+  bool first = true;
+  for (const json& interval : both["intervals"]) {
+    const json& own = interval["true_motion"];
+    EXPECT_EQ(own["verdict"] == "intersects_at_start", interval["verdict"] == "intersects_at_start");
+    if (own["verdict"] != "touches") continue;
+    EXPECT_LE(own["to"].get<double>() - own["from"].get<double>(), 1.0 / 256 + 1e-9);
+    if (first) {
+      EXPECT_EQ(summary["first"]["interval"], interval["index"]);
+    }
+    first = false;
+  }
+  EXPECT_FALSE(first) << "nothing touches";
+}
+
+TEST_F(TrueMotionOption, FinePartsOfStraightLinesAgreeWithIt) {
+  // Straight lines between many frames come as near to the true motion as anyone wants.
+  const json coarse = answer("figure.glb --clip hug --fps 3 --true-motion"),
+             fine = answer("figure.glb --clip hug --fps 768");
+  double at = 2;
+  for (const json& interval : fine["intervals"])
+    if (interval["verdict"] != "clear") {
+      at = interval["index"].get<double>() / 768;
+      break;
+    }
+  const json& first = coarse["summary"]["true_motion"]["first"];
+  ASSERT_FALSE(first.is_null());
+  EXPECT_NEAR((first["interval"].get<double>() + first["to"].get<double>()) / 3, at, 2.0 / 768);
+}
+
+TEST_F(TrueMotionOption, SaysWhichMotionItAnswers) {
+  const Ran lines = run("cscd query figure.glb --clip walk");
+  EXPECT_NE(lines.out.find("answered for straight lines between frames; --true-motion asks"),
+            std::string::npos);
+  const Ran both = run("cscd query figure.glb --true-motion --fail-on-contact");
+  EXPECT_EQ(both.status, 3) << both.errors;
+  EXPECT_NE(both.out.find("  true motion: "), std::string::npos) << both.out;
+  EXPECT_EQ(run("cscd query figure.glb --clip walk --true-motion --fail-on-contact").status, 0);
+  EXPECT_EQ(run("cscd query small").out.find("--true-motion"), std::string::npos);
+}
+
+TEST_F(TrueMotionOption, RefusesInOneLine) {
+  expect_refused(run("cscd query small --true-motion"), "nothing is known but straight lines");
+  expect_refused(run("cscd query figure.glb --clip walk --true-motion --thickness 0.1"),
+                 "takes no --thickness");
+  expect_refused(run("cscd query figure.glb --clip walk --true-motion --from-bind-pose"), "leave out one of");
+  expect_refused(run("cscd query figure.glb --clip walk --true-motion --new-contacts"), "one of the two");
+  expect_refused(run("cscd query figure.glb --clip walk --true-motion --elementary newton"),
+                 "know distances");
+}
+
+}  // namespace
+}  // namespace cscd::bench

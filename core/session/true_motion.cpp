@@ -1,0 +1,348 @@
+#include "core/session/true_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/rounding.h"
+#include "core/detect/contact_geometry.h"
+#include "core/detect/start/crossings.h"
+
+namespace cscd {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Grows a length by more than a few roundings shorten it.
+constexpr double kGrown = 1 + 32 * kUnitRoundoff;
+
+// Parts are searched at more than their distance by this factor, so that the next ones need no more; and
+// after how many that is tried again.
+constexpr double kRoom = 2;
+constexpr int kWaits = 16;
+// No square of a length below this overflows.
+constexpr double kMostLength = 1e150;
+
+// Whether an edge and a triangle meet, known for all places within some distance of those that are given.
+enum class Meets { no, unknown, yes };
+
+int sign(double value, double tolerance) {
+  return value > tolerance ? 1 : value < -tolerance ? -1 : 0;
+}
+
+// The edge p, q and the triangle a, b, c, whose places are known up to `error`. The determinants of three
+// differences are off by at most 6 error L^2 for differences of at most L after they are moved, and by fewer
+// than 32 roundings of L^3.
+Meets edge_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c,
+                          double error) {
+  double longest = 0;
+  for (const Vec3& x : {q, a, b, c}) longest = std::max(longest, (x - p).norm());
+  longest = 2 * (longest + 2 * error) * kGrown;  // of any two of the points
+  const double tolerance =
+      (6 * error * longest * longest + 32 * kUnitRoundoff * longest * longest * longest) * kGrown;
+  const auto side = [tolerance](const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& w) {
+    return sign((u - o).dot((v - o).cross(w - o)), tolerance);
+  };
+  const int above_p = side(p, a, b, c), above_q = side(q, a, b, c);
+  if (above_p != 0 && above_p == above_q) return Meets::no;
+  // The sides on which the line through p and q passes the sides of the triangle.
+  const int ab = side(p, q, a, b), bc = side(p, q, b, c), ca = side(p, q, c, a);
+  if (ab * bc < 0 || bc * ca < 0 || ca * ab < 0) return Meets::no;
+  return above_p * above_q < 0 && ab * bc > 0 && bc * ca > 0 ? Meets::yes : Meets::unknown;
+}
+
+TrianglePair triangles_of(const CrossingPair& pair) {
+  return {pair.first, pair.second};
+}
+
+}  // namespace
+
+std::string_view to_string(TrueVerdict verdict) {
+  switch (verdict) {
+    case TrueVerdict::clear:
+      return "clear";
+    case TrueVerdict::touches:
+      return "touches";
+    case TrueVerdict::close:
+      return "close";
+    case TrueVerdict::intersects_at_start:
+      return "intersects_at_start";
+    case TrueVerdict::undecided:
+      return "undecided";
+  }
+  return "";
+}
+
+// The vertices that are looked at in pieces: those of all triangles that have one of the features.
+struct TrueMotion::Piece {
+  std::vector<VertexId> vertices;  // sorted
+  std::vector<double> deviation;   // [vertices] over the piece at hand
+};
+
+TrueMotion::TrueMotion(const VertexPaths& paths, const StrategyInput& setup, const Strategy& strategy,
+                       const TrueMotionOptions& options)
+    : paths_(paths), setup_(setup), options_(options) {
+  if (strategy.guarantee != Guarantee::complete || !strategy.sees_start || !strategy.knows_distance ||
+      !setup.elementary.knows_distance() || !setup.elementary.apart_is_proof)
+    throw InputError(
+        "true motion: needs a complete strategy and an elementary test that know distances, such as "
+        "drvbc_fast_complete with filtered_exact");
+  const std::size_t vertices = setup.mesh.vertex_count();
+  if (paths.vertex_count() != vertices)
+    throw InputError("true motion: the paths are those of " + std::to_string(paths.vertex_count()) +
+                     " vertices, and the mesh has " + std::to_string(vertices));
+  detector_ = strategy.make(setup_).detector;
+  for (std::size_t v = 0; v < vertices; ++v) everything_.push_back(VertexId{static_cast<std::int32_t>(v)});
+  a_.resize(vertices), b_.resize(vertices), wide_.resize(vertices);
+}
+
+void TrueMotion::place_all(double time, Places& out) const {
+  out.time = time;
+  out.at.resize(everything_.size()), out.error.resize(everything_.size());
+  paths_.positions(time, everything_, out.at, out.error);
+  require_finite(out.at, "positions of the true motion");
+}
+
+std::span<const Vec3> TrueMotion::positions_at(double time) {
+  if (last_.time != time) place_all(time, last_);
+  return last_.at;
+}
+
+bool TrueMotion::is_out(const TrianglePair& pair) const {
+  return (options_.ignored != nullptr && options_.ignored->excludes(setup_.mesh, pair)) ||
+         (setup_.exclusions != nullptr && setup_.exclusions->excludes(setup_.mesh, pair)) ||
+         (options_.left_out != nullptr && options_.left_out->explains(CrossingPair{pair.a, pair.b}));
+}
+
+bool TrueMotion::is_out(const FeaturePair& pair) const {
+  return (options_.ignored != nullptr && options_.ignored->excludes(setup_.mesh, pair)) ||
+         (options_.left_out != nullptr && options_.left_out->explains(pair));
+}
+
+bool TrueMotion::embedded_at(double time) {
+  Places here;
+  place_all(time, here);
+  Crossings crossings;
+  detector_->detect({.motion = Motion(here.at, here.at),
+                     .crossings = &crossings,
+                     .most_crossings = std::numeric_limits<std::size_t>::max()},
+                    found_);
+  return std::ranges::all_of(crossings.pairs,
+                             [&](const CrossingPair& pair) { return is_out(triangles_of(pair)); });
+}
+
+TrueAnswer TrueMotion::answer(double from, double to) {
+  answer_ = {.from = from, .to = to};
+  narrow_ = options_.narrow * (to - from);
+  Places start, end;
+  if (last_.time == from)
+    start = std::move(last_);
+  else
+    place_all(from, start);
+  double begin = from;
+  for (bool more = true; more;) {
+    const std::optional<VertexPaths::Jump> jump = paths_.next_jump(begin, to);
+    const double stop = jump ? jump->before : to;
+    if (stop > begin) {
+      place_all(stop, end);
+      more = look_at(start, end);
+    }
+    if (!jump) break;
+    ++answer_.jumps;
+    begin = jump->after;
+    if (begin >= to) {
+      place_all(to, end);
+      break;
+    }
+    place_all(begin, start);
+    if (more && !embedded_at(begin)) {
+      answer_.verdict = TrueVerdict::intersects_at_start;
+      answer_.from = answer_.to = begin;
+      break;
+    }
+  }
+  last_ = std::move(end);
+  if (last_.time != to) last_.time = std::numeric_limits<double>::quiet_NaN();
+  return answer_;
+}
+
+bool TrueMotion::give_up(double from, double to) {
+  answer_.verdict = TrueVerdict::undecided;
+  answer_.from = from, answer_.to = to;
+  answer_.pair.reset();
+  return false;
+}
+
+void TrueMotion::say_close(double from, double to, double within, const std::vector<FeaturePair>& pairs) {
+  answer_.within = std::max(answer_.within, within);
+  if (answer_.verdict == TrueVerdict::close) return;
+  answer_.verdict = TrueVerdict::close;
+  answer_.from = from, answer_.to = to;
+  answer_.pair = carriers(setup_.mesh, pairs.front()).front();
+}
+
+bool TrueMotion::look_at(const Places& from, const Places& to) {
+  std::vector<double> wide(everything_.size());
+  paths_.deviations(from.time, to.time, everything_, wide);
+  double widest = 0;
+  for (std::size_t v = 0; v < wide.size(); ++v) {
+    wide[v] = (wide[v] + std::max(from.error[v], to.error[v])) * kGrown;
+    widest = wide[v] <= kInfinity ? std::max(widest, wide[v]) : kInfinity;
+  }
+  if (answer_.parts == 0) answer_.deviation = widest;
+  if (++answer_.parts > options_.most_parts) return give_up(from.time, to.time);
+  if (!(widest <= options_.coarse)) {
+    const double middle = paths_.split(from.time, to.time);
+    if (!(from.time < middle && middle < to.time)) return give_up(from.time, to.time);
+    Places between;
+    place_all(middle, between);
+    return look_at(from, between) && look_at(between, to);
+  }
+  find_close(from, to, wide, widest);
+  std::vector<FeaturePair> pairs;
+  for (const Contact& contact : found_.contacts)
+    if (!is_out(contact.pair)) pairs.push_back(contact.pair);
+  return pairs.empty() || look_closer(from, to, pairs);
+}
+
+// Finds all pairs that come close on the lines: within the widths of their vertices, or within one distance
+// for all that is more. A part that ends with nothing so close starts the next one clear, and a clear start
+// of a closed surface is answered in a fraction of the time. Where something stays close, that is tried again
+// after some parts.
+void TrueMotion::find_close(const Places& from, const Places& to, std::span<const double> wide,
+                            double widest) {
+  const double distance = 2 * widest * kGrown;
+  const bool starts_clear = clear_time_ == from.time && distance <= clear_at_;
+  const bool by_one = starts_clear || (setup_.exclusions == nullptr && waits_ == 0);
+  const double asked = starts_clear ? std::min(clear_at_, kRoom * distance) : kRoom * distance;
+  detector_->detect({.motion = Motion(from.at, to.at),
+                     .starts_embedded = starts_clear,
+                     .thickness = by_one ? Thickness(asked) : Thickness(0, wide)},
+                    found_);
+  clear_time_ = to.time;
+  clear_at_ = 0;
+  if (!by_one) {
+    --waits_;
+    return;
+  }
+  const Motion end(to.at, to.at);
+  const bool ends_clear = std::ranges::all_of(found_.contacts, [&](const Contact& contact) {
+    return ask_close(setup_.elementary, setup_.mesh, end, contact.pair, asked).verdict == Verdict::apart;
+  });
+  if (ends_clear)
+    clear_at_ = asked;
+  else
+    waits_ = kWaits;
+}
+
+bool TrueMotion::look_closer(const Places& from, const Places& to, const std::vector<FeaturePair>& pairs) {
+  Piece piece;
+  for (const FeaturePair& pair : pairs)
+    for (const CrossingPair& both : carriers(setup_.mesh, pair))
+      for (const TriangleId triangle : {both.first, both.second})
+        for (const VertexId v : setup_.mesh.corners(triangle)) piece.vertices.push_back(v);
+  std::ranges::sort(piece.vertices);
+  const auto rest = std::ranges::unique(piece.vertices);
+  piece.vertices.erase(rest.begin(), rest.end());
+  piece.deviation.resize(piece.vertices.size());
+  const auto of_piece = [&](const Places& all) {
+    Places some{all.time, {}, {}};
+    for (const VertexId v : piece.vertices)
+      some.at.push_back(all.at[+v]), some.error.push_back(all.error[+v]);
+    return some;
+  };
+  return look_at(piece, of_piece(from), of_piece(to), pairs);
+}
+
+bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
+                         const std::vector<FeaturePair>& pairs) {
+  paths_.deviations(from.time, to.time, piece.vertices, piece.deviation);
+  for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+    const std::size_t v = +piece.vertices[i];
+    a_[v] = from.at[i], b_[v] = to.at[i];
+    wide_[v] = (piece.deviation[i] + std::max(from.error[i], to.error[i])) * kGrown;
+  }
+  const Motion motion(a_, b_);
+  double within = 0;
+  std::vector<FeaturePair> near;
+  for (const FeaturePair& pair : pairs) {
+    // Not by Thickness, whose largest length would be that of all vertices.
+    const auto points = vertices_of(setup_.mesh, pair);
+    const std::size_t first = pair.kind == FeaturePair::Kind::vertex_face ? 1 : 2;
+    double one = 0, other = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      (k < first ? one : other) = std::max(k < first ? one : other, wide_[+points[k]]);
+    const double distance = (one + other) * kGrown;
+    if (distance < kMostLength &&
+        ask_close(setup_.elementary, setup_.mesh, motion, pair, distance).verdict == Verdict::apart)
+      continue;
+    near.push_back(pair);
+    // Points that are `distance` apart on the lines are at most twice as far apart on the true paths.
+    within = std::max(within, 2 * distance * kGrown);
+  }
+  if (near.empty()) return true;
+
+  const bool resolved = within <= options_.resolution, narrow = to.time - from.time <= narrow_;
+  bool proven = (resolved || narrow) && proves_contact(piece, from, to, near);
+  const TrueAnswer contact = answer_;
+  if (proven && narrow) return false;
+  if (resolved && !proven) {
+    say_close(from.time, to.time, within, near);
+    return true;
+  }
+  const double middle = paths_.split(from.time, to.time);
+  if (++answer_.pieces > options_.most_pieces || !(from.time < middle && middle < to.time)) {
+    if (proven) return false;
+    if (!(within < kInfinity)) return give_up(from.time, to.time);
+    say_close(from.time, to.time, within, near);
+    return true;
+  }
+  Places between{middle, std::vector<Vec3>(piece.vertices.size()),
+                 std::vector<double>(piece.vertices.size())};
+  paths_.positions(middle, piece.vertices, between.at, between.error);
+  if (!look_at(piece, from, between, near) || !look_at(piece, between, to, near)) return false;
+  if (!proven) return true;
+  // Neither half shows what the whole does, because the middle cannot be told: the whole is the proof.
+  const std::size_t pieces = answer_.pieces;
+  answer_ = contact;
+  answer_.pieces = pieces;
+  return false;
+}
+
+// Looks for an edge that meets a triangle at one end and is apart from it at the other, whatever the true
+// places are. Says so in the answer.
+bool TrueMotion::proves_contact(const Piece& piece, const Places& from, const Places& to,
+                                const std::vector<FeaturePair>& pairs) {
+  double error = 0;
+  for (const Places* places : {&from, &to})
+    for (const double e : places->error) error = std::max(error, e);
+  const auto at = [&](const Places& places, VertexId v) -> const Vec3& {
+    const auto found = std::ranges::lower_bound(piece.vertices, v);
+    return places.at[static_cast<std::size_t>(found - piece.vertices.begin())];
+  };
+  const auto meets = [&](const Places& places, const Edge& edge, const Triangle& face) {
+    return edge_meets_triangle(at(places, edge[0]), at(places, edge[1]), at(places, face[0]),
+                               at(places, face[1]), at(places, face[2]), error);
+  };
+  for (const FeaturePair& pair : pairs)
+    for (const CrossingPair& both : carriers(setup_.mesh, pair)) {
+      if (is_out(triangles_of(both))) continue;
+      for (const auto& [one, other] :
+           {std::pair(both.first, both.second), std::pair(both.second, both.first)})
+        for (const EdgeId e : setup_.mesh.edges_of(one)) {
+          const Edge& edge = setup_.mesh.ends(e);
+          const Triangle& face = setup_.mesh.corners(other);
+          if (std::ranges::find_first_of(edge, face) != edge.end()) continue;
+          const Meets before = meets(from, edge, face), after = meets(to, edge, face);
+          if (before == Meets::unknown || after == Meets::unknown || before == after) continue;
+          answer_.verdict = TrueVerdict::touches;
+          answer_.from = from.time, answer_.to = to.time;
+          answer_.pair = both;
+          answer_.parts_again = before == Meets::yes;
+          answer_.within = 0;
+          return true;
+        }
+    }
+  return false;
+}
+
+}  // namespace cscd

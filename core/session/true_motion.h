@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/detect/culler.h"
+#include "core/detect/detector.h"
+#include "core/detect/exclusions.h"
+#include "core/detect/start/rest_crossings.h"
+#include "core/detect/strategy.h"
+#include "core/mesh/vertex_paths.h"
+
+namespace cscd {
+
+// What is known of the true paths of a span of time (core/soundness.md, "The true motion").
+enum class TrueVerdict {
+  clear,                // proven: nothing touches
+  touches,              // proven: an edge pierces a face at one moment and is apart from it at another
+  close,                // two features come within a distance, and what they do there cannot be told apart
+  intersects_at_start,  // triangles cross after a jump within the span
+  undecided             // the bounds on the paths do not suffice
+};
+std::string_view to_string(TrueVerdict verdict);
+
+struct TrueAnswer {
+  TrueVerdict verdict = TrueVerdict::clear;
+  // The verdict is about this span: the proof of a contact, the first closeness, or what is undecided.
+  double from = 0, to = 0;
+  // Of `close`: no more than this far apart at some time of the span; of all spans the largest such distance.
+  double within = 0;
+  // Two triangles that come together there; of `touches`, an edge of one of them pierces the other at `to`,
+  // or at `from` where `parts_again`, and not at the other end.
+  std::optional<CrossingPair> pair = {};
+  bool parts_again = false;
+  double deviation = 0;    // the largest bound of any vertex over the whole span; may be infinity
+  std::size_t parts = 0;   // parts of the span that were looked at whole
+  std::size_t pieces = 0;  // shorter parts in which single feature pairs were looked at
+  std::size_t jumps = 0;   // of the motion within the span, between whose sides nothing is asked
+};
+
+struct TrueMotionOptions {
+  // Features whose distance cannot be told from zero are looked at until it is known to be below this.
+  double resolution = 0;
+  // A part is searched as a whole once no vertex leaves its line by more.
+  double coarse = 0;
+  // Contacts are narrowed down to this share of the span.
+  double narrow = 1.0 / 256;
+  std::size_t most_parts = 4096, most_pieces = 20'000;
+  // Pairs of triangles, and the feature pairs that they alone carry, that are no part of answers; null for
+  // none.
+  const Exclusions* ignored = nullptr;
+  const RestCrossings* left_out = nullptr;  // null for none
+};
+
+// Answers spans of time of one surface whose vertices go along known paths.
+class TrueMotion {
+ public:
+  // `strategy` is complete, sees starts and knows distances, and the elementary test of `setup` knows
+  // distances and is right where it says "apart". All arguments, and what they refer to, must outlive the
+  // object.
+  TrueMotion(const VertexPaths& paths, const StrategyInput& setup, const Strategy& strategy,
+             const TrueMotionOptions& options);
+
+  // Answers a span at whose start nothing crosses but what is left out.
+  TrueAnswer answer(double from, double to);
+  // Whether nothing crosses at a time but what is left out.
+  bool embedded_at(double time);
+  // The positions of all vertices at a time that was asked about.
+  std::span<const Vec3> positions_at(double time);
+
+ private:
+  // Places at one time, of all vertices or of those that are looked at.
+  struct Places {
+    double time = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Vec3> at;
+    std::vector<double> error;
+  };
+  struct Piece;
+
+  void place_all(double time, Places& out) const;
+  bool is_out(const TrianglePair& pair) const;
+  bool is_out(const FeaturePair& pair) const;
+  // Each returns false once the answer is known.
+  bool look_at(const Places& from, const Places& to);
+  void find_close(const Places& from, const Places& to, std::span<const double> wide, double widest);
+  bool look_closer(const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
+  bool look_at(Piece& piece, const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
+  bool proves_contact(const Piece& piece, const Places& from, const Places& to,
+                      const std::vector<FeaturePair>& pairs);
+  void say_close(double from, double to, double within, const std::vector<FeaturePair>& pairs);
+  bool give_up(double from, double to);
+
+  const VertexPaths& paths_;
+  StrategyInput setup_;
+  TrueMotionOptions options_;
+  std::unique_ptr<Detector> detector_;
+  std::vector<VertexId> everything_;
+  Places last_;  // where the span asked about last ended
+  // At this time the pose is clear (core/soundness.md, "Contacts at a distance") at this distance; 0 where
+  // that is not known.
+  double clear_time_ = std::numeric_limits<double>::quiet_NaN(), clear_at_ = 0;
+  int waits_ = 0;             // parts that are not asked about one distance
+  std::vector<Vec3> a_, b_;   // [vertices]: places of those vertices alone that are looked at
+  std::vector<double> wide_;  // [vertices]
+  ContactSet found_;
+  TrueAnswer answer_;
+  double narrow_ = 0;
+};
+
+}  // namespace cscd

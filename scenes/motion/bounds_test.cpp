@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include "scenes/character/pose.h"
+#include "scenes/motion/character_motion.h"
+#include "scenes/motion/test_rigs.h"
+
+// The bounds on paths against paths that are sampled by the code that poses frames.
+namespace cscd::scenes {
+namespace {
+
+std::vector<Vec3> sampled(const Character& character, double seconds) {
+  const Animation& clip = character.animations.front();
+  std::vector<Vec3> out;
+  skin(character, pose_at(character, clip, clip.start + seconds),
+       weights_at(character, clip, clip.start + seconds), out);
+  return out;
+}
+
+MovingCharacter whole(const Character& character) {
+  MovingCharacter out{character, {}};
+  for (std::size_t v = 0; v < character.parts[0].positions.size(); ++v)
+    out.raw_vertex.push_back(static_cast<std::int32_t>(v));
+  return out;
+}
+
+std::vector<VertexId> all_vertices(std::size_t count) {
+  std::vector<VertexId> out;
+  for (std::size_t v = 0; v < count; ++v) out.push_back(VertexId{static_cast<std::int32_t>(v)});
+  return out;
+}
+
+// Poses halve angles until chords are straight to 1e-12, and sine and cosine are cut off at 2^-40.
+constexpr double kPosing = 1e-10;
+
+struct Seen {
+  std::size_t spans = 0, unbounded = 0;  // of short spans alone
+  double fullest = 0;                    // the largest share that a path takes of the bound of its span
+};
+
+// Compares the paths of a span with its bounds at `samples` times.
+void compare(const CharacterMotion& motion, const Character& character, double from, double to, int samples,
+             Seen& seen) {
+  const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+  std::vector<double> bound(vertices.size()), error_from(vertices.size()), error_to(vertices.size());
+  std::vector<Vec3> start(vertices.size()), end(vertices.size());
+  motion.deviations(from, to, vertices, bound);
+  motion.positions(from, vertices, start, error_from);
+  motion.positions(to, vertices, end, error_to);
+  const bool is_short = to - from < 0.01;
+  seen.spans += is_short;
+  if (!std::isfinite(*std::ranges::max_element(bound))) {
+    seen.unbounded += is_short;
+    return;
+  }
+  double most = 0, largest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    const double share = static_cast<double>(i) / samples, time = from + share * (to - from);
+    if (i == samples && motion.next_jump(time - 1e-9, to + 1e-9)) continue;  // on the far side of a jump
+    const std::vector<Vec3> at = sampled(character, time);
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const double off = (at[v] - (1 - share) * start[v] - share * end[v]).norm();
+      ASSERT_LE(off, bound[v] + error_from[v] + error_to[v] + kPosing)
+          << "vertex " << v << " at " << share << " of " << from << " to " << to;
+      most = std::max(most, off);
+    }
+  }
+  for (const double b : bound) largest = std::max(largest, b);
+  if (largest > 1e-6) seen.fullest = std::max(seen.fullest, most / largest);
+}
+
+TEST(MotionBounds, NoPathLeavesThem) {
+  for (const auto& [name, kinds] : test_rigs::kinds_of_rigs()) {
+    Seen seen;
+    for (unsigned seed = 0; seed < 8; ++seed) {
+      test_rigs::RigMaker make(100 * seed + 7);
+      const Character character = make.tube(kinds, 1 + static_cast<int>(seed % 4));
+      validate(character, {});
+      const CharacterMotion motion(whole(character));
+      for (int n = 0; n < 10; ++n) {
+        const double width = std::pow(10, make.uniform(-3, -0.5)), from = make.uniform(0, 1 - width);
+        double to = from + width;
+        if (const auto jump = motion.next_jump(from, to)) to = jump->before;
+        if (!(from < to)) continue;
+        SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+        compare(motion, character, from, to, 40, seen);
+        if (HasFatalFailure()) return;
+      }
+    }
+    EXPECT_LT(seen.unbounded, seen.spans / 4 + 1) << name;
+    EXPECT_GT(seen.fullest, 0.4) << name << ": the bounds are far from the paths";
+  }
+}
+
+TEST(MotionBounds, GrowShortWithTheSquareOfTheSpan) {
+  test_rigs::RigMaker make(3);
+  const Character character = make.tube({}, 3);
+  const CharacterMotion motion(whole(character));
+  const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+  std::vector<double> bound(vertices.size());
+  const auto largest = [&](double from, double to) {
+    motion.deviations(from, to, vertices, bound);
+    return *std::ranges::max_element(bound);
+  };
+  // Away from keys.
+  const double from = 0.02;
+  EXPECT_LT(largest(from, from + 0.005), largest(from, from + 0.01) / 3.5);
+}
+
+TEST(MotionBounds, PlacesAreThoseOfFrames) {
+  for (const auto& [name, kinds] : test_rigs::kinds_of_rigs()) {
+    test_rigs::RigMaker make(11);
+    const Character character = make.tube(kinds, 3);
+    const CharacterMotion motion(whole(character));
+    const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+    std::vector<Vec3> at(vertices.size());
+    std::vector<double> error(vertices.size());
+    for (int i = 0; i <= 24; ++i) {
+      const std::vector<Vec3> expected = sampled(character, i / 24.0);
+      motion.positions(i / 24.0, vertices, at, error);
+      for (std::size_t v = 0; v < vertices.size(); ++v) {
+        ASSERT_LE((at[v] - expected[v]).norm(), error[v] + kPosing) << name << ", frame " << i;
+        ASSERT_LT(error[v], 1e-10) << name;
+      }
+    }
+  }
+}
+
+TEST(MotionBounds, StepsAreJumps) {
+  test_rigs::RigMaker make(5);
+  Character character = make.tube({}, 2);
+  character.animations[0].start = 0.3;
+  for (Key<Quaternion>& key : character.animations[0].channels[1].rotations) key.next = Between::constant;
+  const CharacterMotion motion(whole(character));
+  const auto jump = motion.next_jump(0, 1);
+  ASSERT_TRUE(jump);
+  EXPECT_LT(jump->before, jump->after);
+  EXPECT_LT(jump->after - jump->before, 1e-15);
+  const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+  std::vector<double> bound(vertices.size());
+  motion.deviations(0, jump->before, vertices, bound);
+  EXPECT_TRUE(std::isfinite(bound[0]));
+  motion.deviations(jump->before, jump->after, vertices, bound);
+  EXPECT_FALSE(std::isfinite(bound[0]));
+  EXPECT_NE(sampled(character, jump->before), sampled(character, jump->after));
+}
+
+}  // namespace
+}  // namespace cscd::scenes

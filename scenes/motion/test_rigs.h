@@ -1,0 +1,192 @@
+#pragma once
+
+// For tests only: random skinned tubes whose keys, bones and weights are of every kind.
+
+#include <random>
+
+#include "core/mesh/test_shapes.h"
+#include "scenes/character/character.h"
+
+namespace cscd::scenes::test_rigs {
+
+// What a random rig may hold.
+struct Kinds {
+  bool cubic = false, constant = false, euler = false, scale = false, mirror = false, morph = false,
+       response = false, dual = false, follow = false;
+  double most_turn = 0.25;  // turns between neighbouring keys
+};
+
+class RigMaker {
+ public:
+  explicit RigMaker(unsigned seed) : random_(seed) {}
+
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  bool coin() { return random_() % 2 == 0; }
+  Vec3 vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+
+  // A tube along x from 0 to 4, on `bones` joints that hang on each other under a root, with a clip of a
+  // second.
+  Character tube(const Kinds& kinds, int bones, int sides = 6, int rings = 12) {
+    const test::Shape shape = test::capped_tube(sides, rings, 0.35, 4);
+    Character character;
+    character.nodes.push_back({"root", -1, Transform()});
+    character.nodes[0].local.origin = vector(1);
+    const double length = 4.0 / bones;
+    Part part;
+    part.name = "tube";
+    part.node = 0;
+    for (int b = 0; b < bones; ++b) {
+      Transform local, offset;
+      local.origin = Vec3(b > 0 ? length : 0, 0, 0);
+      offset.origin = Vec3(-b * length, 0, 0);
+      character.nodes.push_back({"bone" + std::to_string(b), b, local});
+      part.joints.push_back({b + 1, offset});
+    }
+    if (kinds.follow && bones > 1) character.nodes.back().follows = FollowedScale{1, coin()};
+    part.positions = shape.positions;
+    for (const Triangle& t : shape.triangles)
+      part.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+                                static_cast<std::int32_t>(t[2])});
+    for (const Vec3& x : part.positions) {
+      part.first.push_back(part.influences.size());
+      const double along = std::clamp(x.x() / length - 0.5, 0.0, bones - 1.0);
+      const int low = std::min(static_cast<int>(along), bones - 1);
+      const double upper = along - low;
+      if (upper < 1) part.influences.push_back({low, 1 - upper});
+      if (upper > 0) part.influences.push_back({low + 1, upper});
+    }
+    part.first.push_back(part.influences.size());
+    if (kinds.dual)
+      for (std::size_t v = 0; v < part.positions.size(); ++v)
+        part.dual_quaternion.push_back(v % 3 == 0 ? 0.5 : 1);
+    Animation clip{"clip", uniform(-1, 1), 1, 0, {}};
+    for (int b = 1; b <= bones; ++b)
+      if (b == 1 || !character.nodes[static_cast<std::size_t>(b)].follows)
+        clip.channels.push_back(
+            channel(kinds, b, clip.start, character.nodes[static_cast<std::size_t>(b)].local));
+    if (kinds.morph) add_morphs(kinds, part, clip);
+    character.parts.push_back(part);
+    character.animations = {clip};
+    character.format = "test";
+    return character;
+  }
+
+  // A longer tube that is straight at the start of its clip, whose bones turn by up to `most` turns in the
+  // second that the clip lasts, mostly to one side.
+  Character bending_tube(const Kinds& kinds, double most, int bones) {
+    Character character = tube({.dual = kinds.dual}, bones, 7, 30);
+    Part& part = character.parts[0];
+    for (Vec3& x : part.positions) x = Vec3(x.x(), 0.7 * x.y(), 0.7 * x.z());
+    if (kinds.dual) part.dual_quaternion.assign(part.positions.size(), 1);
+    const Vec3 side = vector(1).normalized();
+    for (Channel& channel : character.animations[0].channels) {
+      const double start = character.animations[0].start;
+      const Vec3 axis = (side + vector(0.6)).normalized();
+      const double half = uniform(-0.3, 1) * most * 3.14159265358979;
+      const Quaternion end{std::cos(half), std::sin(half) * axis.x(), std::sin(half) * axis.y(),
+                           std::sin(half) * axis.z()};
+      channel.moves.clear();
+      channel.rotations = {{start, {}}, {start + 1, end}};
+      if (!kinds.cubic) continue;
+      channel.rotations[0].next = Between::cubic;
+      channel.rotations[0].leaving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+      channel.rotations[1].arriving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    }
+    return character;
+  }
+
+ private:
+  std::vector<double> times(double start) {
+    std::vector<double> out{start};
+    while (out.back() < start + 1) out.push_back(out.back() + uniform(0.1, 0.6));
+    return out;
+  }
+  Between between(const Kinds& kinds) {
+    const double which = uniform(0, 1);
+    if (kinds.cubic && which < 0.5) return Between::cubic;
+    return kinds.constant && which > 0.85 ? Between::constant : Between::line;
+  }
+  Quaternion turn(double most) {
+    const Vec3 axis = vector(1).normalized();
+    const double half = uniform(-most, most) * 3.14159265358979;
+    return {std::cos(half), std::sin(half) * axis.x(), std::sin(half) * axis.y(), std::sin(half) * axis.z()};
+  }
+  std::vector<Key<double>> numbers(const Kinds& kinds, double start, double low, double high) {
+    std::vector<Key<double>> keys;
+    for (const double time : times(start))
+      keys.push_back({time, uniform(low, high), between(kinds), uniform(-2, 2) * (high - low),
+                      uniform(-2, 2) * (high - low)});
+    return keys;
+  }
+  Channel channel(const Kinds& kinds, int node, double start, const Transform& local) {
+    Channel out{node, {}, {}, {}};
+    if (coin())
+      for (const double time : times(start))
+        out.moves.push_back({time, local.origin + vector(0.2), between(kinds), vector(1), vector(1)});
+    if (kinds.euler) {
+      for (Curve& curve : out.angles.degrees.base.axis) {
+        curve.keys = numbers(kinds, start + 0.2, -90 * kinds.most_turn, 90 * kinds.most_turn);
+        curve.beyond.first = curve.keys.front().time, curve.beyond.last = curve.keys.back().time;
+        curve.beyond.before = coin() ? Beyond::straight : Beyond::hold;
+      }
+      out.angles.order = {2, 0, 1};
+    } else {
+      Quaternion at = turn(kinds.most_turn / 2);
+      for (const double time : times(start)) {
+        Quaternion slope = turn(0.5), other = turn(0.5);
+        out.rotations.push_back({time, at, between(kinds), slope, other});
+        at = product(turn(kinds.most_turn), at);
+      }
+    }
+    if (kinds.scale)
+      for (const double time : times(start)) {
+        Vec3 scale(uniform(0.7, 1.4), uniform(0.7, 1.4), uniform(0.7, 1.4));
+        if (kinds.mirror && node == 1) scale.z() = -scale.z();
+        // Dual quaternions take no shears: bones below an uneven scale are even.
+        if (kinds.dual && node > 1) scale = Vec3::Ones() * scale.x();
+        if (kinds.dual && node == 1)
+          scale = Vec3(scale.x(), scale.x(), kinds.mirror ? -scale.x() : scale.x());
+        out.scales.push_back(
+            {time, scale, between(kinds) == Between::cubic ? Between::line : between(kinds)});
+      }
+    return out;
+  }
+  void add_morphs(const Kinds& kinds, Part& part, Animation& clip) {
+    MorphChannel morph{0, {}};
+    for (int t = 0; t < 2; ++t) {
+      MorphTarget target{"target", {}, 0};
+      for (std::size_t v = 0; v < part.positions.size(); ++v) target.displacements.push_back(vector(0.1));
+      if (kinds.response) target.response = {{0, 0}, {0.3, 0.8}, {0.7, 0.1}, {1, 1}};
+      part.targets.push_back(target);
+      morph.weights.push_back(driven(numbers(kinds, clip.start, -0.2, 1.2)));
+      Curve& curve = morph.weights.back().base.axis[0];
+      curve.beyond.first = curve.keys.front().time, curve.beyond.last = curve.keys.back().time;
+    }
+    clip.morphs.push_back(morph);
+  }
+
+  std::mt19937_64 random_;
+};
+
+// A rig of each kind, and of all kinds at once.
+inline std::vector<std::pair<std::string, Kinds>> kinds_of_rigs() {
+  return {
+      {"linear keys", {}},
+      {"cubic keys", {.cubic = true}},
+      {"steps", {.constant = true}},
+      {"angles", {.cubic = true, .euler = true}},
+      {"scaled bones", {.scale = true}},
+      {"mirrored bones", {.cubic = true, .scale = true, .mirror = true}},
+      {"followed scales", {.scale = true, .follow = true}},
+      {"morph targets", {.cubic = true, .morph = true}},
+      {"morph targets with a response", {.cubic = true, .morph = true, .response = true}},
+      {"dual quaternions", {.dual = true, .most_turn = 0.15}},
+      {"scaled dual quaternions", {.cubic = true, .scale = true, .dual = true, .most_turn = 0.15}},
+      {"mirrored dual quaternions", {.scale = true, .mirror = true, .dual = true, .most_turn = 0.15}},
+      {"everything linear",
+       {.cubic = true, .constant = true, .scale = true, .mirror = true, .morph = true, .response = true}}};
+}
+
+}  // namespace cscd::scenes::test_rigs

@@ -1,0 +1,122 @@
+#include "core/session/true_motion.h"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <map>
+
+#include "core/detect/start/embedding.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+#include "scenes/character/pose.h"
+#include "scenes/motion/character_motion.h"
+#include "scenes/motion/test_rigs.h"
+
+// Verdicts about the true motion of random skinned tubes that bend and twist by up to half a turn in a step,
+// against exact static tests of poses that are sampled by the code that poses frames.
+namespace cscd::scenes {
+namespace {
+
+constexpr double kHalfTurn = 0.5;
+
+// CSCD_TRUE_MOTION_STEPS=2000 CSCD_TRUE_MOTION_SAMPLES=10000 asks for the full comparison.
+int wanted(const char* name, int otherwise) {
+  const char* const text = std::getenv(name);
+  return text != nullptr ? std::atoi(text) : otherwise;
+}
+
+TriangleMesh mesh_of(const Character& character) {
+  std::vector<Triangle> triangles;
+  for (const auto& t : character.parts[0].triangles)
+    triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+  return TriangleMesh(triangles, character.parts[0].positions.size());
+}
+
+MovingCharacter whole_surface(const Character& character) {
+  MovingCharacter out{character, {}};
+  for (std::size_t v = 0; v < character.parts[0].positions.size(); ++v)
+    out.raw_vertex.push_back(static_cast<std::int32_t>(v));
+  return out;
+}
+
+double mean_edge_of(const TriangleMesh& mesh, std::span<const Vec3> at) {
+  double sum = 0;
+  for (const Edge& e : mesh.edges()) sum += (at[+e[0]] - at[+e[1]]).norm();
+  return sum / static_cast<double>(mesh.edge_count());
+}
+
+std::vector<Vec3> posed(const Character& character, double seconds) {
+  const Animation& clip = character.animations.front();
+  std::vector<Vec3> out;
+  skin(character, pose_at(character, clip, clip.start + seconds),
+       weights_at(character, clip, clip.start + seconds), out);
+  return out;
+}
+
+struct Tally {
+  std::map<TrueVerdict, int> verdicts;
+  int crossing = 0;  // steps in which some sample crosses
+};
+
+// Asks about one step of a second and holds the answer against `samples` poses. Steps that start crossing are
+// passed over.
+void compare_step(const Character& character, int samples, Tally& tally) {
+  const TriangleMesh mesh = mesh_of(character);
+  const CharacterMotion motion(whole_surface(character));
+  const std::vector<Vec3> start = posed(character, 0);
+  const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
+  EmbeddingTest plain(mesh, start);
+  if (!plain.embedded(start)) return;
+  const double edge = mean_edge_of(mesh, character.parts[0].positions);
+  TrueMotion asked(motion, setup, kDrvbcFastComplete, {.resolution = edge / 100, .coarse = edge / 2});
+  const TrueAnswer answer = asked.answer(0, 1);
+  ++tally.verdicts[answer.verdict];
+  bool crosses = false;
+  // The first samples may be of any time; those of a `clear` are all asked about.
+  for (int i = 0; i <= samples && !crosses; ++i)
+    crosses = !plain.embedded(posed(character, i / double(samples)));
+  tally.crossing += crosses;
+  if (answer.verdict == TrueVerdict::clear) {
+    EXPECT_FALSE(crosses) << "missed by a clear";
+  }
+  if (answer.verdict == TrueVerdict::touches) {
+    ASSERT_TRUE(answer.pair);
+    EXPECT_LE(answer.to - answer.from, 1);
+    const auto meet_at = [&](double time) {
+      return plain.find_all(posed(character, time), 1 << 20).contains(*answer.pair);
+    };
+    // Both triangles may cross before by other edges.
+    EXPECT_TRUE(meet_at(answer.parts_again ? answer.from : answer.to));
+  }
+}
+
+Tally compare_steps(const test_rigs::Kinds& kinds, int steps, int samples, unsigned seed) {
+  Tally tally;
+  for (int step = 0; step < steps; ++step) {
+    SCOPED_TRACE("step " + std::to_string(step) + ", seed " + std::to_string(seed));
+    test_rigs::RigMaker make(seed + 1000 * static_cast<unsigned>(step));
+    compare_step(make.bending_tube(kinds, kHalfTurn, 2 + step % 4), samples, tally);
+    if (testing::Test::HasFailure()) break;
+  }
+  return tally;
+}
+
+TEST(TrueMotion, VerdictsOnRandomTubesAreTrue) {
+  const int steps = wanted("CSCD_TRUE_MOTION_STEPS", 36), samples = wanted("CSCD_TRUE_MOTION_SAMPLES", 60);
+  Tally all;
+  for (const auto& [name, kinds] : std::vector<std::pair<std::string, test_rigs::Kinds>>{
+           {"linear", {}}, {"cubic", {.cubic = true}}, {"dual quaternions", {.dual = true}}}) {
+    SCOPED_TRACE(name);
+    const Tally tally = compare_steps(kinds, steps / 3, samples, 17);
+    for (const auto& [verdict, count] : tally.verdicts) all.verdicts[verdict] += count;
+    all.crossing += tally.crossing;
+  }
+  std::printf("%d clear, %d touch, %d close, %d undecided; %d cross in some sample\n",
+              all.verdicts[TrueVerdict::clear], all.verdicts[TrueVerdict::touches],
+              all.verdicts[TrueVerdict::close], all.verdicts[TrueVerdict::undecided], all.crossing);
+  EXPECT_GT(all.verdicts[TrueVerdict::clear], steps / 6);
+  EXPECT_GT(all.verdicts[TrueVerdict::touches], steps / 6);
+  EXPECT_LE(all.verdicts[TrueVerdict::close] + all.verdicts[TrueVerdict::undecided], steps / 10);
+}
+
+}  // namespace
+}  // namespace cscd::scenes
