@@ -18,6 +18,7 @@
 #include "core/session/session.h"
 #include "core/session/vertex_bounds.h"
 #include "library/crossings.h"
+#include "library/held.h"
 
 #include "cscd/cscd.h"
 
@@ -97,14 +98,6 @@ auto checked(const Call& call) {
   } catch (const InputError& error) {
     throw std::invalid_argument(error.what());
   }
-}
-
-// What an object holds, unless it has been moved from.
-template <class Engine>
-Engine& held(const std::unique_ptr<Engine>& engine) {
-  if (!engine)
-    throw std::invalid_argument("this SelfCollision has been moved from; use the one it was moved to");
-  return *engine;
 }
 
 // Asks an object, unless another thread is asking it.
@@ -516,10 +509,10 @@ std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, dou
 }
 
 SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
-  return checked([&] {
-    const std::span<const Vec3> pose = rows_of(positions, engine_->mesh().vertex_count(), "positions");
-    engine_->check_finite(pose, "positions");
-    return engine_->crossings(pose);
+  return ask(engine_, [&](Engine& engine) {
+    const std::span<const Vec3> pose = rows_of(positions, engine.mesh().vertex_count(), "positions");
+    engine.check_finite(pose, "positions");
+    return engine.crossings(pose);
   });
 }
 

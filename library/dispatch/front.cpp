@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "library/dispatch/copy.h"
+#include "library/held.h"
 
 // The functions of cscd.h in a build for all instruction sets. Each hands the call on to the copy that is
 // used.
@@ -65,53 +66,53 @@ SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
 
 void SelfCollision::place_obstacle(std::size_t obstacle, const Positions& positions) {
-  engine_->call(&Copy::place_obstacle, obstacle, positions);
+  held(engine_).call(&Copy::place_obstacle, obstacle, positions);
 }
 void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) {
-  engine_->call(&Copy::move_obstacle, obstacle, start, end);
+  held(engine_).call(&Copy::move_obstacle, obstacle, start, end);
 }
 
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
-  return engine_->call(&Copy::is_free, start, end);
+  return held(engine_).call(&Copy::is_free, start, end);
 }
 
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
-  engine_->call(&Copy::first_contact, start, end, out);
+  held(engine_).call(&Copy::first_contact, start, end, out);
 }
 
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
-  engine_->call(&Copy::all_contacts, start, end, out);
+  held(engine_).call(&Copy::all_contacts, start, end, out);
 }
 
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {
-  return engine_->call(&Copy::largest_step, start, end, safety);
+  return held(engine_).call(&Copy::largest_step, start, end, safety);
 }
 
 SelfCollision::Candidates SelfCollision::candidates(const Positions& start, const Positions& end,
                                                     double radius) {
-  return engine_->call(&Copy::candidates, start, end, radius);
+  return held(engine_).call(&Copy::candidates, start, end, radius);
 }
 
 std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
-  return engine_->call(&Copy::vertex_bounds, positions, cap);
+  return held(engine_).call(&Copy::vertex_bounds, positions, cap);
 }
 
 SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
-  return engine_->call(&Copy::crossings, positions);
+  return held(engine_).call(&Copy::crossings, positions);
 }
 
 std::vector<std::byte> SelfCollision::preparation() const {
-  return engine_->call(&Copy::preparation);
+  return held(engine_).call(&Copy::preparation);
 }
 
 std::size_t SelfCollision::vertex_count() const {
-  return engine_->call(&Copy::vertex_count);
+  return held(engine_).call(&Copy::vertex_count);
 }
 std::size_t SelfCollision::face_count() const {
-  return engine_->call(&Copy::face_count);
+  return held(engine_).call(&Copy::face_count);
 }
 bool SelfCollision::closed() const {
-  return engine_->call(&Copy::closed);
+  return held(engine_).call(&Copy::closed);
 }
 
 std::string_view instruction_set() {
