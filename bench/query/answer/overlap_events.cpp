@@ -202,6 +202,10 @@ std::size_t OverlapEvents::Here::event_of(TriangleId a, TriangleId b) const {
 }
 
 void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
+  if (here.pieces.empty()) {
+    here.event_of_contact.assign(answer.found.contacts.size(), kNone);
+    return;
+  }
   for (const Contact& contact : answer.found.contacts) {
     std::size_t found = kNone;
     for (const auto& [s, t] : carriers(input_.mesh, contact.pair))
