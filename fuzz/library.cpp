@@ -218,7 +218,11 @@ void target(Bytes bytes) {
   Numbers numbers(bytes);
   const Surface surface = any_surface(numbers);
   SelfCollision::Options options;
-  bool right = surface.right();
+  // A reference pose that was never filled in is refused.
+  const auto is_first = [&](const auto& row) { return row == surface.positions.row(0); };
+  const bool collapsed = surface.faces.rows() > 1 && surface.positions.rows() > 0 &&
+                         std::ranges::all_of(surface.positions.rowwise(), is_first);
+  bool right = surface.right() && !collapsed;
   if (is_odd(numbers)) {
     options.threads =
         numbers.byte() % 2 ? static_cast<std::int8_t>(numbers.byte()) : 1 << numbers.byte() % 31;
