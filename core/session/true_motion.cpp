@@ -211,7 +211,11 @@ bool TrueMotion::look_at(const Places& from, const Places& to) {
 void TrueMotion::find_close(const Places& from, const Places& to, std::span<const double> wide,
                             double widest) {
   const double distance = 2 * widest * kGrown;
-  const bool starts_clear = clear_time_ == from.time && distance <= clear_at_;
+  // What crosses need not be close. So a part is no clear start where something may cross: where pairs that
+  // cross are left out, or where two features have come together in this span and cannot be told apart.
+  const bool may_cross = answer_.verdict != TrueVerdict::clear || options_.ignored != nullptr ||
+                         (options_.left_out != nullptr && !options_.left_out->empty());
+  const bool starts_clear = !may_cross && clear_time_ == from.time && distance <= clear_at_;
   const bool by_one = starts_clear || (setup_.exclusions == nullptr && waits_ == 0);
   const double asked = starts_clear ? std::min(clear_at_, kRoom * distance) : kRoom * distance;
   detector_->detect({.motion = Motion(from.at, to.at),
