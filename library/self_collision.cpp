@@ -16,6 +16,7 @@
 #include "core/session/candidates.h"
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
+#include "core/session/true_motion.h"
 #include "core/session/vertex_bounds.h"
 #include "library/crossings.h"
 #include "library/held.h"
@@ -149,6 +150,58 @@ std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& ob
   return std::make_unique<Beside>(Beside{std::move(positions), std::move(first_vertex), std::move(mesh)});
 }
 
+// Paths as the caller tells them.
+class CallersPaths final : public VertexPaths {
+ public:
+  CallersPaths(const SelfCollision::Paths& paths, std::size_t vertices) : paths_(paths), vertices_(vertices) {
+    if (!paths.positions || !paths.acceleration)
+      throw InputError("paths: a function is missing; give positions and acceleration");
+    if (!(paths.position_error >= 0) || !std::isfinite(paths.position_error))
+      throw InputError("paths: position_error is " + text_of(paths.position_error) +
+                       "; give a finite length of at least 0");
+  }
+  std::size_t vertex_count() const override { return vertices_; }
+  void positions(double time, std::span<const VertexId> vertices, std::span<Vec3> at,
+                 std::span<double> error) const override {
+    const std::vector<double> all = paths_.positions(time);
+    if (all.size() != 3 * vertices_)
+      throw InputError("paths: positions at " + text_of(time) + " are " + std::to_string(all.size()) +
+                       " numbers for " + std::to_string(vertices_) + " vertices; give 3 a vertex");
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const double* const x = all.data() + 3 * +vertices[i];
+      at[i] = {x[0], x[1], x[2]};
+      error[i] = paths_.position_error;
+    }
+  }
+  void deviations(double from, double to, std::span<const VertexId> vertices,
+                  std::span<double> out) const override {
+    const std::vector<double> bounds = paths_.acceleration(from, to);
+    if (bounds.size() != 1 && bounds.size() != vertices_)
+      throw InputError("paths: " + std::to_string(bounds.size()) + " bounds of the acceleration for " +
+                       std::to_string(vertices_) + " vertices; give one, or one a vertex");
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const double bound = bounds.size() == 1 ? bounds[0] : bounds[+vertices[i]];
+      if (!(bound >= 0)) throw InputError("paths: a bound of the acceleration is no number of at least 0");
+      constexpr double kGrown = 1 + 16 * kUnitRoundoff;
+      out[i] = bound * (to - from) * (to - from) / 8 * kGrown;
+    }
+  }
+
+ private:
+  const SelfCollision::Paths& paths_;
+  std::size_t vertices_;
+};
+
+SelfCollision::PathsAnswer written(const TrueAnswer& answer) {
+  using Verdict = SelfCollision::PathsAnswer::Verdict;
+  SelfCollision::PathsAnswer out{
+      static_cast<Verdict>(answer.verdict), answer.from, answer.to, answer.within, {-1, -1}};
+  if (answer.pair) out.faces = {static_cast<int>(answer.pair->first), static_cast<int>(answer.pair->second)};
+  return out;
+}
+static_assert(static_cast<int>(TrueVerdict::undecided) ==
+              static_cast<int>(SelfCollision::PathsAnswer::Verdict::undecided));
+
 }  // namespace
 
 class SelfCollision::Engine {
@@ -256,6 +309,25 @@ class SelfCollision::Engine {
   SelfCollision::Crossings crossings(std::span<const Vec3> pose) {
     if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
     return crossing_search_->find(pose, exclusions_);
+  }
+
+  PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution) {
+    if (beside_ || is_thick())
+      throw InputError("true_motion: knows no obstacles and no thickness; leave them out");
+    if (!(from < to) || !std::isfinite(to - from))
+      throw InputError("true_motion: " + text_of(from) + " to " + text_of(to) +
+                       " is no span of time; give two times, the earlier first");
+    if (!(resolution >= 0) || !std::isfinite(resolution))
+      throw InputError("true_motion: resolution " + text_of(resolution) + "; give a length of at least 0");
+    double edges = 0;
+    for (const Edge& e : mesh_.edges()) edges += (reference_[+e[0]] - reference_[+e[1]]).norm();
+    const double mean = edges / static_cast<double>(mesh_.edge_count());
+    const CallersPaths callers(paths, mesh_.vertex_count());
+    TrueMotion motion(callers, setup(false, exclusions_.empty() ? nullptr : &exclusions_), kDrvbcFastComplete,
+                      {.resolution = resolution > 0 ? resolution : mean / 100, .coarse = mean / 2});
+    if (!motion.embedded_at(from))
+      return {PathsAnswer::Verdict::intersects_at_start, from, from, 0, {-1, -1}};
+    return cscd::written(motion.answer(from, to));
   }
 
   std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap) {
@@ -514,6 +586,11 @@ SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
     engine.check_finite(pose, "positions");
     return engine.crossings(pose);
   });
+}
+
+SelfCollision::PathsAnswer SelfCollision::true_motion(const Paths& paths, double from, double to,
+                                                      double resolution) {
+  return ask(engine_, [&](Engine& engine) { return engine.true_motion(paths, from, to, resolution); });
 }
 
 std::vector<std::byte> SelfCollision::preparation() const {

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -135,6 +136,37 @@ TEST(SelfCollision, IsPreparedAnewForOtherTriangles) {
               found(fresh.all_contacts(step.start, step.end)));
   }
   EXPECT_EQ(found(body.all_contacts(step.start, step.end)), truth_of(step, {}));
+}
+
+// A body goes along an arc about the origin, and another one lies half-way on the arc, or on the line between
+// its ends. Mutation: the bound of the acceleration is not used.
+TEST(SelfCollision, AnswersPathsThatAreNoLines) {
+  using Verdict = SelfCollision::PathsAnswer::Verdict;
+  constexpr double kTurn = 2;
+  const Rows corners =
+      0.5 * Rows{{-0.25, -0.25, -0.25}, {0.75, -0.25, -0.25}, {-0.25, 0.75, -0.25}, {-0.25, -0.25, 0.75}};
+  const FaceRows faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3},
+                       {4, 6, 5}, {4, 5, 7}, {4, 7, 6}, {5, 6, 7}};
+  for (const double reach : {3.0, 3 * std::cos(kTurn / 2)}) {
+    Rows rest(8, 3);
+    rest << corners.rowwise() + Eigen::RowVector3d(3, 0, 0),
+        corners.rowwise() + reach * Eigen::RowVector3d(std::cos(kTurn / 2), std::sin(kTurn / 2), 0);
+    const auto at = [&](double time) {
+      Rows out = rest;
+      const Eigen::Matrix3d turned(Eigen::AngleAxisd(kTurn * time, Eigen::Vector3d::UnitZ()));
+      out.topRows(4) = rest.topRows(4) * turned.transpose();
+      return std::vector<double>(out.data(), out.data() + out.size());
+    };
+    SelfCollision body(faces, rest);
+    const SelfCollision::Paths paths{at, [](double, double) { return std::vector{3.7 * kTurn * kTurn}; },
+                                     1e-14};
+    EXPECT_EQ(body.is_free(at(0), at(1)), reach == 3);
+    const SelfCollision::PathsAnswer answer = body.true_motion(paths, 0, 1);
+    EXPECT_EQ(answer.verdict, reach == 3 ? Verdict::touches : Verdict::clear);
+    EXPECT_LT(answer.verdict == Verdict::touches ? answer.to - answer.from : 0, 1.0 / 255);
+    EXPECT_THROW(body.true_motion({at, nullptr, 0}, 0, 1), std::invalid_argument);
+    EXPECT_THROW(body.true_motion(paths, 1, 1), std::invalid_argument);
+  }
 }
 
 TEST(SelfCollision, SaysWhatIsWrongWithItsInput) {

@@ -23,6 +23,7 @@ const cscd::Copy CSCD_COPY = {
     .candidates = &SelfCollision::candidates,
     .vertex_bounds = &SelfCollision::vertex_bounds,
     .crossings = &SelfCollision::crossings,
+    .true_motion = &SelfCollision::true_motion,
     .preparation = &SelfCollision::preparation,
     .vertex_count = &SelfCollision::vertex_count,
     .face_count = &SelfCollision::face_count,

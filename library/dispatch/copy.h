@@ -29,6 +29,8 @@ struct Copy {
   SelfCollision::Candidates (SelfCollision::*candidates)(const Positions&, const Positions&, double);
   std::vector<double> (SelfCollision::*vertex_bounds)(const Positions&, double);
   SelfCollision::Crossings (SelfCollision::*crossings)(const Positions&);
+  SelfCollision::PathsAnswer (SelfCollision::*true_motion)(const SelfCollision::Paths&, double, double,
+                                                           double);
   std::vector<std::byte> (SelfCollision::*preparation)() const;
   std::size_t (SelfCollision::*vertex_count)() const;
   std::size_t (SelfCollision::*face_count)() const;

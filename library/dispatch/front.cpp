@@ -96,6 +96,10 @@ SelfCollision::Candidates SelfCollision::candidates(const Positions& start, cons
 std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
   return held(engine_).call(&Copy::vertex_bounds, positions, cap);
 }
+SelfCollision::PathsAnswer SelfCollision::true_motion(const Paths& paths, double from, double to,
+                                                      double resolution) {
+  return held(engine_).call(&Copy::true_motion, paths, from, to, resolution);
+}
 
 SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
   return held(engine_).call(&Copy::crossings, positions);

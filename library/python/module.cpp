@@ -1,4 +1,5 @@
 #include <pybind11/eigen.h>  // vectors of contacts
+#include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -198,6 +199,25 @@ PYBIND11_MODULE(_cscd, module) {
       .def_readonly("touching", &Crossings::touching,
                     "Pairs of faces that meet without passing through each other.");
 
+  py::class_<SelfCollision::PathsAnswer>(module, "PathsAnswer", "What is known of paths over a span of time.")
+      .def_property_readonly(
+          "verdict",
+          [](const SelfCollision::PathsAnswer& a) {
+            constexpr const char* kNames[] = {"clear", "touches", "close", "intersects_at_start",
+                                              "undecided"};
+            return kNames[static_cast<int>(a.verdict)];
+          },
+          "clear, touches, close, intersects_at_start or undecided.")
+      .def_property_readonly(
+          "span", [](const SelfCollision::PathsAnswer& a) { return py::make_tuple(a.from, a.to); },
+          "The two times that the verdict is about.")
+      .def_readonly("within", &SelfCollision::PathsAnswer::within, "Of close: the largest such distance.")
+      .def_readonly("faces", &SelfCollision::PathsAnswer::faces, "Two faces that come together, or -1, -1.")
+      .def("__repr__", [](const py::object& self) {
+        return "<cscd.PathsAnswer: " + std::string(py::str(self.attr("verdict"))) + ", " +
+               std::string(py::str(self.attr("span"))) + ">";
+      });
+
   py::class_<SelfCollision>(module, "SelfCollision")
       .def(py::init([](const Table<int>& faces, const Reals& reference, int threads, bool check_positions,
                        bool check_start, const SelfCollision::Exclusions& exclude, const Surfaces& obstacles,
@@ -277,6 +297,13 @@ PYBIND11_MODULE(_cscd, module) {
           "crossings",
           [](SelfCollision& self, const Reals& positions) { return self.crossings(view(positions)); },
           kWithoutLock)
+      .def("true_motion",  // the functions need the lock
+           [](SelfCollision& self, std::function<std::vector<double>(double)> positions,
+              std::function<std::vector<double>(double, double)> acceleration, double from, double to,
+              double position_error, double resolution) {
+             return self.true_motion({std::move(positions), std::move(acceleration), position_error}, from,
+                                     to, resolution);
+           })
       .def(
           "preparation",
           [](const SelfCollision& self) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -266,6 +267,39 @@ class CSCD_EXPORT SelfCollision {
   // Returns how the mesh crosses itself in a pose, obstacles aside. Overlaps of which half of the pairs of
   // faces, or more, are excluded are left out. A piece that lies wholly inside another crosses nothing.
   Crossings crossings(const Positions& positions);
+
+  // Vertices that do not move in straight lines.
+  struct Paths {
+    // Returns the positions at a time, 3 numbers a vertex, one vertex after the other.
+    std::function<std::vector<double>(double time)> positions;
+    // Returns an upper bound of how large the acceleration of each vertex is between two times, that is the
+    // length of the second derivative of its path: one number for all vertices, or one a vertex; infinity
+    // where none is known.
+    std::function<std::vector<double>(double from, double to)> acceleration;
+    // How far the positions that are returned may be from those on the paths, by rounding; finite and at
+    // least 0.
+    double position_error = 0;
+  };
+  struct PathsAnswer {
+    enum class Verdict {
+      clear,    // proven: nothing touches, and nothing crosses
+      touches,  // proven: an edge pierces a face at one end of the span below and is apart at the other
+      close,    // two features come within a distance, and whether they touch cannot be told
+      intersects_at_start,  // faces cross at the start
+      undecided             // the bounds of the acceleration do not suffice
+    };
+    Verdict verdict = Verdict::clear;
+    double from = 0, to = 0;           // the span of time that the verdict is about
+    double within = 0;                 // of `close`: the largest such distance
+    std::array<int, 2> faces{-1, -1};  // two faces that come together, of `touches` and `close`
+  };
+
+  // Answers for paths between two times. The promise holds for the paths themselves, if the bounds of the
+  // acceleration and the error hold: each vertex stays within acceleration (to - from)^2 / 8 of its straight
+  // line, the time is halved until that is short, and contacts are closed in on until they are proven or
+  // nearer than `resolution`, a length above 0; 0 stands for a hundredth of the mean edge of the reference
+  // positions. For a mesh without obstacles and without a thickness.
+  PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution = 0);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
   // damaged, of another version of the library, or of a mesh that had less than half of the faces, raise

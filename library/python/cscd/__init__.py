@@ -17,11 +17,11 @@ import subprocess
 import tempfile
 
 from . import _cscd
-from ._cscd import Answer, Contact, Crossings, Curve, Overlap, Region, instruction_set
+from ._cscd import Answer, Contact, Crossings, Curve, Overlap, PathsAnswer, Region, instruction_set
 from ._values import INDEX, REAL, as_array, flag, numbers
 
-__all__ = ["Answer", "Contact", "Crossings", "Curve", "Exclusions", "Overlap", "Region", "SelfCollision", "instruction_set",
-           "read"]
+__all__ = ["Answer", "Contact", "Crossings", "Curve", "Exclusions", "Overlap", "PathsAnswer", "Region", "SelfCollision",
+           "instruction_set", "read"]
 
 
 def _faces(value, name="faces"):
@@ -153,6 +153,28 @@ class SelfCollision(_cscd.SelfCollision):
         leave room for that. Vertices of a pair that is not farther apart than the thickness have the bound 0.
         """
         return super().vertex_bounds(_positions(positions, "positions"), float(numbers(cap, "cap", REAL)))
+
+    def true_motion(self, positions, acceleration_bound, start=0.0, end=1.0, *, position_error=0.0, resolution=0.0):
+        """Returns a PathsAnswer for vertices that do not move in straight lines.
+
+        positions: a function of a time that returns [vertices, 3] float, at most `position_error` from the true places.
+        acceleration_bound: a function of two times that returns an upper bound of how large the acceleration of each vertex
+            is between them, the length of the second derivative of its path: one number, or [vertices] float.
+        start, end: two times.
+        resolution: a length; contacts are closed in on until they are proven or known to be nearer than this. 0 stands for
+            a hundredth of the mean edge of the reference positions.
+
+        The promise holds for the paths themselves, if both functions keep theirs: `clear` is proven, and so is `touches`.
+        For a mesh without obstacles and without a thickness.
+        """
+        def bounds(earlier, later):
+            given = as_array(acceleration_bound(earlier, later), "acceleration_bound")
+            return numbers(given.reshape(-1), "acceleration_bound", REAL, "vertices").tolist()
+
+        return super().true_motion(lambda time: _positions(positions(time), "positions").ravel().tolist(), bounds,
+                                   *(float(numbers(value, name, REAL)) for value, name in
+                                     ((start, "start"), (end, "end"), (position_error, "position_error"),
+                                      (resolution, "resolution"))))
 
 
     def crossings(self, positions):
