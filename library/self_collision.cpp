@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "core/base/rounding.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/exclusions.h"
@@ -16,10 +16,11 @@
 #include "core/session/candidates.h"
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
-#include "core/session/true_motion.h"
 #include "core/session/vertex_bounds.h"
 #include "library/crossings.h"
 #include "library/held.h"
+#include "library/obstacle_mesh.h"
+#include "library/paths.h"
 
 #include "cscd/cscd.h"
 
@@ -85,12 +86,6 @@ Exclusions exclusions_of(const TriangleMesh& mesh, std::span<const Vec3> referen
   return out;
 }
 
-// A number as messages say it: in as few digits as tell it from every other one.
-std::string text_of(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
-}
-
 // Runs the call, and turns errors of the input into the library's.
 template <class Call>
 auto checked(const Call& call) {
@@ -118,90 +113,6 @@ auto ask(const std::unique_ptr<Engine>& engine, const Call& call) {
   return checked([&] { return call(own); });
 }
 
-// The obstacles of the options as one mesh.
-struct Beside {
-  std::vector<Vec3> positions;
-  std::vector<std::size_t> first_vertex;
-  TriangleMesh mesh;
-};
-
-std::unique_ptr<Beside> beside_of(const std::vector<SelfCollision::Obstacle>& obstacles) {
-  if (obstacles.empty()) return nullptr;
-  std::vector<Triangle> triangles;
-  std::vector<Vec3> positions;
-  std::vector<std::size_t> first_vertex;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const std::string name = "obstacle " + std::to_string(i);
-    std::vector<Vec3> own;
-    for (const auto& [x, y, z] : obstacles[i].positions) own.emplace_back(x, y, z);
-    require_finite(own, name + ", positions");
-    const auto first = static_cast<std::int32_t>(positions.size());
-    std::vector<Triangle> faces;
-    for (const auto& [a, b, c] : obstacles[i].faces) faces.push_back({VertexId{a}, VertexId{b}, VertexId{c}});
-    const TriangleMesh mesh(std::move(faces), own.size(), name + ", faces");  // throws for wrong corners
-    for (Triangle t : mesh.triangles()) {
-      for (VertexId& v : t) v = VertexId{first + static_cast<std::int32_t>(v)};
-      triangles.push_back(t);
-    }
-    first_vertex.push_back(positions.size());
-    positions.insert(positions.end(), own.begin(), own.end());
-  }
-  TriangleMesh mesh(std::move(triangles), positions.size(), "obstacles");
-  return std::make_unique<Beside>(Beside{std::move(positions), std::move(first_vertex), std::move(mesh)});
-}
-
-// Paths as the caller tells them.
-class CallersPaths final : public VertexPaths {
- public:
-  CallersPaths(const SelfCollision::Paths& paths, std::size_t vertices) : paths_(paths), vertices_(vertices) {
-    if (!paths.positions || !paths.acceleration)
-      throw InputError("paths: a function is missing; give positions and acceleration");
-    if (!(paths.position_error >= 0) || !std::isfinite(paths.position_error))
-      throw InputError("paths: position_error is " + text_of(paths.position_error) +
-                       "; give a finite length of at least 0");
-  }
-  std::size_t vertex_count() const override { return vertices_; }
-  void positions(double time, std::span<const VertexId> vertices, std::span<Vec3> at,
-                 std::span<double> error) const override {
-    const std::vector<double> all = paths_.positions(time);
-    if (all.size() != 3 * vertices_)
-      throw InputError("paths: positions at " + text_of(time) + " are " + std::to_string(all.size()) +
-                       " numbers for " + std::to_string(vertices_) + " vertices; give 3 a vertex");
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const double* const x = all.data() + 3 * +vertices[i];
-      at[i] = {x[0], x[1], x[2]};
-      error[i] = paths_.position_error;
-    }
-  }
-  void deviations(double from, double to, std::span<const VertexId> vertices,
-                  std::span<double> out) const override {
-    const std::vector<double> bounds = paths_.acceleration(from, to);
-    if (bounds.size() != 1 && bounds.size() != vertices_)
-      throw InputError("paths: " + std::to_string(bounds.size()) + " bounds of the acceleration for " +
-                       std::to_string(vertices_) + " vertices; give one, or one a vertex");
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const double bound = bounds.size() == 1 ? bounds[0] : bounds[+vertices[i]];
-      if (!(bound >= 0)) throw InputError("paths: a bound of the acceleration is no number of at least 0");
-      constexpr double kGrown = 1 + 16 * kUnitRoundoff;
-      out[i] = bound * (to - from) * (to - from) / 8 * kGrown;
-    }
-  }
-
- private:
-  const SelfCollision::Paths& paths_;
-  std::size_t vertices_;
-};
-
-SelfCollision::PathsAnswer written(const TrueAnswer& answer) {
-  using Verdict = SelfCollision::PathsAnswer::Verdict;
-  SelfCollision::PathsAnswer out{
-      static_cast<Verdict>(answer.verdict), answer.from, answer.to, answer.within, {-1, -1}};
-  if (answer.pair) out.faces = {static_cast<int>(answer.pair->first), static_cast<int>(answer.pair->second)};
-  return out;
-}
-static_assert(static_cast<int>(TrueVerdict::undecided) ==
-              static_cast<int>(SelfCollision::PathsAnswer::Verdict::undecided));
-
 }  // namespace
 
 class SelfCollision::Engine {
@@ -212,7 +123,7 @@ class SelfCollision::Engine {
       : options_(std::move(options)),
         reference_(copy_of(rows_of(reference, "reference positions"))),
         mesh_(triangles_of(faces), reference_.size(), "faces"),
-        beside_(beside_of(options_.obstacles)) {
+        beside_(obstacle_mesh_of(options_.obstacles)) {
     require_finite(reference_, "reference positions");
     // Positions that were never filled in. Every pair of triangles would cross.
     if (mesh_.triangle_count() > 1 &&
@@ -298,7 +209,7 @@ class SelfCollision::Engine {
 
   void candidates(const Motion& motion, double radius, Candidates& out) {
     if (!(radius >= 0) || !std::isfinite(radius))
-      throw InputError("candidates: radius " + text_of(radius) + "; give a finite length of at least 0");
+      throw InputError("candidates: radius " + exact_text(radius) + "; give a finite length of at least 0");
     search().find(motion, Thickness(radius), found_);
     append(mesh_, out);
     if (!obstacles_) return;
@@ -314,20 +225,8 @@ class SelfCollision::Engine {
   PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution) {
     if (beside_ || is_thick())
       throw InputError("true_motion: knows no obstacles and no thickness; leave them out");
-    if (!(from < to) || !std::isfinite(to - from))
-      throw InputError("true_motion: " + text_of(from) + " to " + text_of(to) +
-                       " is no span of time; give two times, the earlier first");
-    if (!(resolution >= 0) || !std::isfinite(resolution))
-      throw InputError("true_motion: resolution " + text_of(resolution) + "; give a length of at least 0");
-    double edges = 0;
-    for (const Edge& e : mesh_.edges()) edges += (reference_[+e[0]] - reference_[+e[1]]).norm();
-    const double mean = edges / static_cast<double>(mesh_.edge_count());
-    const CallersPaths callers(paths, mesh_.vertex_count());
-    TrueMotion motion(callers, setup(false, exclusions_.empty() ? nullptr : &exclusions_), kDrvbcFastComplete,
-                      {.resolution = resolution > 0 ? resolution : mean / 100, .coarse = mean / 2});
-    if (!motion.embedded_at(from))
-      return {PathsAnswer::Verdict::intersects_at_start, from, from, 0, {-1, -1}};
-    return cscd::written(motion.answer(from, to));
+    return answer_paths(paths, from, to, resolution,
+                        setup(false, exclusions_.empty() ? nullptr : &exclusions_));
   }
 
   std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap) {
@@ -336,7 +235,7 @@ class SelfCollision::Engine {
     const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * cap);
     const Thickness reach(options_.thickness + 2 * cap + slack, options_.vertex_thickness);
     if (!(cap >= 0) || !std::isfinite(reach.largest()))
-      throw InputError("vertex_bounds: cap " + text_of(cap) +
+      throw InputError("vertex_bounds: cap " + exact_text(cap) +
                        "; give a length of at least 0 of which twice, with the thickness, is finite");
     const Motion rest(pose, pose);
     VertexBounds bounds(mesh_.vertex_count(), cap);
@@ -376,7 +275,7 @@ class SelfCollision::Engine {
   Thickness checked_thickness() const {
     const auto require_length = [](double length, const std::string& name) {
       if (!(length >= 0) || !std::isfinite(length))
-        throw InputError("options: " + name + " is " + text_of(length) +
+        throw InputError("options: " + name + " is " + exact_text(length) +
                          "; give a finite length of at least 0");
     };
     require_length(options_.thickness, "thickness");
@@ -492,7 +391,7 @@ class SelfCollision::Engine {
   Options options_;
   std::vector<Vec3> reference_;
   TriangleMesh mesh_;
-  std::unique_ptr<Beside> beside_;
+  std::unique_ptr<ObstacleMesh> beside_;
   std::optional<Obstacles> obstacles_;
   Thickness thickness_;          // of vertices of the mesh, and behind them of obstacles
   cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
@@ -549,7 +448,7 @@ void SelfCollision::all_contacts(const Positions& start, const Positions& end, A
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {
   return ask(engine_, [&](Engine& engine) {
     if (!(safety > 0 && safety <= 1))
-      throw InputError("largest_step: safety " + text_of(safety) + "; give a number in (0, 1]");
+      throw InputError("largest_step: safety " + exact_text(safety) + "; give a number in (0, 1]");
     engine.step(engine.motion(start, end), true);
     if (engine.crosses()) return 0.0;
     const std::optional<double> time = engine.time();

@@ -9,6 +9,7 @@
 #include "bench/compare/comparison.h"
 #include "bench/compare/stage_samples.h"
 #include "bench/measure/record/shortfall.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -30,12 +31,6 @@ std::string change_text(double ratio) {
 
 std::string interval_text(const Estimate& ratio) {
   return change_text(ratio.value) + " [" + change_text(ratio.low) + ", " + change_text(ratio.high) + "]";
-}
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
 }
 
 std::string commit_text(const std::string& commit, bool dirty) {
@@ -194,7 +189,7 @@ const std::vector<std::string> kCounterHead = {"scene and row", "counter", "OLD"
 Rows footprint_rows(const Comparison& c) {
   Rows rows;
   for (const FootprintFinding& f : gravest_first(c.footprint))
-    rows.push_back({with_row(f.scene, f.row), f.what, number(f.before), number(f.after),
+    rows.push_back({with_row(f.scene, f.row), f.what, short_text(f.before), short_text(f.after),
                     change_text(f.after / f.before), std::string(to_string(f.change))});
   return rows;
 }
@@ -204,8 +199,8 @@ Rows time_rows(const Comparison& c, bool reported_only) {
   Rows rows;
   for (const TimeFinding& f : c.times) {
     if (reported_only && !is_reported(f)) continue;
-    rows.push_back({with_row(f.scene, f.row) + mark(f.of_shortfall), f.stage, number(f.before_ms),
-                    number(f.after_ms), interval_text(f.ratio), percent(f.smallest_detectable),
+    rows.push_back({with_row(f.scene, f.row) + mark(f.of_shortfall), f.stage, short_text(f.before_ms),
+                    short_text(f.after_ms), interval_text(f.ratio), percent(f.smallest_detectable),
                     percent(f.noise_floor), std::to_string(f.agreeing) + " of " + std::to_string(f.pairings),
                     is_reported(f) ? std::string(to_string(f.change)) : f.withheld});
   }
@@ -224,7 +219,7 @@ Rows mean_rows(const Comparison& c) {
 const std::vector<std::string> kMeanHead = {"row", "scenes", "geometric mean of the change"};
 
 std::string number_or_dash(const std::optional<double>& value) {
-  return value ? number(*value) : "-";
+  return value ? short_text(*value) : "-";
 }
 
 Rows unjudged_rows(const Comparison& c) {
@@ -274,8 +269,8 @@ Rows unjudged_means(const std::vector<RowTimes>& all) {
   for (const RowTimes& row : all)
     if (!row.ratios.empty())
       rows.push_back({row.row + mark(row.of_shortfall), std::to_string(row.ratios.size()),
-                      number(geometric_mean(row.shared_before)), number(geometric_mean(row.shared_after)),
-                      change_text(geometric_mean(row.ratios)),
+                      short_text(geometric_mean(row.shared_before)),
+                      short_text(geometric_mean(row.shared_after)), change_text(geometric_mean(row.ratios)),
                       change_text(*std::ranges::min_element(row.ratios)) + " to " +
                           change_text(*std::ranges::max_element(row.ratios))});
   return rows;
@@ -286,7 +281,7 @@ const std::vector<std::string> kUnjudgedMeanHead = {"row",     "scenes",     "OL
 // Where the sides share no scene, so that their times cannot be told from each other's scenes.
 Rows unshared_means(const std::vector<RowTimes>& all) {
   const auto mean_text = [](const std::vector<double>& values) {
-    return values.empty() ? "-" : number(geometric_mean(values));
+    return values.empty() ? "-" : short_text(geometric_mean(values));
   };
   Rows rows;
   for (const RowTimes& row : all)

@@ -2,8 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bench/testing/test_generated.h"
-#include "bench/testing/test_shell.h"
+#include "bench/testing/test_queries.h"
 #include "scenes/clip/point_cache.h"
 
 // The files that cscd export writes for other programs: read back by cscd, and opened by the readers of VTK
@@ -13,17 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-class ExportFiles : public Program {
+class ExportFiles : public QueryProgram {
  protected:
-  void SetUp() override {
-    Program::SetUp();
-    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
-  }
-  json answer(const std::string& words) const {
-    const Ran ran = run("cscd query " + words + " --json -");
-    EXPECT_EQ(ran.status, 0) << words << ": " << ran.errors;
-    return json::parse(ran.out);
-  }
   // Runs a script of Python; skips the test without the module.
   std::string python(const std::string& module, const std::string& script) const {
     if (run("/usr/bin/python3 -c 'import " + module + "'").status != 0) return "skip";

@@ -6,8 +6,7 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
-#include "bench/testing/test_generated.h"
-#include "bench/testing/test_shell.h"
+#include "bench/testing/test_queries.h"
 #include "scenes/catalog/scene.h"
 
 // The query command from outside: what it prints, where, and the form of its JSON.
@@ -18,21 +17,7 @@ using nlohmann::json;
 
 constexpr char kSchema[] = "query.schema.json";
 
-class Query : public Program {
- protected:
-  void SetUp() override {
-    Program::SetUp();
-    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
-  }
-  // The answer as JSON, which has to keep to the schema.
-  json answer(const std::string& words) const {
-    const Ran ran = run("cscd query " + words + " --json -");
-    EXPECT_EQ(ran.status, 0) << ran.errors;
-    const auto document = nlohmann::ordered_json::parse(ran.out);
-    EXPECT_EQ(schema_violation(document, kSchema), "") << words;
-    return json(document);
-  }
-};
+class Query : public QueryProgram {};
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

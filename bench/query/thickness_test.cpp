@@ -2,8 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/output/schema.h"
-#include "bench/testing/test_generated.h"
-#include "bench/testing/test_shell.h"
+#include "bench/testing/test_queries.h"
 
 // --thickness from outside: what query, view, inspect and run say with it.
 namespace cscd::bench {
@@ -11,20 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-class ThicknessOption : public Program {
- protected:
-  void SetUp() override {
-    Program::SetUp();
-    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
-  }
-  json answer(const std::string& words) const {
-    const Ran ran = run("cscd query " + words + " --json -");
-    EXPECT_EQ(ran.status, 0) << ran.errors;
-    const auto document = nlohmann::ordered_json::parse(ran.out);
-    EXPECT_EQ(schema_violation(document, "query.schema.json"), "") << words;
-    return json(document);
-  }
-};
+class ThicknessOption : public QueryProgram {};
 
 bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/schema.h"
-#include "bench/testing/test_generated.h"
-#include "bench/testing/test_shell.h"
+#include "bench/testing/test_queries.h"
 
 // --true-motion from outside: what query says with it.
 namespace cscd::bench {
@@ -11,20 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-class TrueMotionOption : public Program {
- protected:
-  void SetUp() override {
-    Program::SetUp();
-    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
-  }
-  json answer(const std::string& words) const {
-    const Ran ran = run("cscd query " + words + " --json -");
-    EXPECT_EQ(ran.status, 0) << ran.errors;
-    const auto document = nlohmann::ordered_json::parse(ran.out);
-    EXPECT_EQ(schema_violation(document, "query.schema.json"), "") << words;
-    return json(document);
-  }
-};
+class TrueMotionOption : public QueryProgram {};
 
 // An answer about straight lines alone, without its times.
 json of_lines(json document) {

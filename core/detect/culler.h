@@ -42,9 +42,9 @@ class TrianglePairSink {
   bool closed() const { return closed_; }
   // Returns whether until() may come to be less than 1, and asks the culler to call tell() now and then.
   virtual bool looks_for_first() const { return false; }
-  // With `alone`, pairs from here on need to be tested for the feature pairs that they own alone
-  // (feature_owners.h); the culler passes on the owners of every other feature pair that they carry, or has
-  // proven it apart.
+  // From here on, with `alone`, a pair of triangles needs to be tested only for the feature pairs that it
+  // owns (feature_owners.h): of every other feature pair that it carries, the culler passes on the owners, or
+  // has proven the feature pair apart.
   virtual void test_owned(bool /*alone*/) {}
   // Returns the time up to which the sink needs pairs that may touch, by what it has looked at so far.
   virtual double until() const { return 1; }

@@ -78,11 +78,11 @@ class KnownStarts {
   bool moved_on_ = false;         // poses_ holds the end of the step that has begun
   std::vector<Bone> pose_bones_;  // the skeleton in the known pose
   std::vector<Vec3> end_;         // of the last step in which something touched
-  bool end_follows_ = false;      // from the known pose, by all that touched on the way:
-  ContactSet end_touched_;
-  std::vector<Bone> end_bones_;
-  ContactSet touched_;  // on the way to a pose
-  Crossings seen_;      // at a start, by a detector
+  bool end_follows_ = false;      // whether the known pose and end_touched_ tell what crosses there
+  ContactSet end_touched_;        // what touched on the way from the known pose
+  std::vector<Bone> end_bones_;   // the skeleton there
+  ContactSet touched_;            // on the way to a pose
+  Crossings seen_;                // at a start, by a detector
 };
 
 }  // namespace cscd

@@ -245,8 +245,7 @@ bool TrueMotion::look_closer(const Places& from, const Places& to, const std::ve
       for (const TriangleId triangle : {both.first, both.second})
         for (const VertexId v : setup_.mesh.corners(triangle)) piece.vertices.push_back(v);
   std::ranges::sort(piece.vertices);
-  const auto rest = std::ranges::unique(piece.vertices);
-  piece.vertices.erase(rest.begin(), rest.end());
+  piece.vertices.erase(std::unique(piece.vertices.begin(), piece.vertices.end()), piece.vertices.end());
   piece.deviation.resize(piece.vertices.size());
   const auto of_piece = [&](const Places& all) {
     Places some{all.time, {}, {}};

@@ -56,6 +56,11 @@ struct TrueMotionOptions {
   const RestCrossings* left_out = nullptr;  // null for none
 };
 
+// The options that fit a mesh with edges of some mean length.
+inline TrueMotionOptions true_motion_options(double mean_edge) {
+  return {.resolution = 0.01 * mean_edge, .coarse = 0.05 * mean_edge};
+}
+
 // Answers spans of time of one surface whose vertices go along known paths.
 class TrueMotion {
  public:

@@ -15,6 +15,7 @@
 #include "core/detect/start/embedding.h"
 #include "core/drvbc/drvbc.h"
 #include "core/elementary/catalogue.h"
+#include "core/mesh/mean_edge.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/catalog/test_scenes.h"
@@ -69,12 +70,6 @@ std::size_t stride() {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double mean_edge(const TriangleMesh& mesh, std::span<const Vec3> pose) {
-  double sum = 0;
-  for (const Edge& ends : mesh.edges()) sum += (pose[+ends[0]] - pose[+ends[1]]).norm();
-  return sum / static_cast<double>(mesh.edge_count());
-}
 
 // Returns for each vertex those that a path along edges of a pose, no longer than `reach`, leads to, sorted.
 std::vector<std::vector<std::size_t>> within_reach(const TriangleMesh& mesh, std::span<const Vec3> pose,

@@ -13,6 +13,7 @@
 #include "core/fast/drvbc_fast.h"
 #include "core/geometry/feature_distance.h"
 #include "core/mesh/adjacency.h"
+#include "core/mesh/mean_edge.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 

@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
+#include "core/mesh/mean_edge.h"
 #include "scenes/catalog/plain_name.h"
 
 namespace cscd::bench {

@@ -8,18 +8,13 @@
 #include <vector>
 
 #include "bench/query/input/thickness.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
 
 constexpr std::size_t kMostListed = 5;  // of pairs of names, in a text
 constexpr std::size_t kMostEvents = 10;
-
-std::string number(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.4g", value);
-  return digits;
-}
 
 // Frames of a long clip keep their hundredths.
 std::string frame_text(double value) {
@@ -38,7 +33,7 @@ std::string moment_text(const Input& input, const ClipMoment& moment) {
   std::string text = "frame " + frame_text(frame_of(input, moment));
   // Seconds count from the start of the clip, and frames from the start of the file's time line.
   const bool late = input.import && frame_at(*input.import, 0) != 0;
-  if (seconds) text += " (" + number(*seconds) + (late ? " s into the clip)" : " s)");
+  if (seconds) text += " (" + short_text(*seconds) + (late ? " s into the clip)" : " s)");
   return text;
 }
 
@@ -102,7 +97,7 @@ std::string of_intervals(std::size_t count, const AnswerSummary& s) {
 
 // "0.2e (0.0134)", or "0.01".
 std::string length_text(const WrittenLength& written, double edge) {
-  return written.text + (written.in_edges ? " (" + number(written.length(edge)) + ")" : "");
+  return written.text + (written.in_edges ? " (" + short_text(written.length(edge)) + ")" : "");
 }
 
 // "thickness 0.2e (0.0134); 1200 of 1234 pairs of features that are this close at rest are left out
@@ -128,7 +123,7 @@ std::string thickness_text(const ClipAnswer& answer) {
 // "1.2 cm" where the input tells its unit, else "0.0123".
 std::string distance_text(const Input& input, double length) {
   const double unit = input.import ? input.import->centimetres_per_unit : 0;
-  return unit > 0 ? number(unit * length) + " cm" : number(length);
+  return unit > 0 ? short_text(unit * length) + " cm" : short_text(length);
 }
 
 // The predicate of a verdict: one class a line.
@@ -281,10 +276,10 @@ std::string clip_text(const ClipAnswer& answer) {
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
   out += true_motion_text(answer.input, answer.true_motion);
-  return out + "  took " + number(s.wall_ms) + " ms: " + number(s.query_ms) + " to find contacts, " +
-         number(s.embedding_ms) + " to know what crosses at the starts; " +
-         (s.overlap_ms > 0 ? number(s.overlap_ms) + " ms to measure what lies in what, " : "") +
-         number(answer.preparation_ms) + " ms to prepare and " + number(s.load_ms) +
+  return out + "  took " + short_text(s.wall_ms) + " ms: " + short_text(s.query_ms) + " to find contacts, " +
+         short_text(s.embedding_ms) + " to know what crosses at the starts; " +
+         (s.overlap_ms > 0 ? short_text(s.overlap_ms) + " ms to measure what lies in what, " : "") +
+         short_text(answer.preparation_ms) + " ms to prepare and " + short_text(s.load_ms) +
          " ms to read frames came on top\n";
 }
 

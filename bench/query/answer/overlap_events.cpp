@@ -193,7 +193,10 @@ void OverlapEvents::find_pieces(Here& here) const {
 
 std::size_t OverlapEvents::Here::event_of(TriangleId a, TriangleId b) const {
   const auto events_of = [&](TriangleId t) {
-    return std::ranges::equal_range(pieces, t, {}, [](const auto& entry) { return entry.first; });
+    const auto [first, last] =
+        std::equal_range(pieces.begin(), pieces.end(), std::pair(t, kNone),
+                         [](const auto& one, const auto& other) { return one.first < other.first; });
+    return std::span(first, last);
   };
   for (const auto& entry : events_of(a))
     for (const auto& other : events_of(b))
@@ -221,15 +224,16 @@ void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_t
   });
   answer.start.total -= answer.old_pairs;
   std::vector<cscd::Contact> left;
-  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i)
-    if (here.event_of_contact[i] == OverlapEvents::kNone) left.push_back(answer.found.contacts[i]);
+  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
+    const cscd::Contact& contact = answer.found.contacts[i];
+    if (here.event_of_contact[i] == OverlapEvents::kNone)
+      left.push_back(contact);
+    else
+      answer.touching.erase(contact.pair);
+  }
   answer.old_contacts = answer.found.contacts.size() - left.size();
   answer.found.contacts = std::move(left);
   answer.event_of_contact.clear();
-  std::erase_if(answer.touching, [&](const auto& entry) {
-    return std::ranges::find(answer.found.contacts, entry.first, &Contact::pair) ==
-           answer.found.contacts.end();
-  });
   answer.verdict = verdict_of(answer, is_thick);
 }
 

@@ -7,6 +7,7 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "core/base/stopwatch.h"
 
 namespace cscd::bench {
@@ -18,8 +19,6 @@ using nlohmann::json;
 // one: files hold times in single precision. The spans that are asked about then end at the keys.
 constexpr double kAtKey = 1e-5;
 
-// Shares of the mean edge: what is told apart, and up to which deviation a part is searched as a whole.
-constexpr double kResolution = 0.01, kCoarse = 0.05;
 // Frames and the paths are computed by different code, and at times that differ by what files round. They may
 // differ by this share of the largest coordinate.
 constexpr double kSamePlace = 1e-5;
@@ -28,10 +27,10 @@ TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out,
                              const AnswerOptions& options) {
   if (input.thickness.length > 0)
     throw InputError("--true-motion: takes no --thickness; leave one of the two out");
-  return {.resolution = kResolution * input.thickness.edge,
-          .coarse = kCoarse * input.thickness.edge,
-          .ignored = input.ignored ? &input.ignored->triangles : nullptr,
-          .left_out = options.keep_rest_crossings ? nullptr : &left_out};
+  TrueMotionOptions out = true_motion_options(input.thickness.edge);
+  out.ignored = input.ignored ? &input.ignored->triangles : nullptr;
+  out.left_out = options.keep_rest_crossings ? nullptr : &left_out;
+  return out;
 }
 
 void require_same(const Motion& straight, std::span<const Vec3> positions, std::size_t interval) {
@@ -42,7 +41,7 @@ void require_same(const Motion& straight, std::span<const Vec3> positions, std::
   }
   if (off <= kSamePlace * size) return;
   throw InputError("--true-motion: frame " + std::to_string(interval) + " and the motion through it are " +
-                   json(off).dump() +
+                   exact_text(off) +
                    " apart, which is a fault of this program; ask about straight lines, without it");
 }
 
@@ -56,12 +55,6 @@ double at_share(const Input& input, std::size_t interval, double seconds) {
   return std::clamp((seconds - from) / (to - from), 0.0, 1.0);
 }
 
-std::string short_number(double value, const char* format = "%.4g") {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, format, value);
-  return digits;
-}
-
 bool meets(TrueVerdict verdict) {
   return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
 }
@@ -71,9 +64,13 @@ bool meets(IntervalVerdict verdict) {
 }
 
 std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
-  const auto frame = [&](double seconds) { return short_number(frame_at(*input.import, seconds), "%.3f"); };
+  const auto frame = [&](double seconds) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3f", frame_at(*input.import, seconds));
+    return std::string(digits);
+  };
   const TrueAnswer& answer = first.answer;
-  return "at frame " + frame(answer.from) + " to " + frame(answer.to) + " (" + short_number(answer.to) +
+  return "at frame " + frame(answer.from) + " to " + frame(answer.to) + " (" + short_text(answer.to) +
          " s): " + first.names.first + " touches " +
          (first.names.first == first.names.second ? "itself" : first.names.second);
 }
@@ -164,14 +161,13 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
     out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals, and have some in " +
            std::to_string(s.only_straight) + " in which the true motion has none";
   if (s.first_missed) out += "; the first that is missed is " + first_text(input, *s.first_missed);
-  out += "\n  the surface leaves straight lines by at most " + short_number(s.deviation);
-  if (input.thickness.edge > 0)
-    out += " (" + short_number(s.deviation / input.thickness.edge) + " mean edges)";
+  out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation);
+  if (input.thickness.edge > 0) out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
   if (s.without_bound > 0)
     out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
   if (s.jumps > 0)
     out += "; it jumps " + std::to_string(s.jumps) + " times, and nothing is asked of the way across a jump";
-  return out + "; this took " + short_number(s.ms) + " ms more\n";
+  return out + "; this took " + short_text(s.ms) + " ms more\n";
 }
 
 json true_motion_json(const Input& input, const IntervalAnswer& answer) {

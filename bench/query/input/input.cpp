@@ -10,6 +10,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/sandbox/run_limited.h"
@@ -36,8 +37,7 @@ constexpr double kSameFrame = 1e-3;
 std::string shown(double value) {
   if (const double whole = std::round(value); std::abs(value - whole) < kSameFrame && std::abs(value) < 1e15)
     return std::to_string(static_cast<std::int64_t>(whole));
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+  return exact_text(value);
 }
 
 double parse_frame(std::string_view digits, double otherwise, const std::string& whole) {

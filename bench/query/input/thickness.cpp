@@ -7,6 +7,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
 #include "core/base/error.h"
+#include "core/mesh/mean_edge.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
@@ -36,15 +37,6 @@ std::string names_of_rows(const Rows& rows, const Has& has) {
 }
 
 }  // namespace
-
-double mean_edge(const TriangleMesh& mesh, std::span<const Vec3> pose) {
-  double sum = 0;
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
-    const auto [p, q] = mesh.ends(EdgeId{static_cast<std::int32_t>(e)});
-    sum += (pose[+p] - pose[+q]).norm() / static_cast<double>(mesh.edge_count());
-  }
-  return sum;
-}
 
 void set_thickness(Input& input, const ThicknessRequest& request, bool with_ignored) {
   InputThickness& out = input.thickness;

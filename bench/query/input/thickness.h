@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "bench/query/input/input.h"
@@ -8,9 +7,6 @@
 #include "core/detect/strategy.h"
 
 namespace cscd::bench {
-
-// Returns the mean length of a surface's edges in a pose; 0 without edges.
-double mean_edge(const TriangleMesh& mesh, std::span<const Vec3> pose);
 
 // Sets Input::thickness. Whoever leaves out what the input ignores before it is tested says so by
 // `with_ignored`. Throws InputError where a length overflows.

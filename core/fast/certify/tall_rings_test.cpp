@@ -78,8 +78,9 @@ struct TallTube : test::Body {
 // triangles outside the cluster count as inside.
 TEST(TallRings, WhatIsSettledHasTallTrianglesAllRoundIt) {
   std::size_t settled = 0, unsettled = 0;
-  for (const auto& [seed, share] : {std::pair(1U, 0.0), {2U, 0.002}, {3U, 0.01}, {4U, 0.03}}) {
-    TallTube tube(seed, share);
+  unsigned seed = 0;
+  for (const double share : {0.0, 0.002, 0.01, 0.03}) {
+    TallTube tube(++seed, share);
     tube.rings.find_unsettled();
     std::set<std::pair<TriangleId, TriangleId>> left;
     tube.rings.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { left.emplace(std::minmax(a, b)); });

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bench/cli/output/schema.h"
+#include "bench/testing/test_generated.h"
+#include "bench/testing/test_shell.h"
+
+namespace cscd::bench {
+
+// The program with a character to ask about, figure.glb.
+class QueryProgram : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    put("figure.glb", scenes::to_glb(scenes::walking_figure()));
+  }
+  // The answer of query as JSON, which has to keep to the schema.
+  nlohmann::json answer(const std::string& words) const {
+    const Ran ran = run("cscd query " + words + " --json -");
+    EXPECT_EQ(ran.status, 0) << words << ": " << ran.errors;
+    const auto document = nlohmann::ordered_json::parse(ran.out);
+    EXPECT_EQ(schema_violation(document, "query.schema.json"), "") << words;
+    return nlohmann::json(document);
+  }
+};
+
+}  // namespace cscd::bench

@@ -1,0 +1,87 @@
+#include "core/session/true_motion.h"
+
+#include <gtest/gtest.h>
+
+#include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
+#include "core/detect/start/embedding.h"
+#include "core/elementary/catalogue.h"
+#include "core/mesh/test_shapes.h"
+
+namespace cscd {
+namespace {
+
+// The second of two octahedra moves along x from one place to another, and every path may leave its line by
+// as much as a bound on the acceleration says.
+struct Sliding : VertexPaths {
+  const std::vector<Vec3>& rest;
+  double from, to;
+
+  Sliding(const std::vector<Vec3>& shape, double x0, double x1) : rest(shape), from(x0), to(x1) {}
+  std::size_t vertex_count() const override { return rest.size(); }
+  std::vector<Vec3> pose(double time) const {
+    std::vector<Vec3> out = rest;
+    for (std::size_t v = 6; v < out.size(); ++v) out[v] += Vec3(from + time * (to - from), 0.1, 0.2);
+    return out;
+  }
+  void positions(double time, std::span<const VertexId> vertices, std::span<Vec3> at,
+                 std::span<double> error) const override {
+    const std::vector<Vec3> all = pose(time);
+    for (std::size_t i = 0; i < vertices.size(); ++i) at[i] = all[+vertices[i]], error[i] = 1e-15;
+  }
+  void deviations(double begin, double end, std::span<const VertexId>, std::span<double> out) const override {
+    std::ranges::fill(out, 0.5 * (end - begin) * (end - begin) / 8);
+  }
+};
+
+// How often a detector was told that a step starts embedded.
+int told_embedded = 0;
+struct Watched : Detector {
+  std::unique_ptr<Detector> detector;
+  Report detect(const Step& step, ContactSet& out) override {
+    told_embedded += step.starts_embedded;
+    return detector->detect(step, out);
+  }
+};
+constexpr Strategy kWatched{.name = "watched",
+                            .source = "",
+                            .guarantee = Guarantee::complete,
+                            .needs = Needs::any_mesh,
+                            .kind = StrategyKind::fixed,
+                            .make =
+                                [](const StrategyInput& setup) {
+                                  auto watched = std::make_unique<Watched>();
+                                  watched->detector =
+                                      compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup);
+                                  return Prepared{std::move(watched), {}};
+                                },
+                            .sees_start = true,
+                            .knows_distance = true};
+
+// Features of surfaces that cross need not be close, and signs say nothing of such a start.
+// Mutation: a part that ends with nothing close starts the next one embedded, whatever crosses.
+TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  const TriangleMesh mesh = shape.mesh();
+  for (const bool crosses : {false, true}) {
+    const Sliding paths(shape.positions, crosses ? 1.0 : 3.0, crosses ? 1.01 : 3.01);
+    const std::vector<Vec3> start = paths.pose(0);
+    const Crossings at_rest = EmbeddingTest(mesh, start).find_all(start, 1000);
+    ASSERT_EQ(at_rest.total > 0, crosses);
+    const RestCrossings left_out(mesh, at_rest);
+    TrueMotionOptions options = true_motion_options(1);
+    options.coarse = 1e-3;
+    options.left_out = &left_out;
+    TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
+                      kWatched, options);
+    ASSERT_TRUE(motion.embedded_at(0));
+    told_embedded = 0;
+    const TrueAnswer answer = motion.answer(0, 1);
+    EXPECT_EQ(answer.verdict, TrueVerdict::clear);
+    EXPECT_GT(answer.parts, 4u);
+    EXPECT_EQ(told_embedded > 0, !crosses);
+  }
+}
+
+}  // namespace
+}  // namespace cscd
