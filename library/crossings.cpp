@@ -36,11 +36,10 @@ bool CrossingSearch::excludes(const Exclusions& excluded, const CrossingCurves& 
                               const Overlap& overlap) const {
   if (excluded.empty()) return false;
   std::size_t pairs = 0, left_out = 0;
-  for (const std::int32_t curve : overlap.curves)
-    for (const auto& [a, b] : all.curves[static_cast<std::size_t>(curve)].segments) {
-      ++pairs;
-      left_out += excluded.excludes(mesh_, TrianglePair{a, b});
-    }
+  for_each_segment(all, overlap, [&](const auto& segment) {
+    ++pairs;
+    left_out += excluded.excludes(mesh_, TrianglePair{segment[0], segment[1]});
+  });
   return 2 * left_out >= pairs;
 }
 

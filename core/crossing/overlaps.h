@@ -57,6 +57,14 @@ struct Overlaps {
   std::vector<Overlap> overlaps;  // deepest first
 };
 
+// Calls take(segment) for each pair of triangles, one of each sheet, through which the curves of an overlap
+// run.
+template <class Take>
+void for_each_segment(const CrossingCurves& all, const Overlap& overlap, const Take& take) {
+  for (const std::int32_t curve : overlap.curves)
+    for (const auto& segment : all.curves[static_cast<std::size_t>(curve)].segments) take(segment);
+}
+
 // Finds what lies in what, one pose after another of one mesh. Where nothing crosses, a call does nothing.
 class OverlapFinder {
  public:

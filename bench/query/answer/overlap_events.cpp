@@ -50,11 +50,10 @@ bool OverlapEvents::is_event(const Overlaps& all, const Overlap& overlap,
                              const IntervalAnswer& answer) const {
   if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return true;
   std::size_t pairs = 0, counted = 0;
-  for (const std::int32_t curve : overlap.curves)
-    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
-      ++pairs;
-      counted += answer.start.contains(pair_of(segment));
-    }
+  for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    ++pairs;
+    counted += answer.start.contains(pair_of(segment));
+  });
   return 2 * counted > pairs;
 }
 
@@ -88,11 +87,10 @@ std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& o
     for (const VertexId v : region.vertices)
       by_vertex.add(vertices_, static_cast<std::int32_t>(v), region.other);
   if (const std::size_t event = by_vertex.most(); event != kNone) return event;
-  for (const std::int32_t curve : overlap.curves)
-    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
-      const auto [a, b] = pair_of(segment);
-      by_pair.add(pairs_, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-    }
+  for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    const auto [a, b] = pair_of(segment);
+    by_pair.add(pairs_, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+  });
   if (const std::size_t event = by_pair.most(); event != kNone) return event;
   const NamePair swapped{names.second, names.first};
   for (const std::size_t event : going_on_)
@@ -157,11 +155,10 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
       for (const CrossingRegion& region : overlap.regions)
         for (const VertexId v : region.vertices)
           vertices.emplace_back(static_cast<std::int32_t>(v), region.other, event);
-      for (const std::int32_t curve : overlap.curves)
-        for (const auto& segment : here.overlaps.crossing.curves[static_cast<std::size_t>(curve)].segments) {
-          const auto [a, b] = pair_of(segment);
-          pairs.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), event);
-        }
+      for_each_segment(here.overlaps.crossing, overlap, [&](const auto& segment) {
+        const auto [a, b] = pair_of(segment);
+        pairs.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), event);
+      });
     }
   }
   if (wanted.pieces || !answer.found.contacts.empty()) find_pieces(here);
@@ -180,9 +177,9 @@ void OverlapEvents::find_pieces(Here& here) const {
   for (std::size_t i = 0; i < here.event.size(); ++i) {
     if (here.event[i] == kNone) continue;
     const Overlap& overlap = here.overlaps.overlaps[i];
-    for (const std::int32_t curve : overlap.curves)
-      for (const auto& segment : here.overlaps.crossing.curves[static_cast<std::size_t>(curve)].segments)
-        for (const TriangleId t : segment) here.pieces.emplace_back(t, here.event[i]);
+    for_each_segment(here.overlaps.crossing, overlap, [&](const auto& segment) {
+      for (const TriangleId t : segment) here.pieces.emplace_back(t, here.event[i]);
+    });
     for (const CrossingRegion& region : overlap.regions)
       for (const VertexId v : region.vertices)
         for (const TriangleId t : input_.mesh.triangles_at(v)) here.pieces.emplace_back(t, here.event[i]);
