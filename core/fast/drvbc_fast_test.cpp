@@ -120,6 +120,30 @@ TEST(DrvbcFast, FindsTheSameWithoutAnyOfItsIdeas) {
   }
 }
 
+// A surface that flies a million units finds what it finds where it is, for as much. Mutation: its origin
+// rests, so that nothing is known of how its places lie to each other.
+TEST(DrvbcFast, CostsTheSameWhereTheSurfaceFlies) {
+  const Scene rests(0.1);
+  Scene flies(0.1);
+  for (Vec3& p : flies.end) p += Vec3(0x1p20, -0x1p21, 0x1p19);
+  for (const bool complete : {false, true}) {
+    ContactSet expected, found;
+    const auto counts = [&](const Scene& scene, ContactSet& out) {
+      const Report report =
+          make_drvbc_fast(scene.setup(1), {.complete = complete}).detector->detect({scene.motion()}, out);
+      out.sort();
+      return report.cull;
+    };
+    const CullCounts here = counts(rests, expected), away = counts(flies, found);
+    EXPECT_NEAR(static_cast<double>(*away.bvot), static_cast<double>(*here.bvot), 0.02 * *here.bvot);
+    EXPECT_NEAR(static_cast<double>(away.pctp), static_cast<double>(here.pctp), 0.02 * here.pctp);
+    EXPECT_FALSE(expected.contacts.empty());
+    ASSERT_EQ(found.contacts.size(), expected.contacts.size());
+    for (std::size_t i = 0; i < found.contacts.size(); ++i)
+      EXPECT_EQ(found.contacts[i].pair, expected.contacts[i].pair);
+  }
+}
+
 TEST(DrvbcFast, NeedsAThread) {
   const Scene scene(0);
   for (const int threads : {0, -1}) EXPECT_THROW(make_drvbc_fast(scene.setup(threads)), InputError);

@@ -312,7 +312,7 @@ RadialView Certificates::view() const {
 std::vector<RadialView::Observer> Certificates::observers(std::size_t cover) const {
   std::vector<RadialView::Observer> observers;
   for (const Viewpoint& viewpoint : viewpoint_[cover]) {
-    const MovingPoint at{positions_->in_scene(viewpoint.at[0]), positions_->in_scene(viewpoint.at[1])};
+    const MovingPoint at{positions_->in_scene(viewpoint.at[0], 0), positions_->in_scene(viewpoint.at[1], 1)};
     observers.push_back({static_cast<std::int32_t>(observers.size()), at, at});
   }
   return observers;

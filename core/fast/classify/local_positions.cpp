@@ -12,11 +12,15 @@
 // A coordinate x becomes float((x - origin) * scale). The difference rounds by 2^-53 of itself, the product
 // is exact (or far below 1e-37), and the conversion rounds by 2^-24 of itself. With M the largest result, the
 // error is below 2^-24 (1 + 2^-20) M + 1e-37. What the coordinates are off themselves, `off`, comes on top.
+//
+// The origin may be any point that moves in a straight line, rounded or not: taking it from every vertex
+// takes the same from both sides of every pair at every time, so what touches, and when, stays as it was.
 namespace cscd::fast {
 namespace {
 
 constexpr float kLargest = 1e9F;      // triple products of such lengths are far from overflow
 constexpr std::size_t kRange = 8192;  // vertices that are converted together, 10 microseconds of work
+constexpr std::size_t kSamples = 16;  // vertices whose ways say how the surface flies
 
 }  // namespace
 
@@ -43,7 +47,9 @@ void LocalPositions::update_beginning(const Motion& motion, double last, const T
 template <class At>
 void LocalPositions::convert_all(const Motion& motion, const Team& team, const At& at) {
   const std::size_t count = records_.size();
-  origin_ = motion.start()[0];
+  origin_[0] = motion.start()[0];
+  const Vec3 way = common_way(motion);
+  origin_[1] = at(origin_[0], Vec3(origin_[0] + way));
   largest_.resize(team.ranges_of(count, kRange));
   team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
     largest_[part] = convert(motion, first, last, at);
@@ -53,13 +59,26 @@ void LocalPositions::convert_all(const Motion& motion, const Team& team, const A
   error_ = 0x1.00002p-24F * largest + 1e-37F;
 }
 
+// The mean way of some vertices where it is longer than the reference pose is large, else none: the counts of
+// ordinary steps stay what they are with an origin that rests.
+Vec3 LocalPositions::common_way(const Motion& motion) const {
+  const std::size_t count = records_.size();
+  Vec3 way = Vec3::Zero();
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const std::size_t v = i * count / kSamples;
+    way += (motion.end()[v] - motion.start()[v]) / double{kSamples};
+  }
+  return way.cwiseAbs().maxCoeff() * scale_ > 1 ? way : Vec3::Zero();
+}
+
 void LocalPositions::add_error(double off) {
   known_ = known_ && off * scale_ <= 0x1p14 * double{error_};
   error_ = error_beside(off);
 }
 
 double LocalPositions::largest_in_scene() const {
-  return 1.0001 * (origin_.cwiseAbs().maxCoeff() + 0x1p24 * double{error_} / scale_);
+  const double origin = std::max(origin_[0].cwiseAbs().maxCoeff(), origin_[1].cwiseAbs().maxCoeff());
+  return 1.0001 * (origin + 0x1p24 * double{error_} / scale_);
 }
 
 // Converts a range of vertices and returns the bits of the largest coordinate's size. Bits are ordered as the
@@ -67,8 +86,8 @@ double LocalPositions::largest_in_scene() const {
 template <class At>
 std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, std::size_t last,
                                      const At& at) {
-  const Vec3& o = origin_;
-  const Lane8 origin = {o.x(), o.y(), o.z(), 0, o.x(), o.y(), o.z(), 0};
+  const auto& [from, to] = origin_;
+  const Lane8 origin = {from.x(), from.y(), from.z(), 0, to.x(), to.y(), to.z(), 0};
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
   Int8 most = {};
   const auto convert = [&](const double* start, const double* end, float* out) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +15,9 @@ namespace cscd::fast {
 
 // The positions of one interval as floats. They are shifted by the first vertex and scaled by a power of two
 // that makes the reference pose about one unit large. So coordinates far from the origin lose nothing, and
-// neither very small nor very large units underflow or overflow.
+// neither very small nor very large units underflow or overflow. Where the whole surface flies further than
+// it is large, the origin flies with it: how places of the surface lie to each other is known as well then
+// as where it stays.
 class LocalPositions {
  public:
   // One vertex: x, y, z at the start and an unused number, then x, y, z at the end and an unused number.
@@ -33,8 +36,10 @@ class LocalPositions {
   void update_beginning(const Motion& motion, double last, const Team& team = Team());
 
   std::span<const Record> records() const { return records_; }
-  // Returns where a point of local coordinates lies in the scene.
-  Vec3 in_scene(const float (&at)[3]) const { return origin_ + Vec3(at[0], at[1], at[2]) / scale_; }
+  // Returns where a point of local coordinates lies in the scene, at the start (0) or the end (1).
+  Vec3 in_scene(const float (&at)[3], std::size_t end) const {
+    return origin_[end] + Vec3(at[0], at[1], at[2]) / scale_;
+  }
   // Returns a bound on the coordinates of the scene.
   double largest_in_scene() const;
   // A bound on the error of every coordinate, in local units.
@@ -54,12 +59,14 @@ class LocalPositions {
  private:
   template <class At>
   void convert_all(const Motion& motion, const Team& team, const At& at);
+  Vec3 common_way(const Motion& motion) const;
   template <class At>
   std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last, const At& at);
   void add_error(double off);
 
   double scale_;
-  Vec3 origin_ = Vec3::Zero();  // the first vertex at the start of the interval
+  // The first vertex at the start, and where that place is at the end if it flies as the surface does.
+  std::array<Vec3, 2> origin_ = {Vec3::Zero(), Vec3::Zero()};
   std::vector<Record> records_;
   std::vector<std::int32_t> largest_;  // [ranges of vertices]: the bits of the largest coordinate
   float error_ = 0;

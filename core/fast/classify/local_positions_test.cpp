@@ -76,8 +76,36 @@ TEST(LocalPositions, AreShownInTheSceneWhereTheyAre) {
   for (std::size_t v = 0; v < body.start.size(); ++v) {
     const float(&at)[8] = local.records()[v].at;
     const float start[3] = {at[0], at[1], at[2]}, end[3] = {at[4], at[5], at[6]};
-    EXPECT_LT((local.in_scene(start) - body.start[v]).norm(), 1e-4);
-    EXPECT_LT((local.in_scene(end) - body.end[v]).norm(), 1e-4);
+    EXPECT_LT((local.in_scene(start, 0) - body.start[v]).norm(), 1e-4);
+    EXPECT_LT((local.in_scene(end, 1) - body.end[v]).norm(), 1e-4);
+  }
+}
+
+// Where the whole body flies, how its vertices lie to each other is known as well as where it stays, and
+// points are still shown where they are. Mutations: the origin rests; it flies at the start too; the
+// beginning of the interval takes the way of the whole; a vertex is placed by the other end's origin.
+TEST(LocalPositions, FlyWithABodyThatFlies) {
+  test::Body body(0.05, 2);
+  for (Vec3& p : body.end) p += Vec3(3e5, -1e6, 7e5);
+  LocalPositions local(body.start);
+  for (const double last : {1.0, 0.25}) {
+    last == 1 ? local.update(body.motion()) : local.update_beginning(body.motion(), last);
+    ASSERT_TRUE(local.known());
+    EXPECT_LT(local.error(), 4e-7F);
+    const auto unit = static_cast<double>(local.records()[9].at[0]) / (body.start[9] - body.start[0]).x();
+    for (std::size_t v = 0; v < body.start.size(); ++v) {
+      const float(&at)[8] = local.records()[v].at;
+      const float(&first)[8] = local.records()[0].at;
+      const Vec3 end = body.start[v] + last * (body.end[v] - body.start[v]);
+      const Vec3 first_end = body.start[0] + last * (body.end[0] - body.start[0]);
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const double apart = static_cast<double>(at[4 + i]) - static_cast<double>(first[4 + i]);
+        EXPECT_NEAR(apart, unit * (end - first_end)[i], 2 * static_cast<double>(local.error()));
+      }
+      const float start[3] = {at[0], at[1], at[2]}, to[3] = {at[4], at[5], at[6]};
+      EXPECT_LT((local.in_scene(start, 0) - body.start[v]).norm(), 1e-4);
+      EXPECT_LT((local.in_scene(to, 1) - end).norm(), 1e-4);
+    }
   }
 }
 
