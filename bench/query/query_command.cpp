@@ -113,13 +113,13 @@ struct Said {
   bool too_deep = false;                             // for --fail-deeper-than
 };
 
-Said say_clip(const QueryOptions& options, Input input, bool with_json) {
+Said say_clip(const QueryOptions& options, Input input, bool with_json, bool is_brief = false) {
   input.threads = options.threads;
   ignore(input, options.ignored);
   set_thickness(input, options.thickness);
   const SurfaceNames names(input);
   const ClipAnswer answer = answer_clip(options, input, names, with_json);
-  std::printf("%s", clip_text(answer).c_str());
+  std::printf("%s", (is_brief ? brief_clip_text(answer) : clip_text(answer)).c_str());
   Said said{input.motion ? answer.true_motion.verdict() : answer.summary.verdict()};
   if (options.fail_deeper_than) {
     const double most = options.fail_deeper_than->length(input.thickness.edge);
@@ -219,8 +219,8 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
     options.model.import.clip.clear();
     options.model.import.clip_number = clip;
     const bool is_open = seen.chosen_clip == static_cast<long>(clip);
-    Said one =
-        say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model), with_json);
+    Said one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model),
+                        with_json, seen.clips.size() > 1);
     verdicts.add(seen.clips[clip].name, one.verdict);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;
@@ -231,6 +231,11 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
                      ": has no clip of more than one pose, so nothing moves; pass "
                      "--from-bind-pose to move from the bind pose to one of them");
   std::printf("%s\n", verdicts.sentence(options.input).c_str());
+  if (seen.clips.size() > 1) {
+    const char* const paths = "; --true-motion asks about the paths on which bones carry the surface";
+    std::printf("  --clip NAME says more of one, and --json FILE all of each%s\n",
+                options.model.true_motion ? "" : paths);
+  }
   all.document["summary"] =
       verdicts.as_json(options.input, options.thickness.thickness.number > 0 || options.model.true_motion);
   return all;

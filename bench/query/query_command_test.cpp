@@ -211,6 +211,8 @@ TEST_F(Query, AnswersAllClipsUnlessOneIsNamed) {
   }
   EXPECT_NE(ran.out.find("\n" + unnamed["summary"]["sentence"].get<std::string>() + "\n", at),
             std::string::npos);
+  EXPECT_LE(std::ranges::count(ran.out, '\n'), 12) << "a file of many clips fits a screen: " << ran.out;
+  EXPECT_TRUE(has(ran.out, "--clip NAME says more of one"));
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "figure.glb, 2 clips in all: ")) << unnamed["summary"];
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "('hug')")) << unnamed["summary"];
   expect_refused(run("cscd query figure.glb --frames 0:1"), "has 2; name one with --clip");

@@ -242,12 +242,15 @@ std::string verdict_sentence(const ClipAnswer& answer) {
 
 namespace {
 
+std::string not_measured_text(const ClipAnswer& answer) {
+  if (answer.not_measured == 0) return {};
+  return "  at the start of " + many(answer.not_measured, "interval") + " more than " +
+         std::to_string(OverlapEvents::kMostPairs) + " pairs cross, too many to say what lies in what\n";
+}
+
 std::string events_text(const ClipAnswer& answer) {
   const std::vector<OverlapEvent>& events = answer.events;
-  std::string out;
-  if (answer.not_measured > 0)
-    out = "  at the start of " + many(answer.not_measured, "interval") + " more than " +
-          std::to_string(OverlapEvents::kMostPairs) + " pairs cross, too many to say what lies in what\n";
+  std::string out = not_measured_text(answer);
   if (events.empty()) return out;
   out += "  lies in itself in " + many(events.size(), "place") +
          (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
@@ -281,6 +284,16 @@ std::string clip_text(const ClipAnswer& answer) {
          (s.overlap_ms > 0 ? short_text(s.overlap_ms) + " ms to measure what lies in what, " : "") +
          short_text(answer.preparation_ms) + " ms to prepare and " + short_text(s.load_ms) +
          " ms to read frames came on top\n";
+}
+
+std::string brief_clip_text(const ClipAnswer& answer) {
+  std::string out = verdict_sentence(answer) + "\n" + not_measured_text(answer);
+  if (answer.summary.proven < answer.summary.intervals()) out += "  " + sentences(answer).proven + "\n";
+  if (!answer.events.empty())
+    out += "  lies in itself in " + many(answer.events.size(), "place") +
+           ", deepest: " + event_text(answer.input, answer.events[deepest_first(answer.events)[0]]) + "\n";
+  if (answer.input.motion) out += true_motion_text(answer.input, answer.true_motion);
+  return out;
 }
 
 std::string details_text(const ClipAnswer& answer) {

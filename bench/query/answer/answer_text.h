@@ -13,6 +13,8 @@ std::string verdict_sentence(const ClipAnswer& answer);
 
 // Several lines, the verdict first.
 std::string clip_text(const ClipAnswer& answer);
+// The verdict and what lies deepest in the surface: two lines for each of several clips.
+std::string brief_clip_text(const ClipAnswer& answer);
 
 // "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
 std::string event_text(const Input& input, const OverlapEvent& event);
