@@ -66,7 +66,8 @@ class PairTester : public TrianglePairSink {
     thickness_ = step.thickness;
     start_ = step.crossings;
     most_ = step.most_crossings;
-    any_contact_ = first_only_ && step.any_contact && step.crossings == nullptr;
+    any_contact_ = step.any_contact && step.crossings == nullptr;
+    first_ = first_only_ || any_contact_;
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
     out_ = &out;
     counts_ = {};
@@ -102,8 +103,8 @@ class PairTester : public TrianglePairSink {
     if (alone && may_own() && !owners_) owners_.emplace(mesh_);
     owned_alone_ = alone && owners_;
   }
-  bool looks_for_first() const override { return first_only_; }
-  double until() const override { return first_only_ ? cut() : 1; }
+  bool looks_for_first() const override { return first_; }
+  double until() const override { return first_ ? cut() : 1; }
   void begin_again() override {
     flush();
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
@@ -121,7 +122,7 @@ class PairTester : public TrianglePairSink {
       carried_.clear();
       options_.assignment->append(block, carried_);
       test_carried();
-    } else if (first_only_) {
+    } else if (first_) {
       test_in_order(block);
     } else {
       carried_.clear();
@@ -148,9 +149,7 @@ class PairTester : public TrianglePairSink {
     float before;  // time before which the two certainly do not touch
     TrianglePair pair;
   };
-  bool matters(const Bounded& pair) const {
-    return pair.before <= (first_only_ ? earliest_ + kTimeSlack : 1);
-  }
+  bool matters(const Bounded& pair) const { return pair.before <= (first_ ? earliest_ + kTimeSlack : 1); }
 
   // Whatever touches at the earliest time found so far touches before this time.
   double cut() const { return std::min(1.0, earliest_ + 2 * kTimeSlack); }
@@ -324,6 +323,7 @@ class PairTester : public TrianglePairSink {
   Crossings* start_ = nullptr;
   std::size_t most_ = 0;      // crossings that are kept
   bool any_contact_ = false;  // one is enough
+  bool first_ = false;        // only the contacts of the earliest time, or any one, are asked for
   PairCounts counts_;
   std::vector<TrianglePair> kept_;     // the block without what is excluded
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
@@ -344,7 +344,6 @@ class ComposedDetector : public Detector {
   ComposedDetector(std::unique_ptr<Culler> culler, const StrategyInput& setup, PairOptions options)
       : starts_embedded_(options.starts_embedded),
         excludes_(setup.exclusions != nullptr),
-        first_only_(setup.first_only),
         culler_(std::move(culler)),
         tester_(setup, std::move(options), clock_) {}
 
@@ -376,7 +375,7 @@ class ComposedDetector : public Detector {
       tester_.finish_interval();
     }
     tester_.trust_owners(true);
-    if (!out.contacts.empty() && !first_only_)
+    if (!out.contacts.empty() && !tester_.looks_for_first())
       if (const auto rest = culler_->cull_rest(tester_)) {
         *report.cull.bvot += *rest;
         tester_.finish_interval();
@@ -398,7 +397,7 @@ class ComposedDetector : public Detector {
   RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:
-  const bool starts_embedded_, excludes_, first_only_;
+  const bool starts_embedded_, excludes_;
   StageClock clock_;
   std::unique_ptr<Culler> culler_;
   PairTester tester_;

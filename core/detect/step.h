@@ -42,8 +42,8 @@ struct Step {
   // How near features may come before they count as contacts. Above 0, only cullers that know distances
   // (Culler::knows_distance) and an elementary test that does may be asked.
   Thickness thickness = {};
-  // Whether the caller wants to know no more than whether anything touches. A detector that was made for the
-  // first contact alone (StrategyInput::first_only) may then stop at any contact.
+  // Whether the caller wants to know no more than whether anything touches. A detector may then stop at any
+  // contact.
   bool any_contact = false;
 };
 

@@ -204,7 +204,8 @@ TEST(CutShort, FindsTheSameFirstContactForLess) {
 
 // A tube that goes from pose to pose, with jumps, steps that are asked again and steps back. Mutations:
 // feature pairs that touched in the step before are taken for contacts without a test; the step is looked at
-// until a little before the earliest of them touches; any contact is enough where the first one is asked for.
+// until a little before the earliest of them touches; any contact is enough where the first one, or all, are
+// asked for after a step of which any was enough.
 TEST(Remembered, ChangesNoFirstContact) {
   const test::Shape shape = test::uneven_tube(24, 60, 15, [](double) { return 0.8; });
   const TriangleMesh mesh = shape.mesh();
@@ -216,6 +217,9 @@ TEST(Remembered, ChangesNoFirstContact) {
     const DrvbcFastOptions options{.complete = complete};
     const std::unique_ptr<Detector> seasoned = make_drvbc_fast(setup, options).detector;
     const std::unique_ptr<Detector> fresh = make_drvbc_fast(setup, options).detector;
+    setup.first_only = false;
+    const std::unique_ptr<Detector> all = make_drvbc_fast(setup, options).detector;
+    setup.first_only = true;
     const auto first = [&](Detector& detector, const Motion& motion, Report& report) {
       ContactSet contacts;
       report = detector.detect({.motion = motion, .starts_embedded = true}, contacts);
@@ -224,7 +228,7 @@ TEST(Remembered, ChangesNoFirstContact) {
       return contacts;
     };
     std::vector<Vec3> pose = shape.positions, before = pose, trial = pose;
-    std::uint64_t tests = 0, fresh_tests = 0;
+    std::uint64_t tests = 0, fresh_tests = 0, any_tests = 0, all_tests = 0;
     int touched = 0;
     for (int i = 0; i < 60; ++i) {
       SCOPED_TRACE(i);
@@ -243,6 +247,15 @@ TEST(Remembered, ChangesNoFirstContact) {
       ContactSet any;
       seasoned->detect({.motion = motion, .starts_embedded = true, .any_contact = true}, any);
       EXPECT_EQ(any.contacts.empty(), found.contacts.empty());
+      any_tests += all->detect({.motion = motion, .starts_embedded = true, .any_contact = true}, any)
+                       .pairs.elementary_tests;
+      EXPECT_EQ(any.contacts.empty(), found.contacts.empty());
+      ContactSet every = {};
+      all_tests += all->detect({.motion = motion, .starts_embedded = true}, every).pairs.elementary_tests;
+      EXPECT_GE(every.contacts.size(), found.contacts.size());
+      every.sort();
+      keep_first(every);
+      EXPECT_EQ(digest(every), digest(found));
       touched += !any.contacts.empty();
       before = pose;  // the next pose is embedded, too
       const double share = found.contacts.empty() ? 1 : found.contacts[0].time / 2;
@@ -250,6 +263,7 @@ TEST(Remembered, ChangesNoFirstContact) {
     }
     EXPECT_GT(touched, 20);
     EXPECT_LT(tests, fresh_tests);
+    EXPECT_LT(10 * any_tests, all_tests);
   }
 }
 

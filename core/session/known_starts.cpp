@@ -66,13 +66,13 @@ bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bon
   detector.detect({.motion = Motion(poses_.positions(), pose),
                    .bones = way ? used(*way) : nullptr,
                    .starts_embedded = clear(),
-                   .thickness = thickness_},
+                   .thickness = thickness_,
+                   .any_contact = true},
                   touched_);
-  const bool all_known = touched_.contacts.empty() || certainty.all;
-  if (!all_known || touched_.contacts.size() > kMostFollowed) return false;
+  if (!touched_.contacts.empty()) return false;
   poses_.follow(pose, touched_);
   end_follows_ = false;
-  free_of_close_pairs_ = touched_.contacts.empty();
+  free_of_close_pairs_ = true;
   return true;
 }
 

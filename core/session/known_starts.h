@@ -56,8 +56,8 @@ class KnownStarts {
   // learn_clear() says more.
   Report see(Detector& detector, Step step, ContactSet& found);
   // Asks the detector about the straight way from the known pose to `pose`, and learns from it what crosses
-  // there. Returns false, and learns nothing, where that way proves nothing, or where so much touches on it
-  // that a search is cheaper.
+  // there. Returns false, and learns nothing, where that way proves nothing, or where something touches on
+  // it: a way may be long, and then a search is cheaper than to find all that touches.
   bool follow_to(std::span<const Vec3> pose, const Rig::Interval* bones, Detector& detector,
                  const Certainty& certainty);
   // Learns whether the start of the step that has begun is free of close pairs.
