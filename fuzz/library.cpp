@@ -140,7 +140,7 @@ bool any_exclusions(Numbers& numbers, Index vertices, Index faces, SelfCollision
       made.emplace_back(any_index(numbers, count - 1), any_index(numbers, count - 1));
     return made;
   };
-  switch (numbers.byte() % 6) {
+  switch (numbers.byte() % 7) {
     case 0:
       out.vertex_pairs = pairs(vertices);
       return names_pairs_below(out.vertex_pairs, vertices);
@@ -157,6 +157,9 @@ bool any_exclusions(Numbers& numbers, Index vertices, Index faces, SelfCollision
     case 4:
       for (Index v = any_count(numbers, vertices); v > 0; --v) out.obstacle.push_back(numbers.byte() % 2);
       return out.obstacle.empty() || static_cast<Index>(out.obstacle.size()) == vertices;
+    case 5:
+      out.ongoing = true;
+      return true;
     default: {
       for (Index v = any_count(numbers, vertices); v > 0; --v) out.group.push_back(any_index(numbers, 2));
       const auto [least, most] = std::ranges::minmax(out.group.empty() ? std::vector{0} : out.group);
@@ -252,7 +255,8 @@ void target(Bytes bytes) {
   bool excludes = false;
   if (numbers.byte() % 4 == 0 && vertices > 0 && faces > 0) {
     excludes = true;
-    right = any_exclusions(numbers, vertices, faces, options.exclude) && right;
+    right = any_exclusions(numbers, vertices, faces, options.exclude) &&
+            (!options.exclude.ongoing || options.check_start) && right;
   }
   if (is_odd(numbers)) {  // bytes that were never a preparation
     for (int left = 1 + numbers.byte(); left > 0; --left)

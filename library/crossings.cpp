@@ -43,12 +43,24 @@ bool CrossingSearch::excludes(const Exclusions& excluded, const CrossingCurves& 
   return 2 * left_out >= pairs;
 }
 
-SelfCollision::Crossings CrossingSearch::find(std::span<const Vec3> positions, const Exclusions& excluded) {
+Overlaps CrossingSearch::overlaps(std::span<const Vec3> positions, bool each_distance) {
   const Crossings pairs = pairs_.find_all(positions, kMostPairs);
   if (!pairs.all_kept())
     throw InputError("crossings: " + std::to_string(pairs.total) + " pairs of faces cross, more than " +
                      std::to_string(kMostPairs) + "; the surface has collapsed");
-  const Overlaps found = finder_.find(positions, pairs.pairs, true);
+  return finder_.find(positions, pairs.pairs, each_distance);
+}
+
+OverlapPieces CrossingSearch::find_pieces(std::span<const Vec3> positions, const Exclusions& excluded) {
+  const Overlaps found = overlaps(positions, false);
+  std::vector<std::size_t> number;
+  for (const Overlap& overlap : found.overlaps)
+    number.push_back(excludes(excluded, found.crossing, overlap) ? OverlapPieces::kNone : number.size());
+  return OverlapPieces(mesh_, found, number);
+}
+
+SelfCollision::Crossings CrossingSearch::find(std::span<const Vec3> positions, const Exclusions& excluded) {
+  const Overlaps found = overlaps(positions, true);
   SelfCollision::Crossings out;
   out.touching = found.crossing.touching;
   for (const Overlap& overlap : found.overlaps) {

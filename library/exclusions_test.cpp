@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <random>
+#include <set>
 
 #include "library/test_steps.h"
 
@@ -118,6 +119,94 @@ TEST(SelfCollision, LeavesOutWhatIsExcludedOfObstacles) {
     expect_right(step, body, filter.expected);
     if (testing::Test::HasFailure()) return;
   }
+}
+
+// What lies within an overlap, by what crossings() says.
+struct Within {
+  const FaceRows& rows;
+  std::vector<std::set<int>> faces;  // of each overlap
+  Within(const SceneStep& step, const SelfCollision::Crossings& crossings) : rows(step.faces) {
+    for (const SelfCollision::Crossings::Overlap& overlap : crossings.overlaps) {
+      std::set<int>& of_overlap = faces.emplace_back();
+      std::set<int> vertices;
+      for (const auto& curve : overlap.curves)
+        for (const auto& both : curve.faces) of_overlap.insert(both.begin(), both.end());
+      for (const auto& region : overlap.regions)
+        vertices.insert(region.vertices.begin(), region.vertices.end());
+      for (Eigen::Index f = 0; f < step.faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k)
+          if (vertices.contains(rows(f, k))) of_overlap.insert(static_cast<int>(f));
+    }
+  }
+  bool operator()(const CrossingPair& pair) const {
+    return std::ranges::any_of(faces, [&](const std::set<int>& of_overlap) {
+      return of_overlap.contains(static_cast<int>(pair.first)) &&
+             of_overlap.contains(static_cast<int>(pair.second));
+    });
+  }
+  bool operator()(const Truth::value_type& contact) const {
+    const auto& [edges, v, face] = contact.first;
+    return std::ranges::any_of(faces, [&](const std::set<int>& of_overlap) {
+      const auto any_with = [&](std::initializer_list<int> corners) {
+        return std::ranges::any_of(of_overlap, [&](int f) {
+          return std::ranges::all_of(corners, [&](int c) { return (rows.row(f).array() == c).any(); });
+        });
+      };
+      return edges ? any_with({v[0], v[1]}) && any_with({v[2], v[3]})
+                   : any_with({v[0]}) && of_overlap.contains(face);
+    });
+  }
+};
+
+// Mutations: an overlap's pieces are the faces of its curves alone; pieces of different overlaps are one; the
+// first contact is looked for among those that a search for the first of all came by.
+TEST(SelfCollision, LeavesOutWhatLiesInOverlapsOfTheStart) {
+  std::size_t old = 0, later = 0, left_to_cross = 0;
+  for (std::uint64_t seed = 1; seed <= 2 * intervals(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const SceneStep step(seed);
+    SelfCollision::Options options;
+    options.exclude.ongoing = true;
+    SelfCollision body(step.faces, step.start, options);
+    const Within within(step, body.crossings(step.start));
+    Truth truth = truth_of(step, {});
+    const double earliest_of_all =
+        truth.empty() ? 1 : std::ranges::min_element(truth, {}, &Truth::value_type::second)->second;
+    old += std::erase_if(truth, within);
+    Crossings start = EmbeddingTest(step.mesh, step.all_start).find_all(step.all_start, 10'000);
+    std::erase_if(start.pairs, within);
+    const bool crosses = !start.pairs.empty();
+    left_to_cross += crosses;
+    const SelfCollision::Answer all = body.all_contacts(step.start, step.end),
+                                first = body.first_contact(step.start, step.end);
+    EXPECT_EQ(found(all), truth);
+    EXPECT_EQ(all.start_crossings.size(), start.pairs.size());
+    EXPECT_EQ(first.contacts.empty(), truth.empty());
+    EXPECT_EQ(body.is_free(step.start, step.end), truth.empty() && !crosses);
+    if (truth.empty()) continue;
+    const double earliest = std::ranges::min_element(truth, {}, &Truth::value_type::second)->second;
+    later += earliest > earliest_of_all;
+    EXPECT_EQ(first.time(), earliest);
+    for (const auto& [key, time] : found(first)) {
+      EXPECT_EQ(time, earliest);
+      EXPECT_TRUE(truth.contains(key));
+    }
+    const double largest = body.largest_step(step.start, step.end, 1);
+    EXPECT_NEAR(largest, crosses ? 0 : earliest, 1e-12);
+    EXPECT_LE(largest, earliest);
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(old, intervals());
+  EXPECT_GT(later, 0u);
+  EXPECT_GT(left_to_cross, 0u);
+}
+
+TEST(SelfCollision, LeavesNothingOutThatItIsNotToLookFor) {
+  const SceneStep step(1);
+  SelfCollision::Options options;
+  options.exclude.ongoing = true;
+  options.check_start = false;
+  EXPECT_THROW(SelfCollision(step.faces, step.start, options), std::invalid_argument);
 }
 
 }  // namespace

@@ -132,6 +132,8 @@ class SelfCollision::Engine {
     if (options_.threads < 1 || options_.threads > kMostThreads)
       throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
                        std::to_string(kMostThreads));
+    if (options_.exclude.ongoing && !options_.check_start)
+      throw InputError("exclude: ongoing needs to know what crosses at the start; set check_start");
     check_labels();
     thickness_ = checked_thickness();
     options_.obstacles.clear();
@@ -174,7 +176,8 @@ class SelfCollision::Engine {
 
   // Answers one step. The answer is kept until the next. With `any_contact`, it need not be the first one.
   void step(const Motion& motion, bool first, bool any_contact = false) {
-    step_itself(first ? first_ : all_, motion, any_contact);
+    step_itself(first ? first_ : all_, motion, any_contact && !options_.exclude.ongoing);
+    if (options_.exclude.ongoing && answer_.start.total > 0) leave_out_ongoing(motion, first);
     if (!obstacles_) return;
     obstacles_->step(motion, first, options_.check_start, touched_, crossed_);
     const std::optional<double> earliest = time();
@@ -218,8 +221,7 @@ class SelfCollision::Engine {
   }
 
   SelfCollision::Crossings crossings(std::span<const Vec3> pose) {
-    if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
-    return crossing_search_->find(pose, exclusions_);
+    return crossing_search().find(pose, exclusions_);
   }
 
   PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution) {
@@ -293,6 +295,10 @@ class SelfCollision::Engine {
   }
   bool is_thick() const { return !thickness_.is_zero(); }
 
+  CrossingSearch& crossing_search() {
+    if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
+    return *crossing_search_;
+  }
   CandidateSearch& search() {
     if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
     return *search_;
@@ -359,6 +365,24 @@ class SelfCollision::Engine {
     return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
       return exclusions_.excludes(mesh_, contact.pair);
     });
+  }
+
+  // Drops from the answer what lies within overlaps of the start. Where that leaves nothing of the first
+  // contact, finds the first of the others among all contacts.
+  void leave_out_ongoing(const Motion& motion, bool first) {
+    const OverlapPieces pieces = crossing_search().find_pieces(motion.start(), exclusions_);
+    const auto leave_out = [&] {
+      answer_.start.total -= std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) {
+        return pieces.find(pair.first, pair.second) != OverlapPieces::kNone;
+      });
+      return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
+        return pieces.find(mesh_, contact.pair) != OverlapPieces::kNone;
+      });
+    };
+    if (leave_out() == 0 || !first || !answer_.found.contacts.empty()) return;
+    step_itself(all_, motion, false);
+    leave_out();
+    keep_first(answer_.found);
   }
 
   static std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair) {

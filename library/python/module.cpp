@@ -72,13 +72,14 @@ PYBIND11_MODULE(_cscd, module) {
   module.doc() = "Continuous self-collision detection of deforming triangle meshes.";
 
   py::class_<SelfCollision::Exclusions>(module, "Exclusions")
-      .def(py::init([](std::vector<bool> obstacle, std::vector<int> group,
-                       std::vector<std::pair<int, int>> ignoring, std::vector<std::pair<int, int>> vertices,
-                       std::vector<std::pair<int, int>> faces, int rings, double rest_distance) {
-        return SelfCollision::Exclusions{std::move(obstacle), std::move(group), std::move(ignoring),
-                                         std::move(vertices), std::move(faces), rings,
-                                         rest_distance};
-      }));
+      .def(
+          py::init([](std::vector<bool> obstacle, std::vector<int> group,
+                      std::vector<std::pair<int, int>> ignoring, std::vector<std::pair<int, int>> vertices,
+                      std::vector<std::pair<int, int>> faces, int rings, double rest_distance, bool ongoing) {
+            return SelfCollision::Exclusions{std::move(obstacle), std::move(group), std::move(ignoring),
+                                             std::move(vertices), std::move(faces), rings,
+                                             rest_distance,       ongoing};
+          }));
 
   py::class_<SelfCollision::Contact>(module, "Contact", "Two features that touch.")
       .def_readonly("edges", &SelfCollision::Contact::edges,

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "core/base/stopwatch.h"
-#include "core/detect/start/crossings.h"
 
 namespace cscd::bench {
 namespace {
@@ -161,7 +160,8 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
       });
     }
   }
-  if (wanted.pieces || !answer.found.contacts.empty()) find_pieces(here);
+  if (wanted.pieces || !answer.found.contacts.empty())
+    here.pieces = OverlapPieces(input_.mesh, here.overlaps, here.event);
   assign_contacts(here, answer);
   std::ranges::sort(vertices);
   std::ranges::sort(pairs);
@@ -173,43 +173,13 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
   return here;
 }
 
-void OverlapEvents::find_pieces(Here& here) const {
-  for (std::size_t i = 0; i < here.event.size(); ++i) {
-    if (here.event[i] == kNone) continue;
-    const Overlap& overlap = here.overlaps.overlaps[i];
-    for_each_segment(here.overlaps.crossing, overlap, [&](const auto& segment) {
-      for (const TriangleId t : segment) here.pieces.emplace_back(t, here.event[i]);
-    });
-    for (const CrossingRegion& region : overlap.regions)
-      for (const VertexId v : region.vertices)
-        for (const TriangleId t : input_.mesh.triangles_at(v)) here.pieces.emplace_back(t, here.event[i]);
-  }
-  std::ranges::sort(here.pieces);
-  here.pieces.erase(std::unique(here.pieces.begin(), here.pieces.end()), here.pieces.end());
-}
-
-std::size_t OverlapEvents::Here::event_of(TriangleId a, TriangleId b) const {
-  const auto events_of = [&](TriangleId t) {
-    const auto [first, last] =
-        std::equal_range(pieces.begin(), pieces.end(), std::pair(t, kNone),
-                         [](const auto& one, const auto& other) { return one.first < other.first; });
-    return std::span(first, last);
-  };
-  for (const auto& entry : events_of(a))
-    for (const auto& other : events_of(b))
-      if (entry.second == other.second) return entry.second;
-  return kNone;
-}
-
 void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
   if (here.pieces.empty()) {
     here.event_of_contact.assign(answer.found.contacts.size(), kNone);
     return;
   }
   for (const Contact& contact : answer.found.contacts) {
-    std::size_t found = kNone;
-    for (const auto& [s, t] : carriers(input_.mesh, contact.pair))
-      found = std::min(found, here.event_of(s, t));
+    const std::size_t found = here.pieces.find(input_.mesh, contact.pair);
     here.event_of_contact.push_back(found);
     if (found != kNone) ++events_[found].contacts;
   }
@@ -217,7 +187,7 @@ void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
 
 void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick) {
   answer.old_pairs = std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) {
-    return here.event_of(pair.first, pair.second) != OverlapEvents::kNone;
+    return here.pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
   });
   answer.start.total -= answer.old_pairs;
   std::vector<cscd::Contact> left;

@@ -10,6 +10,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/surface_names.h"
 #include "core/crossing/overlaps.h"
+#include "core/crossing/pieces.h"
 
 namespace cscd::bench {
 
@@ -48,14 +49,9 @@ class OverlapEvents {
     // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
     // each other when the interval starts; kNone for new contacts.
     std::vector<std::size_t> event_of_contact;
-    // Only where the answer has contacts, or where they are wanted: the triangles of the pieces of each
-    // event, those that its curves run through and those that have a vertex beyond. Sorted.
-    std::vector<std::pair<TriangleId, std::size_t>> pieces;
-
-    // An event in which one of the triangles lies in the other; kNone where there is none.
-    std::size_t event_of(TriangleId a, TriangleId b) const;
+    OverlapPieces pieces;  // of each event; only where the answer has contacts, or where they are wanted
   };
-  static constexpr std::size_t kNone = ~std::size_t{0};
+  static constexpr std::size_t kNone = OverlapPieces::kNone;
   struct Wanted {
     bool distances = false;  // of all vertices, in the regions
     bool pieces = false;     // also where the answer has no contacts
@@ -72,7 +68,6 @@ class OverlapEvents {
   std::size_t not_measured() const { return not_measured_; }
 
  private:
-  void find_pieces(Here& here) const;
   void assign_contacts(Here& here, const IntervalAnswer& answer);
 
   using Mark =

@@ -95,6 +95,13 @@ class CSCD_EXPORT SelfCollision {
     std::vector<std::pair<int, int>> face_pairs;
     int rings = 0;             // vertices joined by at most so many edges do not collide
     double rest_distance = 0;  // nor do vertices that are nearer than this in the reference positions; finite
+    // Whether a step leaves out what lies within an overlap of its start (crossings()): crossings and
+    // contacts between two faces that both belong to the overlap, because a curve runs through the face or a
+    // region has a vertex of the face. What is left is new. Contacts with obstacles always count. Candidates,
+    // bounds of vertices and true_motion() keep no account of this. Needs Options::check_start. From a start
+    // with overlaps, a step takes the time of crossings() on top, and where the first contact is old, that of
+    // all_contacts().
+    bool ongoing = false;
   };
 
   struct Options {

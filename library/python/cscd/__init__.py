@@ -47,10 +47,14 @@ class Exclusions(_cscd.Exclusions):
     vertex_pairs, face_pairs: [pairs, 2] int; pairs of indices that do not collide.
     rings: vertices that are joined by at most so many edges do not collide.
     rest_distance: nor do vertices nearer than this in the reference positions.
+    ongoing: whether a step leaves out what lies within an overlap of its start (crossings()): crossings and contacts
+        between two faces that both belong to the overlap, because a curve runs through the face or a region has a vertex
+        of the face. What is left is new. Contacts with obstacles always count. candidates(), vertex_bounds() and
+        true_motion() keep no account of this. Needs check_start.
     """
 
     def __init__(self, *, obstacle=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,
-                 rest_distance=0.0):
+                 rest_distance=0.0, ongoing=False):
         marked = as_array(obstacle, "exclude, obstacle")
         if marked.ndim != 1 or (marked.size and marked.dtype.kind != "b"):
             raise ValueError("exclude, obstacle: give one boolean a vertex")
@@ -58,7 +62,7 @@ class Exclusions(_cscd.Exclusions):
                          _pairs(groups_that_ignore_each_other, "exclude, groups_that_ignore_each_other"),
                          _pairs(vertex_pairs, "exclude, vertex_pairs"), _pairs(face_pairs, "exclude, face_pairs"),
                          int(numbers(rings, "exclude, rings", INDEX)),
-                         float(numbers(rest_distance, "exclude, rest_distance", REAL)))
+                         float(numbers(rest_distance, "exclude, rest_distance", REAL)), flag(ongoing, "exclude, ongoing"))
 
 
 class SelfCollision(_cscd.SelfCollision):

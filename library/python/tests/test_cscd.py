@@ -96,6 +96,17 @@ class SelfCollision(unittest.TestCase):
         body = cscd.SelfCollision(self.faces, self.before, exclude=apart)
         self.assertTrue(body.is_free(self.before, fallen(self.before, 2)))
 
+    def test_what_lies_in_an_overlap_is_left_out(self):
+        body = cscd.SelfCollision(self.faces, self.before, exclude=cscd.Exclusions(ongoing=True))
+        inside = fallen(self.before, 1.5)
+        self.assertTrue(body.is_free(inside, self.before))
+        self.assertEqual(len(body.all_contacts(inside, self.before).start_crossings), 0)
+        self.assertFalse(body.is_free(self.before, inside))
+        with self.assertRaisesRegex(ValueError, "exclude: ongoing needs"):
+            cscd.SelfCollision(self.faces, self.before, exclude=cscd.Exclusions(ongoing=True), check_start=False)
+        with self.assertRaisesRegex(ValueError, "exclude, ongoing: give True or False"):
+            cscd.Exclusions(ongoing=1)
+
     def test_obstacles(self):
         body = cscd.SelfCollision(self.faces[4:] - 4, self.before[4:], obstacles=[(self.faces[:4], self.before[:4])])
         start = self.before[4:]
