@@ -1,6 +1,7 @@
 #include "library/crossings.h"
 
 #include "core/base/error.h"
+#include "core/crossing/length_gradient.h"
 
 namespace cscd {
 namespace {
@@ -19,7 +20,8 @@ SelfCollision::Crossings::Curve written(const CrossingCurves& all, const Crossin
 SelfCollision::Crossings::Region written(const CrossingRegion& region) {
   SelfCollision::Crossings::Region out;
   for (const VertexId v : region.vertices) out.vertices.push_back(static_cast<int>(v));
-  out.distance = region.distance;
+  out.way = region.way;
+  for (const Vec3& way : region.way) out.distance.push_back(way.norm());
   out.area = region.area;
   out.behind = region.behind;
   out.other_is_open = region.other_is_open;
@@ -43,12 +45,12 @@ bool CrossingSearch::excludes(const Exclusions& excluded, const CrossingCurves& 
   return 2 * left_out >= pairs;
 }
 
-Overlaps CrossingSearch::overlaps(std::span<const Vec3> positions, bool each_distance) {
+Overlaps CrossingSearch::overlaps(std::span<const Vec3> positions, bool each_way) {
   const Crossings pairs = pairs_.find_all(positions, kMostPairs);
   if (!pairs.all_kept())
     throw InputError("crossings: " + std::to_string(pairs.total) + " pairs of faces cross, more than " +
                      std::to_string(kMostPairs) + "; the surface has collapsed");
-  return finder_.find(positions, pairs.pairs, each_distance);
+  return finder_.find(positions, pairs.pairs, each_way);
 }
 
 OverlapPieces CrossingSearch::find_pieces(std::span<const Vec3> positions, const Exclusions& excluded) {
@@ -70,6 +72,12 @@ SelfCollision::Crossings CrossingSearch::find(std::span<const Vec3> positions, c
       one.curves.push_back(
           written(found.crossing, found.crossing.curves[static_cast<std::size_t>(curve)], positions));
     for (const CrossingRegion& region : overlap.regions) one.regions.push_back(written(region));
+    CurveLength length = length_gradient(mesh_, positions, found.crossing, overlap);
+    one.length = length.length;
+    for (const auto& [v, gradient] : length.gradient) {
+      one.vertices.push_back(static_cast<int>(v));
+      one.gradient.push_back(gradient);
+    }
     one.depth = overlap.depth.lower;
     one.depth_bound = overlap.depth.upper;
   }

@@ -24,7 +24,7 @@ class CrossingSearch {
 
  private:
   // All overlaps of a pose.
-  Overlaps overlaps(std::span<const Vec3> positions, bool each_distance);
+  Overlaps overlaps(std::span<const Vec3> positions, bool each_way);
   // Whether most of the pairs of an overlap are excluded.
   bool excludes(const Exclusions& excluded, const CrossingCurves& all, const Overlap& overlap) const;
 

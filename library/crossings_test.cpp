@@ -39,11 +39,27 @@ TEST(Crossings, SayWhichPiecesLieInEachOther) {
     EXPECT_FALSE(region.other_is_open);
     ASSERT_EQ(region.distance.size(), region.vertices.size());
     EXPECT_EQ(*std::ranges::max_element(region.distance), region.depth);
+    ASSERT_EQ(region.way.size(), region.vertices.size());
+    for (std::size_t i = 0; i < region.way.size(); ++i) EXPECT_EQ(region.way[i].norm(), region.distance[i]);
     EXPECT_NEAR(region.out.norm(), region.depth, 1e-12);
     const double side = region.vertices.front() < 162 ? 1 : -1;
     for (const int v : region.vertices)
       EXPECT_GT(side * (balls.shape.positions[static_cast<std::size_t>(v)].x() - 0.8), -0.1);
   }
+}
+
+TEST(Crossings, BecomeShorterAgainstTheGradient) {
+  TwoBalls balls;
+  SelfCollision body(balls.faces, balls.positions());
+  const SelfCollision::Crossings::Overlap before = body.crossings(balls.positions()).overlaps.at(0);
+  ASSERT_EQ(before.gradient.size(), before.vertices.size());
+  for (std::size_t i = 0; i < before.vertices.size(); ++i)
+    balls.shape.positions[static_cast<std::size_t>(before.vertices[i])] -=
+        0.01 * before.gradient[i].normalized();
+  const SelfCollision::Crossings::Overlap after = body.crossings(balls.positions()).overlaps.at(0);
+  double expected = 0;
+  for (const Eigen::Vector3d& gradient : before.gradient) expected += 0.01 * gradient.norm();
+  EXPECT_NEAR(before.length - after.length, expected, 0.5 * expected);
 }
 
 TEST(Crossings, AreNoneWhereNothingCrossesOrAllIsExcluded) {

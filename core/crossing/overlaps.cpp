@@ -56,8 +56,8 @@ OverlapFinder::OverlapFinder(const TriangleMesh& mesh)
 // The search of one pose.
 class PoseOverlaps {
  public:
-  PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> positions, bool each_distance)
-      : finder_(finder), mesh_(finder.mesh_), positions_(positions), each_distance_(each_distance) {}
+  PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> positions, bool each_way)
+      : finder_(finder), mesh_(finder.mesh_), positions_(positions), each_way_(each_way) {}
 
   Overlaps find(std::span<const CrossingPair> pairs) {
     out_.crossing = find_curves(mesh_, positions_, pairs);
@@ -306,16 +306,17 @@ class PoseOverlaps {
     depth.vertex = vertex;
     depth.nearest = nearest.triangle;
   }
+  Vec3 way(const Vec3& from, TriangleId to) const {
+    const Triangle& c = mesh_.corners(to);
+    return -nearest_of_vertex_face({from, positions_[+c[0]], positions_[+c[1]], positions_[+c[2]]}).way;
+  }
   void point_out(CrossingDepth& depth) const {
-    if (depth.nearest == TriangleId{-1}) return;
-    const Triangle& c = mesh_.corners(depth.nearest);
-    depth.out =
-        -nearest_of_vertex_face({depth.point, positions_[+c[0]], positions_[+c[1]], positions_[+c[2]]}).way;
+    if (depth.nearest != TriangleId{-1}) depth.out = way(depth.point, depth.nearest);
   }
 
   void measure(std::size_t r) {
     CrossingRegion& region = regions_[r].region;
-    if (each_distance_) region.distance.assign(region.vertices.size(), 0);
+    if (each_way_) region.way.assign(region.vertices.size(), Vec3::Zero());
     for (const std::int32_t image : regions_[r].images) {
       const std::vector<TriangleId> other =
           other_sheet(image, static_cast<std::int32_t>(r), region.other_is_open);
@@ -325,8 +326,8 @@ class PoseOverlaps {
       for (std::size_t i = region.vertices.size(); i-- > 0;) {
         if (region.image[i] != image) continue;
         const Vec3& x = positions_[+region.vertices[i]];
-        const SheetDistance::Nearest nearest = to.nearest(x, each_distance_ ? 0 : region.depth.lower);
-        if (each_distance_) region.distance[i] = nearest.distance;
+        const SheetDistance::Nearest nearest = to.nearest(x, each_way_ ? 0 : region.depth.lower);
+        if (each_way_) region.way[i] = way(x, nearest.triangle);
         deepen(region.depth, x, region.vertices[i], nearest);
       }
     }
@@ -474,7 +475,7 @@ class PoseOverlaps {
   OverlapFinder& finder_;
   const TriangleMesh& mesh_;
   std::span<const Vec3> positions_;
-  bool each_distance_;
+  bool each_way_;
   Overlaps out_;
   std::vector<std::int32_t> roots_;  // of the fragments at piercings; sorted
   std::vector<Group> groups_;        // sorted
@@ -485,9 +486,9 @@ class PoseOverlaps {
 };
 
 Overlaps OverlapFinder::find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
-                             bool each_distance) {
+                             bool each_way) {
   if (pairs.empty()) return {};
-  return PoseOverlaps(*this, positions, each_distance).find(pairs);
+  return PoseOverlaps(*this, positions, each_way).find(pairs);
 }
 
 }  // namespace cscd

@@ -39,8 +39,8 @@ struct CrossingRegion {
   bool other_is_open = false;
   std::vector<VertexId> vertices;   // from the curves inwards
   std::vector<std::int32_t> image;  // [vertices]
-  std::vector<double> distance;     // [vertices], of each to the other sheet; only where it was asked for
-  double area = 0;                  // a third of each triangle for each of its corners here
+  std::vector<Vec3> way;  // [vertices], from each to the nearest point of the other sheet; if asked for
+  double area = 0;        // a third of each triangle for each of its corners here
   CrossingDepth depth;
 };
 
@@ -70,10 +70,9 @@ class OverlapFinder {
  public:
   explicit OverlapFinder(const TriangleMesh& mesh);  // `mesh` must outlive the object
 
-  // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_distance` every vertex of
-  // every region gets its distance.
-  Overlaps find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
-                bool each_distance = false);
+  // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_way` every vertex of every
+  // region gets its way out.
+  Overlaps find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs, bool each_way = false);
 
  private:
   friend class PoseOverlaps;

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "core/crossing/length_gradient.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/exact/static_contact.h"
 #include "core/elementary/exact/triangles_meet.h"
@@ -176,6 +177,13 @@ TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
     } else if (found.crossing.curves.size() == 1) {
       EXPECT_NEAR(overlap.depth.lower, deepest, 1e-12);
     }
+    for (const CrossingRegion& region : overlap.regions)
+      for (std::size_t i = 0; i < region.vertices.size(); ++i) {
+        const Vec3& from = x[+region.vertices[i]];
+        EXPECT_GE(region.way[i].norm(), distance_to_other(from, region.own) - 1e-12);
+        EXPECT_LE(distance_to_other(from + region.way[i], region.own), 1e-12)
+            << "a way ends on the other sheet";
+      }
     EXPECT_GE(overlap.depth.lower, deepest - 1e-12);
     EXPECT_LE(overlap.depth.lower, overlap.depth.upper);
     if (overlap.depth.vertex != VertexId{-1}) {
@@ -199,6 +207,46 @@ TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
   EXPECT_GT(with_regions, count() / 2);
   EXPECT_GT(deep, count());
   EXPECT_GT(between, count() / 50);
+}
+
+// The gradient of the length of all curves against difference quotients, where the curves stay between the
+// same triangles.
+TEST(Overlaps, SayHowCurvesGrow) {
+  int compared = 0;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    Pushed pushed(static_cast<unsigned>(n));
+    const TriangleMesh mesh = pushed.shapes.mesh();
+    const std::vector<Vec3>& x = pushed.shapes.positions;
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, x);
+    std::vector<Vec3> move(x.size());
+    for (Vec3& way : move) way = pushed.draw();
+    OverlapFinder finder(mesh);
+    const auto length_at = [&](double step, double* slope) {
+      std::vector<Vec3> moved = x;
+      for (std::size_t v = 0; v < x.size(); ++v) moved[v] += step * move[v];
+      const Overlaps found = finder.find(moved, pairs);
+      double length = 0;
+      for (const Overlap& overlap : found.overlaps) {
+        const CurveLength all = length_gradient(mesh, moved, found.crossing, overlap);
+        length += all.length;
+        if (slope == nullptr) continue;
+        for (const auto& [v, gradient] : all.gradient) *slope += gradient.dot(move[+v]);
+      }
+      return length;
+    };
+    double slope = 0;
+    constexpr double kStep = 1e-6;
+    const double length = length_at(0, &slope), before = length_at(-kStep, nullptr),
+                 after = length_at(kStep, nullptr);
+    // Where the length bends within the step, curves have come to other triangles, or nearly so.
+    const double bend = std::abs(after + before - 2 * length) / kStep;
+    if (length == 0 || bend > 1e-3) continue;
+    EXPECT_NEAR((after - before) / (2 * kStep), slope, 1e-3 * (1 + std::abs(slope)));
+    ++compared;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(compared, count() / 2);
 }
 
 // On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane.

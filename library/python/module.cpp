@@ -41,6 +41,12 @@ py::array_t<int> table_of(const std::vector<std::array<int, kWidth>>& rows) {
   return out;
 }
 
+py::array_t<double> table_of(const std::vector<Eigen::Vector3d>& rows) {
+  py::array_t<double> out({rows.size(), std::size_t{3}});
+  if (!rows.empty()) std::copy_n(rows.front().data(), rows.size() * 3, out.mutable_data());
+  return out;
+}
+
 template <class Number>
 py::array_t<Number> array_of(const std::vector<Number>& numbers) {
   return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
@@ -165,13 +171,7 @@ PYBIND11_MODULE(_cscd, module) {
           "faces", [](const Crossings::Curve& c) { return table_of(c.faces); },
           "[segments, 2] int: the face of one sheet and of the other.")
       .def_property_readonly(
-          "points",
-          [](const Crossings::Curve& c) {
-            py::array_t<double> out({c.points.size(), std::size_t{3}});
-            for (std::size_t i = 0; i < c.points.size(); ++i)
-              std::copy_n(c.points[i].data(), 3, out.mutable_data(static_cast<py::ssize_t>(i), 0));
-            return out;
-          },
+          "points", [](const Crossings::Curve& c) { return table_of(c.points); },
           "[segments, 3] float, or one more row where the curve is not closed: the ends of the segments.");
   py::class_<Crossings::Region>(module, "Region", "What curves cut off one sheet.")
       .def_property_readonly(
@@ -179,7 +179,11 @@ PYBIND11_MODULE(_cscd, module) {
           "[vertices] int, from the curves inwards.")
       .def_property_readonly(
           "distances", [](const Crossings::Region& r) { return array_of(r.distance); },
-          "[vertices] float: of each to what the same curves cut off the other sheet.")
+          "[vertices] float: the lengths of the ways.")
+      .def_property_readonly(
+          "ways", [](const Crossings::Region& r) { return table_of(r.way); },
+          "[vertices, 3] float: from each to the nearest point of what the same curves cut off the other "
+          "sheet. A repair moves vertices along their ways.")
       .def_readonly("area", &Crossings::Region::area)
       .def_readonly("behind", &Crossings::Region::behind,
                     "Whether it lies behind the faces of the other sheet; otherwise it is the smaller side.")
@@ -194,6 +198,13 @@ PYBIND11_MODULE(_cscd, module) {
       .def_readonly("curves", &Crossings::Overlap::curves, "List of Curve.")
       .def_readonly("regions", &Crossings::Overlap::regions, "List of Region, deepest first.")
       .def_readonly("depth", &Crossings::Overlap::depth)
+      .def_readonly("length", &Crossings::Overlap::length, "Of the curves together.")
+      .def_property_readonly(
+          "vertices", [](const Crossings::Overlap& o) { return array_of(o.vertices); },
+          "[vertices] int, the corners of the edges and faces that pierce each other along the curves.")
+      .def_property_readonly(
+          "gradient", [](const Crossings::Overlap& o) { return table_of(o.gradient); },
+          "[vertices, 3] float: of the length. Against it, vertices move to shorten the curves.")
       .def_readonly("depth_bound", &Crossings::Overlap::depth_bound);
   py::class_<Crossings>(module, "Crossings", "How a pose crosses itself.")
       .def_readonly("overlaps", &Crossings::overlaps, "List of Overlap, deepest first.")

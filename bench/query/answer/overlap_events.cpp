@@ -138,7 +138,7 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
       answer.start.total + answer.explained_pairs.size() + answer.ignored_pairs.size();
   not_measured_ += crossing > kMostPairs;
   if (answer.start.total > 0 && crossing <= kMostPairs) {
-    here.overlaps = finder_.find(start, all_pairs(answer), wanted.distances);
+    here.overlaps = finder_.find(start, all_pairs(answer), wanted.ways);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);
       if (!is_event(here.overlaps, overlap, answer)) continue;

@@ -53,8 +53,8 @@ class OverlapEvents {
   };
   static constexpr std::size_t kNone = OverlapPieces::kNone;
   struct Wanted {
-    bool distances = false;  // of all vertices, in the regions
-    bool pieces = false;     // also where the answer has no contacts
+    bool ways = false;    // of all vertices, in the regions
+    bool pieces = false;  // also where the answer has no contacts
   };
   Here add(const IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
   Here add(const IntervalAnswer& answer, std::span<const Vec3> start) { return add(answer, start, {}); }

@@ -11,7 +11,7 @@ void OverlapRecording::add(const OverlapEvents::Here& here) {
     for (const CrossingRegion& region : here.overlaps.overlaps[i].regions)
       for (std::size_t k = 0; k < region.vertices.size(); ++k) {
         vertex_.push_back(static_cast<std::int32_t>(region.vertices[k]));
-        depth_.push_back(static_cast<float>(region.distance[k]));
+        depth_.push_back(static_cast<float>(region.way[k].norm()));
       }
   }
   count_.push_back(static_cast<std::uint32_t>(vertex_.size() - before));

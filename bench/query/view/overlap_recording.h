@@ -12,7 +12,7 @@ namespace cscd::bench {
 // Collects which vertices lie in the other sheet of an event at the start of each interval, and how deep.
 class OverlapRecording {
  public:
-  // Adds the next interval, whose regions have their distances.
+  // Adds the next interval, whose regions have the ways of their vertices.
   void add(const OverlapEvents::Here& here);
   void write(Sections& sections) const;
 

@@ -189,16 +189,19 @@ class CSCD_EXPORT SelfCollision {
     };
     // What curves cut off one sheet.
     struct Region {
-      std::vector<int> vertices;     // from the curves inwards
-      std::vector<double> distance;  // of each to what the same curves cut off the other sheet
-      double area;                   // a third of each face for each of its corners here
+      std::vector<int> vertices;  // from the curves inwards
+      // Of each vertex, the way to the nearest point of what the same curves cut off the other sheet, and how
+      // long it is. A repair moves vertices along their ways.
+      std::vector<Eigen::Vector3d> way;
+      std::vector<double> distance;
+      double area;  // a third of each face for each of its corners here
       bool behind;  // behind the faces of the other sheet, which is closed; otherwise the smaller side
       // What is cut off the other sheet is not bounded. Distances are those to the other component, or within
       // one component no more than upper bounds; then `depth` is 0.
       bool other_is_open;
       double depth, depth_bound;  // the largest distance, and what no point of the region exceeds
       int deepest;                // the vertex with the largest distance
-      Eigen::Vector3d out;        // the way from there to the nearest point of the other sheet
+      Eigen::Vector3d out;        // its way
     };
     // Curves and regions that hang together. Without regions, no vertex lies in the other sheet; the depth is
     // then that of points between two piercings of an edge.
@@ -206,6 +209,12 @@ class CSCD_EXPORT SelfCollision {
       std::vector<Curve> curves;
       std::vector<Region> regions;  // deepest first
       double depth, depth_bound;
+      // The length of the curves, and its gradient: against it, vertices move to shorten the curves.
+      // `vertices` are the corners of the edges and faces that pierce each other along the curves. A repair
+      // needs this where there are no regions, or where the other sheet is open.
+      double length;
+      std::vector<int> vertices;
+      std::vector<Eigen::Vector3d> gradient;  // [vertices]
     };
     std::vector<Overlap> overlaps;  // deepest first
     std::size_t touching = 0;       // pairs of faces that meet without passing through each other

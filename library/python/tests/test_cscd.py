@@ -79,6 +79,10 @@ class SelfCollision(unittest.TestCase):
         self.assertGreaterEqual(found[0].depth_bound, found[0].depth)
         region = found[0].regions[0]
         self.assertEqual(region.distances.max(), region.depth)
+        np.testing.assert_allclose(np.linalg.norm(region.ways, axis=1), region.distances)
+        self.assertEqual(found[0].gradient.shape, (len(found[0].vertices), 3))
+        np.testing.assert_allclose(found[0].length,
+                                   np.linalg.norm(curve.points - np.roll(curve.points, 1, axis=0), axis=1).sum())
         self.assertIn(region.deepest, region.vertices)
         np.testing.assert_allclose(np.linalg.norm(region.out), region.depth)
         with self.assertRaisesRegex(ValueError, "positions"):
