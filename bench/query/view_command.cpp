@@ -107,7 +107,8 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
         touches = touches || !answer.found.contacts.empty();
         // All strategies see the same starts.
         if (contestant == contestants.front())
-          overlaps.add(events.add(answer, input.clip->load(i).motion.start(), {.ways = true}));
+          overlaps.add(events.add(answer, input.clip->load(i).motion.start(), {.ways = true}),
+                       input.clip->load(i).motion.start());
       }
       if (touches && input.clip->header().predicted) clip.add_predicted_end(input.clip->load(i).motion.end());
       progress.advance();

@@ -49,7 +49,7 @@ export class Captions {
       }
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
-    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), item(YELLOW, "lies in another piece"), item(RED, "deepest; lines: where they cross"));
+    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), item(YELLOW, "lies in another piece"), item(RED, "deepest; lines: where pieces cross"));
     else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
     else if (mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
     else if (mode === "place" || mode === "part") rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[mode]));
@@ -66,7 +66,8 @@ export class Captions {
       const { offset } = strategy.observers[Math.min(cover, strategy.observers.length - 1)];
       rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}${strategy.has_patches ? "" : ": points, or bones as segments"}`));
     }
-    if (chosen && chosen.contact !== undefined) rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
+    if (chosen && chosen.event) rows.push(item(BLUE, "lines of the chosen place"));
+    if (chosen && chosen.contact !== undefined && mode !== "depth") rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     byId("legend").replaceChildren(...rows);
   }
 

@@ -91,7 +91,7 @@ export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.c
 // An event of the summary, with intervals that count from the recording's first.
 function eventOf({ clip, strategies }, number) {
   const event = strategies[0].summary.events[number], from = (moment) => moment.interval - clip.first_interval;
-  return { first: from(event.begins), deepest: from(event.deepest), last: from(event.ends), point: event.point, depths: event.depth_at };
+  return { number, first: from(event.begins), deepest: from(event.deepest), last: from(event.ends), point: event.point, depths: event.depth_at };
 }
 
 // Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
@@ -136,6 +136,13 @@ export async function loadRecording() {
     insideOffset: offsets(arrays.inside_count),  // [intervals + 1], of what lies in another piece of the surface at the start
     insideVertex: arrays.inside_vertex,
     insideDepth: arrays.inside_depth,
+    // The curves of interval i have the numbers curveOffset[i] to curveOffset[i + 1] - 1. Each point lies on an edge, at a share
+    // of the way along it.
+    curveOffset: offsets(arrays.curve_count),
+    pointOffset: offsets(arrays.curve_points),
+    curveEvent: arrays.curve_event,
+    curveEdge: arrays.curve_edge,
+    curveShare: arrays.curve_share,
     events: header.events.map(({ event, text }) => ({ text, ...eventOf(header, event) })),
     strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
     // A unit of observers' places is four steps of the grid.

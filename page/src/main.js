@@ -213,7 +213,7 @@ class Viewer {
     this.shown.forEach((s, i) => {
       const look = stage.looks[i];
       this.painter.paint(look, s, mode, interval);
-      this.marker.mark(look.marks, s, interval, s === this.strategy ? chosen : null, this.normalsShown);
+      this.marker.mark(look.marks, s, interval, s === this.strategy ? chosen : null, this.normalsShown, mode);
       this.marker.markObservers(look.marks, s, mode, interval, pose.t, this.observersShown);
     });
     stage.setInsetPoint(this.pointOf(this.chosen));

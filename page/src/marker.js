@@ -1,6 +1,5 @@
 // Marks in the scene: points, features and normals of contacts, lines where triangles cross, and observers.
 import * as THREE from "three";
-import { crossingSegment } from "./crossing.js";
 import { coverOf } from "./painter.js";
 
 const MOST_NORMALS = 40;  // beside that of the chosen contact
@@ -34,10 +33,11 @@ export class Marker {
     return sum.divideScalar(6);
   }
 
-  // Marks what strategy number `index` says of an interval; `chosen` is the chosen moment of it, or null.
-  mark(marks, index, interval, chosen, normals) {
+  // Marks what strategy number `index` says of an interval; `chosen` is the chosen moment of it, or null. Where colours show
+  // depths, contacts would hide the curves.
+  mark(marks, index, interval, chosen, normals, mode) {
     const strategy = this.recording.strategies[index], { surface } = this.stage;
-    const from = strategy.contactOffset[interval], to = strategy.contactOffset[interval + 1];
+    const from = strategy.contactOffset[interval], to = mode === "depth" ? from : strategy.contactOffset[interval + 1];
     const place = new THREE.Vector3();
     const edge = (out, a, b) => {
       surface.point(a, place).toArray(out, out.length);
@@ -71,22 +71,23 @@ export class Marker {
     if (normals) for (let c = from; c < to; c += Math.ceil((to - from) / MOST_NORMALS)) addNormal(c, 0.02);
     marks.setContacts(points, weights);
     marks.setChosen(at);
-    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal })) marks.setLines(name, numbers);
-    const crossings = this.crossings(strategy, interval);
-    marks.setLines("crossings", crossings);
-    marks.setLines("crossingGlow", crossings);
+    const crossings = this.curves(interval);
+    if (chosen && chosen.event) first.push(...this.curves(interval, chosen.event.number));
+    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow: crossings })) marks.setLines(name, numbers);
   }
 
-  // The segments in which triangles cross at the start of an interval.
-  crossings(strategy, interval) {
-    const { corners } = this.recording, segments = [];
-    for (let i = strategy.crossingOffset[interval]; i < strategy.crossingOffset[interval + 1]; ++i) {
-      const [a, b] = [0, 1].map((side) => {
-        const t = strategy.crossing[2 * i + side];
-        return corners.subarray(3 * t, 3 * t + 3);
-      });
-      const segment = crossingSegment(this.stage.surface.positions, a, b);
-      if (segment) segments.push(...segment);
+  // The segments of the curves in which the surface crosses itself at the start of an interval, of one event or of all.
+  curves(interval, event) {
+    const { curveOffset, curveEvent, pointOffset, curveEdge, curveShare } = this.recording, { surface } = this.stage, segments = [];
+    const from = new THREE.Vector3(), to = new THREE.Vector3();
+    for (let c = curveOffset[interval]; c < curveOffset[interval + 1]; ++c) {
+      if (event !== undefined && curveEvent[c] !== event) continue;
+      for (let i = pointOffset[c]; i < pointOffset[c + 1]; ++i) {
+        surface.point(curveEdge[2 * i], from).lerp(surface.point(curveEdge[2 * i + 1], to), curveShare[i] / 65535);
+        from.toArray(segments, segments.length);
+        // Each point but the ends belongs to two segments.
+        if (i > pointOffset[c] && i + 1 < pointOffset[c + 1]) from.toArray(segments, segments.length);
+      }
     }
     return segments;
   }

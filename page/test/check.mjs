@@ -192,6 +192,18 @@ try {
     require((await page.evaluate(() => window.cscd.position)) === events[Math.min(10, events.length) - 1], "an event does not lead to its deepest frame");
     const deep = await look();
     await picture("event");
+    // Its curves are drawn, closed or not, and those of other events with them.
+    const curves = await page.evaluate(() => {
+      const { recording, chosen, stage } = window.cscd, { curveOffset, pointOffset, curveEvent } = recording, interval = window.cscd.interval();
+      const drawn = (name) => (stage.looks[0].marks[name].visible ? stage.looks[0].marks[name].geometry.attributes.instanceStart.count : 0);
+      let all = 0, own = 0;
+      for (let c = curveOffset[interval]; c < curveOffset[interval + 1]; ++c) {
+        all += pointOffset[c + 1] - pointOffset[c] - 1;
+        if (curveEvent[c] === chosen.event.number) own += pointOffset[c + 1] - pointOffset[c] - 1;
+      }
+      return { all, own, drawn: drawn("crossings"), chosen: drawn("first") };
+    });
+    require(curves.own > 0 && curves.drawn === curves.all && curves.chosen === curves.own, `curves of an event are not drawn: ${JSON.stringify(curves)}`);
     await page.locator("#modes button[value=place], #modes button[value=often]").first().click();
     require(different(deep, await look()) > 0, "an event is not coloured by its depth");
   }
