@@ -11,6 +11,7 @@
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/clip_answer.h"
+#include "bench/query/answer/overlap_events.h"
 #include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
@@ -95,9 +96,12 @@ void export_mesh_cache(Input& input, const fs::path& output, const std::string& 
   std::printf("%s, faces in %s", output.string().c_str(), files.name(faces).c_str());
 }
 
-// What is known about the triangles in one interval. [triangles] each, and [contacts].
+// What is known of one interval. [triangles] each, [contacts], and [curves].
 struct IntervalMarks {
   std::vector<float> touches, crosses;
+  std::vector<float> depth;  // [vertices], in another piece of the surface at the start; 0 in none
+  std::vector<std::vector<Vec3>> curves;  // of events; the first point of a closed one comes last, too
+  std::vector<float> event;
   // Empty without observers. The clusters are those of the covers of drvbc_fast; -1 where there is none.
   std::vector<float> cluster, positive, second_cover, third_cover, patch;
   std::vector<Vec3> points;
@@ -112,6 +116,8 @@ class Marker {
         strategy_(default_strategy(input, false)),
         elementary_(elementary_test_named("filtered_exact")),
         answerer_(prepared_input(input, strategy_), strategy_, elementary_, {}),
+        names_(input),
+        events_(input, names_),
         observer_(strategy_.make(input.setup(elementary_))) {}
 
   IntervalMarks mark(std::size_t interval) {
@@ -136,6 +142,7 @@ class Marker {
     for (std::size_t t = 0; t < triangles; ++t) marks.touches[t] = touched[t];
     for (const CrossingPair& pair : answer.start.pairs)
       marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
+    add_overlaps(events_.add(answer, moving.motion.start(), {.ways = true}), moving.motion.start(), marks);
     ContactSet ignored;
     observer_.detector->detect({moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr},
                                ignored);
@@ -153,6 +160,28 @@ class Marker {
   }
 
  private:
+  void add_overlaps(const OverlapEvents::Here& here, std::span<const Vec3> start,
+                    IntervalMarks& marks) const {
+    marks.depth.resize(input_.mesh.vertex_count());
+    for (std::size_t i = 0; i < here.event.size(); ++i) {
+      if (here.event[i] == OverlapEvents::kNone) continue;
+      const Overlap& overlap = here.overlaps.overlaps[i];
+      for (const CrossingRegion& region : overlap.regions)
+        for (std::size_t k = 0; k < region.vertices.size(); ++k) {
+          float& depth = marks.depth[+region.vertices[k]];
+          depth = std::max(depth, static_cast<float>(region.way[k].norm()));
+        }
+      for (const std::int32_t c : overlap.curves) {
+        const CrossingCurve& curve = here.overlaps.crossing.curves[static_cast<std::size_t>(c)];
+        std::vector<Vec3>& points = marks.curves.emplace_back();
+        for (const CrossingCurve::Node& node : curve.nodes)
+          points.push_back(here.overlaps.crossing.point(node, start));
+        if (curve.closed()) points.push_back(points.front());
+        marks.event.push_back(static_cast<float>(here.event[i]));
+      }
+    }
+  }
+
   static Input& prepared_input(Input& input, const Strategy& strategy) {
     input.use_bones = gets_bones(strategy, input.clip->interval_count());
     return input;
@@ -161,6 +190,8 @@ class Marker {
   const Strategy& strategy_;
   const ElementaryTest& elementary_;
   Answerer answerer_;
+  SurfaceNames names_;
+  OverlapEvents events_;
   Prepared observer_;
 };
 
@@ -171,6 +202,8 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
   for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, ".vtp"));
   const fs::path contacts = output.parent_path() / (output.stem().string() + ".contacts.pvd");
   for (std::size_t f = 0; f < frames; ++f) files.add(numbered(contacts, f, frames, ".vtp"));
+  const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.pvd");
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(curves, f, frames, ".vtp"));
 
   Marker marker(input);
   std::vector<scenes::VtkMoment> moments;
@@ -191,17 +224,23 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     cells("second_cover", marks.second_cover);
     cells("third_cover", marks.third_cover);
     cells("patch", marks.patch);
+    surface.add_to_points("depth",
+                          marks.depth.empty() ? std::vector<float>(input.mesh.vertex_count()) : marks.depth);
+    scenes::VtkSurface lines(marks.curves);
+    lines.add("event", marks.event);
     scenes::VtkSurface points(marks.points, {});
     points.add("time_in_interval", marks.time);
     points.add("two_edges", marks.kind);
     points.add("normal", marks.normal, 3);
     files.write(1 + f, surface.text());
     files.write(1 + frames + f, points.text());
+    files.write(1 + 2 * frames + f, lines.text());
     const std::size_t interval = last ? f - 1 : f;
     const ClipMoment moment{interval, last ? 1.0 : 0.0};
     const double time = second_of(input, moment).value_or(static_cast<double>(f) / fps_of(input));
     moments.push_back({time, 0, files.name(1 + f)});
     moments.push_back({time, 1, files.name(1 + frames + f)});
+    moments.push_back({time, 2, files.name(1 + 2 * frames + f)});
     progress.advance();
   }
   files.write(list, scenes::to_pvd(moments));
@@ -226,7 +265,9 @@ void export_usd(Input& input, const fs::path& output, bool force) {
     std::vector<std::uint8_t> colour(triangles, 0);
     for (std::size_t t = 0; t < marks.touches.size(); ++t)
       colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
-    surface.append(input.clip->load_frame(f).positions, colour, kPalette, marks.points);
+    surface.append(input.clip->load_frame(f).positions, colour, kPalette,
+                   marks.depth.empty() ? std::vector<float>(input.mesh.vertex_count()) : marks.depth,
+                   marks.points, marks.curves);
     progress.advance();
   }
   file.commit(surface.text(0.004 * (high - low).norm()));

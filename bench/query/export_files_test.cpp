@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "bench/testing/test_queries.h"
@@ -91,7 +92,7 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
   }
 }
 
-TEST_F(ExportFiles, VtkReadsSurfaceAndContacts) {
+TEST_F(ExportFiles, VtkReadsSurfaceContactsAndCurves) {
   const json query = answer("figure.glb --clip hug");
   ASSERT_EQ(run("cscd export figure.glb --clip hug p.pvd").status, 0);
   const std::string out = python("vtkmodules.vtkIOXML", R"(
@@ -104,25 +105,36 @@ for item in tree.parse("p.pvd").getroot().iter("DataSet"):
     reader.SetFileName(item.get("file"))
     reader.Update()
     data = reader.GetOutput()
-    arrays = data.GetCellData() if item.get("part") == "0" else data.GetPointData()
+    arrays = data.GetPointData() if item.get("part") == "1" else data.GetCellData()
     names = [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())]
     total = {n: sum(arrays.GetArray(n).GetValue(i) for i in range(arrays.GetArray(n).GetNumberOfTuples())) for n in names if n != "normal"}
+    if item.get("part") == "0":
+        total["deepest"] = data.GetPointData().GetArray("depth").GetRange()[1]
+    if item.get("part") == "2" and data.GetNumberOfLines() != data.GetNumberOfCells():
+        raise ValueError("curves are no lines")
     rows.append([item.get("part"), float(item.get("timestep")), data.GetNumberOfPoints(), data.GetNumberOfCells(), total])
 print(json.dumps(rows)))");
   if (out == "skip") GTEST_SKIP() << "Debian's python3-vtk9 is not installed";
   const json rows = json::parse(out);
   const json& intervals = query["intervals"];
-  ASSERT_EQ(rows.size(), 2 * (intervals.size() + 1));
+  ASSERT_EQ(rows.size(), 3 * (intervals.size() + 1));
   double touched = 0;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    EXPECT_EQ(rows[2 * i + 1][2], intervals[i]["contacts"].size()) << i;
-    EXPECT_EQ(rows[2 * i][3], query["import"]["chosen_triangles"]);
-    EXPECT_NEAR(rows[2 * i][1].get<double>(), intervals[i]["seconds"].get<double>(), 1e-6);
-    touched += rows[2 * i][4]["touches"].get<double>();
+    EXPECT_EQ(rows[3 * i + 1][2], intervals[i]["contacts"].size()) << i;
+    EXPECT_EQ(rows[3 * i][3], query["import"]["chosen_triangles"]);
+    EXPECT_NEAR(rows[3 * i][1].get<double>(), intervals[i]["seconds"].get<double>(), 1e-6);
+    touched += rows[3 * i][4]["touches"].get<double>();
     for (const char* array : {"cluster", "positive", "second_cover", "third_cover", "patch"})
-      EXPECT_TRUE(rows[2 * i][4].contains(array)) << array;
+      EXPECT_TRUE(rows[3 * i][4].contains(array)) << array;
   }
   EXPECT_GT(touched, 0);
+  ASSERT_FALSE(query["summary"]["events"].empty());
+  for (const json& event : query["summary"]["events"]) {
+    const std::size_t at = event["deepest"]["interval"];
+    EXPECT_GE(rows[3 * at + 2][3], event["curves"]) << "curves of the deepest start";
+    EXPECT_GT(rows[3 * at + 2][2], rows[3 * at + 2][3]);
+    EXPECT_GE(rows[3 * at][4]["deepest"].get<double>(), event["depth"]["at_least"].get<double>() - 1e-6);
+  }
 }
 
 TEST_F(ExportFiles, MeshioReadsObjAndPly) {
@@ -180,6 +192,12 @@ TEST_F(ExportFiles, UsdHoldsEveryFrame) {
   EXPECT_EQ(std::count(usd.begin(), usd.end(), '{'), std::count(usd.begin(), usd.end(), '}'));
   EXPECT_EQ(std::count(usd.begin(), usd.end(), '['), std::count(usd.begin(), usd.end(), ']'));
   EXPECT_NE(usd.find("(0.899999976, 0.620000005, 0)"), std::string::npos) << "no triangle touches";
+  const auto samples = [&](const std::string& name) {
+    const std::size_t from = usd.find(name + ".timeSamples");
+    return usd.substr(from, usd.find('}', from) - from);
+  };
+  EXPECT_TRUE(std::regex_search(samples("primvars:depth"), std::regex(", 0\\.[0-9]+"))) << "nothing is deep";
+  EXPECT_TRUE(std::regex_search(samples("curveVertexCounts"), std::regex("\\[[0-9]"))) << "nothing crosses";
 }
 
 }  // namespace

@@ -104,10 +104,14 @@ TEST(UsdFiles, WriteColoursWhereTheyChange) {
   UsdSurface surface(kTriangles, 24);
   constexpr UsdSurface::Colour kPalette[] = {{0, 0, 0}, {1, 0, 0}};
   for (const std::uint8_t second : {0, 0, 1})
-    surface.append(kPositions, std::vector<std::uint8_t>{0, second}, kPalette, {});
+    surface.append(kPositions, std::vector<std::uint8_t>{0, second}, kPalette,
+                   std::vector<float>{0, 0, 0, 0.5F}, {}, std::vector<std::vector<Vec3>>{kPositions});
   const std::string text = surface.text(0.1);
   EXPECT_NE(text.find("timeCodesPerSecond = 24"), std::string::npos);
   EXPECT_NE(text.find("int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]"), std::string::npos);
+  EXPECT_NE(text.find("float[] primvars:depth.timeSamples = {\n            0: [0, 0, 0, 0.5],\n    }"),
+            std::string::npos);
+  EXPECT_NE(text.find("int[] curveVertexCounts.timeSamples = {\n            0: [4],"), std::string::npos);
   const std::string colours = text.substr(text.find("displayColor.timeSamples"), 200);
   EXPECT_NE(colours.find("0: [(0, 0, 0), (0, 0, 0)],\n            2: [(0, 0, 0), (1, 0, 0)]"),
             std::string::npos)

@@ -38,7 +38,8 @@ UsdSurface::UsdSurface(std::span<const Triangle> triangles, double fps) : fps_(f
 }
 
 void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
-                        std::span<const Colour> palette, std::span<const Vec3> marks) {
+                        std::span<const Colour> palette, std::span<const float> depth,
+                        std::span<const Vec3> marks, std::span<const std::vector<Vec3>> curves) {
   const std::string time = "            " + std::to_string(frames_++) + ": ";
   const auto vector_into = [](std::string& out) { return [&out](const Vec3& x) { append_vector(x, out); }; };
   points_ += time;
@@ -55,6 +56,30 @@ void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::ui
   marks_ += time;
   append_list(marks, vector_into(marks_), marks_);
   marks_ += ",\n";
+  std::vector<Vec3> curve_points;
+  for (const std::vector<Vec3>& curve : curves)
+    curve_points.insert(curve_points.end(), curve.begin(), curve.end());
+  curve_counts_ += time;
+  append_list(
+      curves, [&](const std::vector<Vec3>& curve) { curve_counts_ += std::to_string(curve.size()); },
+      curve_counts_);
+  curve_counts_ += ",\n";
+  curve_points_ += time;
+  append_list(curve_points, vector_into(curve_points_), curve_points_);
+  curve_points_ += ",\n";
+  if (!std::ranges::equal(depth, last_depth_)) {
+    last_depth_.assign(depth.begin(), depth.end());
+    depths_ += time;
+    append_list(
+        depth,
+        [&](float d) {
+          char number[32];
+          std::snprintf(number, sizeof number, "%.9g", static_cast<double>(d));
+          depths_ += number;
+        },
+        depths_);
+    depths_ += ",\n";
+  }
   if (std::ranges::equal(colour, last_colour_)) return;
   last_colour_.assign(colour.begin(), colour.end());
   colours_ += time;
@@ -84,12 +109,23 @@ std::string UsdSurface::text(double mark_width) const {
   samples("point3f[] points", points_);
   out += "    color3f[] primvars:displayColor (\n        interpolation = \"uniform\"\n    )\n";
   samples("color3f[] primvars:displayColor", colours_);
+  out += "    float[] primvars:depth (\n        interpolation = \"vertex\"\n    )\n";
+  samples("float[] primvars:depth", depths_);
   out += "}\n\ndef Points \"contacts\"\n{\n";
   samples("point3f[] points", marks_);
-  std::snprintf(number, sizeof number, "%.9g", mark_width);
-  out += std::string("    float[] widths = [") + number +
-         "] (\n        interpolation = \"constant\"\n    )\n" +
-         "    color3f[] primvars:displayColor = [(0, 0.447, 0.698)]\n}\n";
+  const auto look = [&](double width, const char* colour) {
+    std::snprintf(number, sizeof number, "%.9g", width);
+    out += std::string("    float[] widths = [") + number +
+           "] (\n        interpolation = \"constant\"\n    )\n    color3f[] primvars:displayColor = [" +
+           colour + "]\n}\n";
+  };
+  look(mark_width, "(0, 0.447, 0.698)");
+  out +=
+      "\ndef BasisCurves \"crossings\"\n{\n    uniform token type = \"linear\"\n    uniform token wrap = "
+      "\"nonperiodic\"\n";
+  samples("int[] curveVertexCounts", curve_counts_);
+  samples("point3f[] points", curve_points_);
+  look(mark_width / 2, "(0.84, 0.37, 0)");
   return out;
 }
 

@@ -58,38 +58,59 @@ std::string VtkSurface::array(const std::string& attributes, std::span<const Val
   return element;
 }
 
-VtkSurface::VtkSurface(std::span<const Vec3> points, std::span<const Triangle> triangles)
-    : by_themselves_(triangles.empty()),
-      points_count_(points.size()),
-      cells_count_(by_themselves_ ? points.size() : triangles.size()) {
+void VtkSurface::set_cells(const char* kind, std::span<const Vec3> points,
+                           std::span<const std::int64_t> corners, std::span<const std::int64_t> ends) {
+  kind_ = kind;
+  points_count_ = points.size();
+  cells_count_ = ends.size();
   const auto* numbers = reinterpret_cast<const double*>(points.data());
   points_ = array(named("Points", 3), std::span<const double>(numbers, 3 * points.size()));
+  cells_ = array("Name=\"connectivity\"", corners);
+  cells_ += array("Name=\"offsets\"", ends);
+}
+
+VtkSurface::VtkSurface(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   std::vector<std::int64_t> corners, ends;
-  for (const Triangle& triangle : triangles)
+  for (const Triangle& triangle : triangles) {
     for (const VertexId v : triangle) corners.push_back(static_cast<std::int64_t>(v));
-  if (by_themselves_) {
-    corners.resize(points.size());
-    std::iota(corners.begin(), corners.end(), 0);
+    ends.push_back(static_cast<std::int64_t>(corners.size()));
   }
-  for (std::size_t c = 1; c <= cells_count_; ++c)
-    ends.push_back(static_cast<std::int64_t>(by_themselves_ ? c : 3 * c));
-  cells_ = array("Name=\"connectivity\"", std::span<const std::int64_t>(corners));
-  cells_ += array("Name=\"offsets\"", std::span<const std::int64_t>(ends));
+  if (triangles.empty()) {
+    corners.resize(points.size());
+    ends.resize(points.size());
+    std::iota(corners.begin(), corners.end(), 0);
+    std::iota(ends.begin(), ends.end(), 1);
+  }
+  set_cells(triangles.empty() ? "Verts" : "Polys", points, corners, ends);
+}
+
+VtkSurface::VtkSurface(std::span<const std::vector<Vec3>> polylines) {
+  std::vector<Vec3> points;
+  std::vector<std::int64_t> corners, ends;
+  for (const std::vector<Vec3>& line : polylines) {
+    points.insert(points.end(), line.begin(), line.end());
+    ends.push_back(static_cast<std::int64_t>(points.size()));
+  }
+  corners.resize(points.size());
+  std::iota(corners.begin(), corners.end(), 0);
+  set_cells("Lines", points, corners, ends);
 }
 
 void VtkSurface::add(const std::string& name, std::span<const float> values, std::size_t width) {
-  data_ += array(named(name, width), values);
+  (kind_ == "Verts" ? point_data_ : data_) += array(named(name, width), values);
+}
+void VtkSurface::add_to_points(const std::string& name, std::span<const float> values) {
+  point_data_ += array(named(name, 1), values);
 }
 
 std::string VtkSurface::text() const {
-  const std::string cells = by_themselves_ ? "Verts" : "Polys",
-                    data = by_themselves_ ? "PointData" : "CellData";
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
-         std::to_string(points_count_) + "\" NumberOf" + cells + "=\"" + std::to_string(cells_count_) +
-         "\">\n<Points>\n" + points_ + "</Points>\n<" + cells + ">\n" + cells_ + "</" + cells + ">\n<" +
-         data + ">\n" + data_ + "</" + data + ">\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
-         appended_ + "\n</AppendedData>\n</VTKFile>\n";
+         std::to_string(points_count_) + "\" NumberOf" + kind_ + "=\"" + std::to_string(cells_count_) +
+         "\">\n<Points>\n" + points_ + "</Points>\n<" + kind_ + ">\n" + cells_ + "</" + kind_ +
+         ">\n<PointData>\n" + point_data_ + "</PointData>\n<CellData>\n" + data_ +
+         "</CellData>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended_ +
+         "\n</AppendedData>\n</VTKFile>\n";
 }
 
 std::string to_pvd(std::span<const VtkMoment> moments) {
