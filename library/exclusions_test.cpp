@@ -42,9 +42,9 @@ Filter filter_of(std::uint64_t kind, const SceneStep& step, bool wrong = false) 
   Filter out;
   SelfCollision::Exclusions& asked = out.asked;
   if (kind == 0) {
-    for (std::size_t v = 0; v < n; ++v) asked.obstacle.push_back(random() % 2 == 0);
-    out.expected.set_obstacles(step.mesh, asked.obstacle);
-    if (wrong) asked.obstacle.flip();
+    for (std::size_t v = 0; v < n; ++v) asked.rigid.push_back(random() % 2 == 0);
+    out.expected.set_rigid(step.mesh, asked.rigid);
+    if (wrong) asked.rigid.flip();
   } else if (kind == 1) {
     for (std::size_t v = 0; v < n; ++v) asked.group.push_back(v < n / 2 ? 0 : 1);
     asked.groups_that_ignore_each_other = {{0, drawn(random, 2)}};

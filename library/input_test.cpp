@@ -217,7 +217,7 @@ TEST(Input, WrongNumbersAreRefused) {
   }
   for (const int wrong : {kLeast, -1, 2, kMost})
     refused("triangle " + std::to_string(wrong), [&](Options& o) { o.exclude.face_pairs = {{1, wrong}}; });
-  refused("5 entries for 6 vertices", [](Options& o) { o.exclude.obstacle.resize(5); });
+  refused("5 entries for 6 vertices", [](Options& o) { o.exclude.rigid.resize(5); });
   refused("7 entries for 6 vertices", [](Options& o) { o.exclude.group.resize(7); });
   refused("without the group", [](Options& o) { o.exclude.groups_that_ignore_each_other = {{0, 0}}; });
   for (const std::size_t size : {1u, 7u, 64u, 4096u})

@@ -71,7 +71,7 @@ std::vector<std::pair<Id, Id>> ids_of(const std::vector<std::pair<int, int>>& pa
 Exclusions exclusions_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
                          const SelfCollision::Exclusions& asked) {
   Exclusions out;
-  if (!asked.obstacle.empty()) out.set_obstacles(mesh, asked.obstacle);
+  if (!asked.rigid.empty()) out.set_rigid(mesh, asked.rigid);
   if (!asked.group.empty())
     out.set_groups(mesh, asked.group, asked.groups_that_ignore_each_other);
   else if (!asked.groups_that_ignore_each_other.empty())

@@ -241,7 +241,7 @@ inline SceneStep beside(std::uint64_t seed) {
 inline void exclude_obstacle_against_obstacle(const SceneStep& step, Exclusions& out) {
   std::vector<bool> obstacle(step.mesh.vertex_count(), false);
   std::fill(obstacle.begin() + static_cast<std::ptrdiff_t>(step.own()), obstacle.end(), true);
-  out.set_obstacles(step.mesh, obstacle);
+  out.set_rigid(step.mesh, obstacle);
 }
 inline Exclusions obstacle_against_obstacle(const SceneStep& step) {
   Exclusions out;

@@ -59,14 +59,14 @@ bool excludes_all(const Exclusions& exclusions, const First& first, const Second
 }  // namespace
 
 bool Exclusions::empty() const {
-  return obstacle_.empty() && vertex_groups_.of.empty() && triangle_groups_.of.empty() &&
+  return rigid_.empty() && vertex_groups_.of.empty() && triangle_groups_.of.empty() &&
          vertex_pairs_.empty() && triangle_pairs_.empty() && !(near_ > 0);
 }
 
-void Exclusions::set_obstacles(const TriangleMesh& mesh, std::vector<bool> obstacle) {
-  require_one_each(mesh.vertex_count(), obstacle.size(), "obstacles", "vertices");
-  obstacle_ = std::move(obstacle);
-  if (std::ranges::find(obstacle_, true) == obstacle_.end()) obstacle_.clear();
+void Exclusions::set_rigid(const TriangleMesh& mesh, std::vector<bool> rigid) {
+  require_one_each(mesh.vertex_count(), rigid.size(), "rigid", "vertices");
+  rigid_ = std::move(rigid);
+  if (std::ranges::find(rigid_, true) == rigid_.end()) rigid_.clear();
 }
 
 Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::string_view what,
@@ -146,7 +146,7 @@ void Exclusions::exclude_near(std::span<const Vec3> reference, double distance) 
 }
 
 bool Exclusions::excludes(VertexId u, VertexId v) const {
-  if (!obstacle_.empty() && obstacle_[+u] && obstacle_[+v]) return true;
+  if (!rigid_.empty() && rigid_[+u] && rigid_[+v]) return true;
   if (vertex_groups_.ignore(+u, +v)) return true;
   if (near_ > 0 && ((reference_[+u] - reference_[+v]) * scale_).squaredNorm() < near_ * near_) return true;
   return !vertex_pairs_.empty() && has(vertex_pairs_, key(u, v));

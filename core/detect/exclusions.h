@@ -24,8 +24,8 @@ class Exclusions {
   // Whether nothing is excluded.
   bool empty() const;
 
-  // Vertices of obstacles, [vertices], do not collide with each other. Throws InputError for a wrong size.
-  void set_obstacles(const TriangleMesh& mesh, std::vector<bool> obstacle);
+  // Rigid vertices, [vertices], do not collide with each other. Throws InputError for a wrong size.
+  void set_rigid(const TriangleMesh& mesh, std::vector<bool> rigid);
   // Vertices whose groups ignore each other do not collide; a group may ignore itself. `group`, [vertices],
   // holds numbers from 0. Throws InputError for a wrong size, and for a pair with a group that no vertex has.
   void set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
@@ -60,7 +60,7 @@ class Exclusions {
   static Groups groups_of(std::vector<std::int32_t> group, std::string_view what,
                           std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
 
-  std::vector<bool> obstacle_;
+  std::vector<bool> rigid_;
   Groups vertex_groups_, triangle_groups_;
   std::vector<std::uint64_t> vertex_pairs_;    // sorted; the smaller index in the upper half
   std::vector<std::uint64_t> triangle_pairs_;  // sorted; the smaller index in the upper half

@@ -86,7 +86,7 @@ class CSCD_EXPORT SelfCollision {
   struct Exclusions {
     // Vertices that never collide with each other, such as a part of the mesh that the caller moves as one
     // body; empty, or one entry a vertex. Surfaces beside the mesh are Options::obstacles.
-    std::vector<bool> obstacle;
+    std::vector<bool> rigid;
     // The group of each vertex, from 0, and pairs of groups that do not collide; a group may be paired with
     // itself. Empty, or one entry a vertex.
     std::vector<int> group;

@@ -42,7 +42,7 @@ class Exclusions(_cscd.Exclusions):
 
     Two features may collide if some vertex of one may collide with some vertex of the other.
 
-    obstacle: [vertices] bool; vertices that never collide with each other.
+    rigid: [vertices] bool; vertices that never collide with each other, such as a part that moves as one body.
     group: [vertices] int from 0, and pairs of groups that do not collide with each other.
     vertex_pairs, face_pairs: [pairs, 2] int; pairs of indices that do not collide.
     rings: vertices that are joined by at most so many edges do not collide.
@@ -53,11 +53,11 @@ class Exclusions(_cscd.Exclusions):
         true_motion() keep no account of this. Needs check_start.
     """
 
-    def __init__(self, *, obstacle=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,
+    def __init__(self, *, rigid=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,
                  rest_distance=0.0, ongoing=False):
-        marked = as_array(obstacle, "exclude, obstacle")
+        marked = as_array(rigid, "exclude, rigid")
         if marked.ndim != 1 or (marked.size and marked.dtype.kind != "b"):
-            raise ValueError("exclude, obstacle: give one boolean a vertex")
+            raise ValueError("exclude, rigid: give one boolean a vertex")
         super().__init__(marked.tolist(), numbers(group, "exclude, group", INDEX, "vertices").tolist(),
                          _pairs(groups_that_ignore_each_other, "exclude, groups_that_ignore_each_other"),
                          _pairs(vertex_pairs, "exclude, vertex_pairs"), _pairs(face_pairs, "exclude, face_pairs"),

@@ -131,7 +131,7 @@ class Input(unittest.TestCase):
                 with self.subTest(name=name, value=value):
                     self.refused(lambda: cscd.SelfCollision(FACES, START, **{name: value}))
         for name, values in {
-                "obstacle": [[1] * 6, [0.0] * 6, "abcdef", None, [[True] * 6], [True] * 5, 5],
+                "rigid": [[1] * 6, [0.0] * 6, "abcdef", None, [[True] * 6], [True] * 5, 5],
                 "group": [[0.5] * 6, [-1] * 6, [0] * 5, [5000] * 6, [2**40] * 6, [None] * 6, 0, "a", [[0]] * 6],
                 "groups_that_ignore_each_other": [[(0, 0)]], "face_pairs": [[(0, 2)], [(True, False)]],
                 "vertex_pairs": [[(0, 6)], [(-1, 0)], [0, 1], [(0, 1, 2)], [(0, 0.5)], [(0, None)], 3, "ab", [(0, 2**33)]],
