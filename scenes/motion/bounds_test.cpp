@@ -106,6 +106,32 @@ TEST(MotionBounds, GrowShortWithTheSquareOfTheSpan) {
   EXPECT_LT(largest(from, from + 0.005), largest(from, from + 0.01) / 3.5);
 }
 
+// A vertex that two joints take to places that stay, half each, while one of them begins to turn about its
+// place: what the blend does comes from that joint's angular acceleration alone. Mutation: the second
+// derivative of a joint's quaternion without its angular acceleration.
+TEST(MotionBounds, HoldTheAngularAccelerationOfDualQuaternions) {
+  test_rigs::RigMaker make(9);
+  Character character = make.tube({.dual = true}, 2);
+  Part& part = character.parts[0];
+  Animation& clip = character.animations[0];
+  part.dual_quaternion.assign(part.positions.size(), 1);
+  part.influences.clear();
+  for (std::size_t v = 0; v < part.positions.size(); ++v) {
+    part.first[v] = part.influences.size();
+    part.influences.insert(part.influences.end(), {{0, 0.5}, {1, 0.5}});
+  }
+  part.first.back() = part.influences.size();
+  part.joints[1].offset.origin = -part.positions[0];
+  character.nodes[2].local.origin = part.positions[0] + Vec3(0, 1, 0);
+  const Quaternion start{std::cos(0.5), 0, 0, std::sin(0.5)}, end{std::cos(0.9), 0, 0, std::sin(0.9)};
+  clip.channels = {{2, {}, {}, {}}};
+  clip.channels[0].rotations = {{clip.start, start, Between::cubic}, {clip.start + 1, end}};
+  const CharacterMotion motion(whole(character));
+  Seen seen;
+  compare(motion, character, 0, 0.009, 40, seen);
+  EXPECT_EQ(seen.unbounded, 0u);
+}
+
 TEST(MotionBounds, PlacesAreThoseOfFrames) {
   for (const auto& [name, kinds] : test_rigs::kinds_of_rigs()) {
     test_rigs::RigMaker make(11);

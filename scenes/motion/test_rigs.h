@@ -1,8 +1,10 @@
 #pragma once
 
-// For tests only: random skinned tubes whose keys, bones and weights are of every kind.
+// For tests only: random skinned tubes whose keys, bones and weights are of every kind, and random hands.
 
+#include <map>
 #include <random>
+#include <set>
 
 #include "core/mesh/test_shapes.h"
 #include "scenes/character/character.h"
@@ -73,6 +75,87 @@ class RigMaker {
     return character;
   }
 
+  // A palm with four fingers of three bones each, that is flat at the start of its clip, whose bones turn by
+  // up to `most` turns in the second that the clip lasts: mostly the fingers curl to one side, and each a bit
+  // sideways.
+  Character bending_hand(const Kinds& kinds, double most) {
+    constexpr int kFingers = 4, kBones = 3, kPalm = 3, kFinger = 7;  // lengths in cells
+    constexpr double kCell = 0.25;
+    std::set<std::array<int, 3>> cells;
+    for (int x = 0; x < 2 * kFingers - 1; ++x)
+      for (int y = 0; y < (x % 2 == 0 ? kPalm + kFinger : kPalm); ++y) cells.insert({x, y, 0});
+    Character character;
+    character.nodes = {{"root", -1, Transform()}, {"palm", 0, Transform()}};
+    character.nodes[0].local.origin = vector(1);
+    Part part;
+    part.name = "hand";
+    part.node = 0;
+    part.joints.push_back({1, Transform()});
+    const auto joint_of = [](int finger, int bone) { return 1 + finger * kBones + bone; };
+    const auto height = [](int bone) {
+      return kPalm + 0.5 + bone * (kFinger - 1.0) / kBones;
+    };  // of a bone's start
+    for (int f = 0; f < kFingers; ++f)
+      for (int b = 0; b < kBones; ++b) {
+        Transform local, offset;
+        const Vec3 start = kCell * Vec3(2 * f + 0.5, height(b), 0.5);
+        local.origin = b == 0 ? start : Vec3(0, kCell * (height(b) - height(b - 1)), 0);
+        offset.origin = -start;
+        character.nodes.push_back({"finger", b == 0 ? 1 : joint_of(f, b), local});
+        part.joints.push_back({1 + joint_of(f, b), offset});
+      }
+    std::map<std::array<int, 3>, std::int32_t> corners;
+    const auto corner = [&](const std::array<int, 3>& at) {
+      const auto [found, is_new] = corners.try_emplace(at, static_cast<std::int32_t>(part.positions.size()));
+      if (!is_new) return found->second;
+      part.positions.push_back(kCell * Vec3(at[0], at[1], at[2]));
+      part.first.push_back(part.influences.size());
+      // From a cell before a bone's start to a cell after it the bone takes over.
+      const int finger = std::min(at[0] / 2, kFingers - 1);
+      int before = 0;
+      double share = 1;
+      for (int b = 0; b < kBones; ++b) {
+        const double of_next = std::clamp((at[1] - height(b) + 1) / 2, 0.0, 1.0);
+        if (of_next == 0) break;
+        if (of_next < 1) {
+          part.influences.push_back({joint_of(finger, b), of_next});
+          share = 1 - of_next;
+          break;
+        }
+        before = joint_of(finger, b);
+      }
+      part.influences.push_back({before, share});
+      return found->second;
+    };
+    for (const std::array<int, 3>& cell : cells)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) {
+          std::array<int, 3> beside = cell;
+          beside[axis] += 2 * side - 1;
+          if (cells.contains(beside)) continue;
+          std::array<std::int32_t, 4> quad;
+          for (std::size_t k = 0; k < 4; ++k) {
+            std::array<int, 3> at = cell;
+            at[axis] += side;
+            at[(axis + 1) % 3] += k == 1 || k == 2;
+            at[(axis + 2) % 3] += k >= 2;
+            quad[side == 1 ? k : 3 - k] = corner(at);
+          }
+          part.triangles.push_back({quad[0], quad[1], quad[2]});
+          part.triangles.push_back({quad[0], quad[2], quad[3]});
+        }
+    part.first.push_back(part.influences.size());
+    if (kinds.dual) part.dual_quaternion.assign(part.positions.size(), 1);
+    Animation clip{"clip", uniform(-1, 1), 1, 0, {}};
+    for (std::size_t n = 1; n < character.nodes.size(); ++n)
+      clip.channels.push_back(bending(kinds, static_cast<int>(n), clip.start, Vec3(1, 0, 0) + vector(0.4),
+                                      most / (n == 1 ? 2 : 1)));
+    character.parts.push_back(part);
+    character.animations = {clip};
+    character.format = "test";
+    return character;
+  }
+
   // A longer tube that is straight at the start of its clip, whose bones turn by up to `most` turns in the
   // second that the clip lasts, mostly to one side.
   Character bending_tube(const Kinds& kinds, double most, int bones) {
@@ -81,23 +164,26 @@ class RigMaker {
     for (Vec3& x : part.positions) x = Vec3(x.x(), 0.7 * x.y(), 0.7 * x.z());
     if (kinds.dual) part.dual_quaternion.assign(part.positions.size(), 1);
     const Vec3 side = vector(1).normalized();
-    for (Channel& channel : character.animations[0].channels) {
-      const double start = character.animations[0].start;
-      const Vec3 axis = (side + vector(0.6)).normalized();
-      const double half = uniform(-0.3, 1) * most * 3.14159265358979;
-      const Quaternion end{std::cos(half), std::sin(half) * axis.x(), std::sin(half) * axis.y(),
-                           std::sin(half) * axis.z()};
-      channel.moves.clear();
-      channel.rotations = {{start, {}}, {start + 1, end}};
-      if (!kinds.cubic) continue;
-      channel.rotations[0].next = Between::cubic;
-      channel.rotations[0].leaving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-      channel.rotations[1].arriving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-    }
+    for (Channel& channel : character.animations[0].channels)
+      channel = bending(kinds, channel.node, character.animations[0].start, side + vector(0.6), most);
     return character;
   }
 
  private:
+  // Turns about an axis in a second, by at most so many turns, mostly to one side.
+  Channel bending(const Kinds& kinds, int node, double start, const Vec3& about, double most) {
+    const Vec3 axis = about.normalized();
+    const double half = uniform(-0.3, 1) * most * 3.14159265358979;
+    const Quaternion end{std::cos(half), std::sin(half) * axis.x(), std::sin(half) * axis.y(),
+                         std::sin(half) * axis.z()};
+    Channel channel{node, {}, {}, {}};
+    channel.rotations = {{start, {}}, {start + 1, end}};
+    if (!kinds.cubic) return channel;
+    channel.rotations[0].next = Between::cubic;
+    channel.rotations[0].leaving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    channel.rotations[1].arriving = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    return channel;
+  }
   std::vector<double> times(double start) {
     std::vector<double> out{start};
     while (out.back() < start + 1) out.push_back(out.back() + uniform(0.1, 0.6));

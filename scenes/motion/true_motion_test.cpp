@@ -11,8 +11,8 @@
 #include "scenes/motion/character_motion.h"
 #include "scenes/motion/test_rigs.h"
 
-// Verdicts about the true motion of random skinned tubes that bend and twist by up to half a turn in a step,
-// against exact static tests of poses that are sampled by the code that poses frames.
+// Verdicts about the true motion of random skinned tubes and hands that bend and twist by up to half a turn
+// in a step, against exact static tests of poses that are sampled by the code that poses frames.
 namespace cscd::scenes {
 namespace {
 
@@ -89,26 +89,30 @@ void compare_step(const Character& character, int samples, Tally& tally) {
   }
 }
 
-Tally compare_steps(const test_rigs::Kinds& kinds, int steps, int samples, unsigned seed) {
-  Tally tally;
+template <class Make>
+void compare_steps(const Make& rig, int steps, int samples, unsigned seed, Tally& tally) {
   for (int step = 0; step < steps; ++step) {
     SCOPED_TRACE("step " + std::to_string(step) + ", seed " + std::to_string(seed));
     test_rigs::RigMaker make(seed + 1000 * static_cast<unsigned>(step));
-    compare_step(make.bending_tube(kinds, kHalfTurn, 2 + step % 4), samples, tally);
+    compare_step(rig(make, step), samples, tally);
     if (testing::Test::HasFailure()) break;
   }
-  return tally;
 }
 
-TEST(TrueMotion, VerdictsOnRandomTubesAreTrue) {
+TEST(TrueMotion, VerdictsOnRandomTubesAndHandsAreTrue) {
   const int steps = wanted("CSCD_TRUE_MOTION_STEPS", 36), samples = wanted("CSCD_TRUE_MOTION_SAMPLES", 60);
   Tally all;
   for (const auto& [name, kinds] : std::vector<std::pair<std::string, test_rigs::Kinds>>{
            {"linear", {}}, {"cubic", {.cubic = true}}, {"dual quaternions", {.dual = true}}}) {
     SCOPED_TRACE(name);
-    const Tally tally = compare_steps(kinds, steps / 3, samples, 17);
-    for (const auto& [verdict, count] : tally.verdicts) all.verdicts[verdict] += count;
-    all.crossing += tally.crossing;
+    const auto tube = [&](test_rigs::RigMaker& make, int step) {
+      return make.bending_tube(kinds, kHalfTurn, 2 + step % 4);
+    };
+    const auto hand = [&](test_rigs::RigMaker& make, int step) {
+      return make.bending_hand(kinds, step % 4 == 0 ? kHalfTurn : kHalfTurn / 4);
+    };
+    compare_steps(tube, steps / 6, samples, 17, all);
+    compare_steps(hand, steps / 6, samples, 18, all);
   }
   std::printf("%d clear, %d touch, %d close, %d undecided; %d cross in some sample\n",
               all.verdicts[TrueVerdict::clear], all.verdicts[TrueVerdict::touches],
