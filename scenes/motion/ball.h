@@ -119,6 +119,25 @@ inline MovingTransform composed(const MovingTransform& after, const MovingTransf
   return {after.linear * before.linear, after(before.origin)};
 }
 
+// Where a map takes a fixed point. `norms` are those of the map.
+struct Norms {
+  double value, rate, bend;
+};
+inline Norms norms_of(const MovingTransform& map) {
+  return {norm_above(map.linear.value.centre), norm_above(map.linear.rate.centre),
+          norm_above(map.linear.bend.centre)};
+}
+inline MovingVector moved(const MovingTransform& map, const Norms& norms, const BallVector& x) {
+  const double length = norm_above(x.centre), uncertain = x.radius + 2 * kProductRounding * length;
+  const auto by = [&](const BallMatrix& linear, double norm, const BallVector& origin) -> BallVector {
+    return {linear.centre * x.centre + origin.centre,
+            grown(norm * uncertain + linear.radius * (length + x.radius) + origin.radius +
+                  2 * kUnitRoundoff * origin.centre.cwiseAbs().sum())};
+  };
+  return {by(map.linear.value, norms.value, map.origin.value),
+          by(map.linear.rate, norms.rate, map.origin.rate), by(map.linear.bend, norms.bend, map.origin.bend)};
+}
+
 // The ball around a box: a matrix is no larger than the square root of the sum of its squares.
 template <class Centre, class At>
 Ball<Centre> ball_around(const At& at) {

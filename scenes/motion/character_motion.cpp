@@ -19,7 +19,8 @@ CharacterMotion::CharacterMotion(MovingCharacter moving)
     : moving_(std::move(moving)), pose_(moving_.character, clip_of(moving_.character)) {
   if (const std::string refused = pose_.refused(); !refused.empty())
     throw NoBounds("no bounds are known for " + refused + "; ask about straight lines, without it");
-  for (const Part& part : moving_.character.parts) points_.push_back(points_in_joints(part));
+  for (const Part& part : moving_.character.parts)
+    points_.push_back(points_in_joints(part)), linear_.emplace_back(part);
   const std::vector<double>& jumps = pose_.jumps();
   for (const double corner : pose_.corners()) {
     const auto jump = std::lower_bound(jumps.begin(), jumps.end(), corner - kApart);
@@ -53,31 +54,110 @@ double CharacterMotion::at_corner(double seconds, double reach) const {
   return corner ? *corner - start : seconds;
 }
 
-template <class Take>
-void CharacterMotion::for_each_vertex(const Span& span, const PoseJets::Weights& weights,
-                                      std::span<const VertexId> vertices, Wanted wanted,
-                                      const Take& take) const {
-  const PoseJets::Nodes nodes = pose_.nodes(span);
-  const std::vector<Part>& parts = moving_.character.parts;
-  std::vector<std::optional<SkinJets>> skins(parts.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Place& place = place_[+vertices[i]];
-    const auto part = static_cast<std::size_t>(place.part);
-    if (!skins[part]) skins[part].emplace(parts[part], points_[part], nodes, weights.of_part[part], wanted);
-    take(i, *skins[part], static_cast<std::size_t>(place.vertex));
-  }
+bool CharacterMotion::is_linear(std::size_t part, const PoseJets::Weights& weights) const {
+  const std::vector<double>& dual = moving_.character.parts[part].dual_quaternion;
+  return std::ranges::all_of(weights.of_part[part],
+                             [](const Jet& w) { return w.is_still() && w.value.is_zero(); }) &&
+         std::ranges::all_of(dual, [](double share) { return share == 0; });
 }
 
 void CharacterMotion::positions(double seconds, std::span<const VertexId> vertices, std::span<Vec3> at,
                                 std::span<double> error) const {
   const Span moment = on_time_line(seconds, seconds);
-  for_each_vertex(moment, pose_.weights(moment), vertices, Wanted::places,
-                  [&](std::size_t i, const SkinJets& skin, std::size_t v) {
-                    const BallVector place = skin.vertex(v).value;
-                    at[i] = place.centre;
-                    error[i] = place.radius;
-                  });
+  const PoseJets::Weights weights = pose_.weights(moment);
+  const PoseJets::Nodes nodes = pose_.nodes(moment);
+  const std::vector<Part>& parts = moving_.character.parts;
+  std::vector<std::optional<SkinJets>> skins(parts.size());
+  std::vector<std::vector<LinearSkin::Placing>> placings(parts.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const auto part = static_cast<std::size_t>(place_[+vertices[i]].part);
+    const auto v = static_cast<std::size_t>(place_[+vertices[i]].vertex);
+    if (placings[part].empty() && !skins[part]) {
+      if (is_linear(part, weights))
+        placings[part] = linear_[part].placings(nodes.over);
+      else
+        skins[part].emplace(parts[part], points_[part], nodes, weights.of_part[part]);
+    }
+    if (skins[part]) {
+      const BallVector place = skins[part]->vertex(v).value;
+      at[i] = place.centre;
+      error[i] = place.radius;
+    } else {
+      error[i] = linear_[part].place(v, placings[part], at[i]);
+    }
+  }
 }
+
+// What joints do over a span, from what they do in pieces of it: between corners, and in halves where bends
+// are more uncertain than large, because what is uncertain falls faster than the halves' number grows.
+class CharacterMotion::LinearPaths {
+ public:
+  LinearPaths(const CharacterMotion& motion, std::vector<std::size_t> parts)
+      : motion_(motion), parts_(std::move(parts)), last_(parts_.size()), bends_(parts_.size()) {}
+
+  // How far joints take points off their lines, in the order of the parts. Throws Unbounded.
+  std::vector<std::vector<LinearSkin::Growing>> deviations(const Span& span) {
+    const double h = rounded_up(span.to - span.from);
+    std::vector<std::vector<LinearSkin::Growing>> corners(parts_.size());
+    double from = span.from;
+    for (auto corner = std::upper_bound(motion_.pose_.corners().begin(), motion_.pose_.corners().end(), from);
+         corner != motion_.pose_.corners().end() && *corner < span.to; ++corner) {
+      add({from, *corner}, 0, corners);
+      from = *corner;
+      corner_ = rounded_up((from - span.from) * (span.to - from) / h);
+    }
+    add({from, span.to}, 0, corners);
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      for (std::size_t j = 0; j < bends_[p].size(); ++j) add_product(bends_[p][j], h * h / 8, corners[p][j]);
+    return corners;
+  }
+
+ private:
+  static void add_product(const LinearSkin::Growing& x, double factor, LinearSkin::Growing& to) {
+    to.at_centre = grown(to.at_centre + x.at_centre * factor);
+    to.per_distance = grown(to.per_distance + x.per_distance * factor);
+  }
+
+  void add(const Span& span, int halvings, std::vector<std::vector<LinearSkin::Growing>>& corners) {
+    const PoseJets::Nodes nodes = motion_.pose_.nodes(span);
+    std::vector<LinearSkin::Going> going;
+    double bend = 0, doubt = 0;
+    for (const std::size_t part : parts_) {
+      going.push_back(motion_.linear_[part].going(nodes.over));
+      bend = std::max(bend, going.back().bend), doubt = std::max(doubt, going.back().doubt);
+    }
+    const double middle = span.from + (span.to - span.from) / 2;
+    if (doubt > kMostDoubt * bend && halvings < kMostHalvings && span.from < middle && middle < span.to) {
+      add({span.from, middle}, halvings + 1, corners);
+      add({middle, span.to}, halvings + 1, corners);
+      return;
+    }
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      const std::size_t joints = going[p].joints.size();
+      bends_[p].resize(joints), corners[p].resize(joints);
+      for (std::size_t j = 0; j < joints; ++j) {
+        LinearSkin::Growing& most = bends_[p][j];
+        const LinearSkin::Growing& own = going[p].joints[j].bend;
+        most = {std::max(most.at_centre, own.at_centre), std::max(most.per_distance, own.per_distance)};
+      }
+      if (corner_ > 0) {
+        const std::vector<LinearSkin::Growing> turns = motion_.linear_[parts_[p]].turns(last_[p], going[p]);
+        for (std::size_t j = 0; j < joints; ++j) add_product(turns[j], corner_, corners[p][j]);
+      }
+    }
+    corner_ = 0;
+    last_ = std::move(going);
+  }
+
+  static constexpr double kMostDoubt = 0.5;
+  static constexpr int kMostHalvings = 4;
+
+  const CharacterMotion& motion_;
+  std::vector<std::size_t> parts_;
+  std::vector<LinearSkin::Going> last_;                  // [parts], over the last piece
+  std::vector<std::vector<LinearSkin::Growing>> bends_;  // [parts][joints], the largest over all pieces
+  double corner_ = 0;  // what a change of the rate between the last piece and the next one is worth
+};
 
 void CharacterMotion::deviations(double from, double to, std::span<const VertexId> vertices,
                                  std::span<double> out) const {
@@ -90,21 +170,38 @@ void CharacterMotion::deviations(double from, double to, std::span<const VertexI
   for (auto c = std::upper_bound(pose_.corners().begin(), pose_.corners().end(), span.from);
        c != pose_.corners().end() && *c < span.to; ++c)
     corners += rounded_up((*c - span.from) * (span.to - *c) / h);
+  const std::vector<Part>& parts = moving_.character.parts;
+  std::vector<std::vector<std::size_t>> of_part(parts.size());  // those of the vertices
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    of_part[static_cast<std::size_t>(place_[+vertices[i]].part)].push_back(i);
   try {
     const PoseJets::Weights weights = pose_.weights(span);
-    const bool known_corners = !weights.corners_anywhere;
-    for_each_vertex(
-        span, weights, vertices, Wanted::paths, [&](std::size_t i, const SkinJets& skin, std::size_t v) {
-          try {
-            const MovingVector x = skin.vertex(v);
-            const double change = 2 * x.rate.radius, bend = norm_above(x.bend.centre) + x.bend.radius;
-            double bound = change * h / 4;
-            if (known_corners) bound = std::min(bound, bend * h * h / 8 + change * corners);
-            if (bound < std::numeric_limits<double>::infinity()) out[i] = grown(bound);
-          } catch (const Unbounded&) {
-            // stays without a bound
-          }
-        });
+    std::vector<std::size_t> linear, others;
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      if (!of_part[p].empty()) (is_linear(p, weights) ? linear : others).push_back(p);
+    const auto vertex = [&](std::size_t i) { return static_cast<std::size_t>(place_[+vertices[i]].vertex); };
+    if (!linear.empty()) {
+      const auto of_joints = LinearPaths(*this, linear).deviations(span);
+      for (std::size_t p = 0; p < linear.size(); ++p)
+        for (const std::size_t i : of_part[linear[p]])
+          if (const double bound = linear_[linear[p]].deviation(vertex(i), of_joints[p]);
+              bound < std::numeric_limits<double>::infinity())
+            out[i] = bound;
+    }
+    if (others.empty()) return;
+    const PoseJets::Nodes nodes = pose_.nodes(span);
+    for (const std::size_t p : others) {
+      const SkinJets skin(parts[p], points_[p], nodes, weights.of_part[p]);
+      for (const std::size_t i : of_part[p]) try {
+          const MovingVector x = skin.vertex(vertex(i));
+          const double change = 2 * x.rate.radius, bend = norm_above(x.bend.centre) + x.bend.radius;
+          double bound = change * h / 4;
+          if (!weights.corners_anywhere) bound = std::min(bound, bend * h * h / 8 + change * corners);
+          if (bound < std::numeric_limits<double>::infinity()) out[i] = grown(bound);
+        } catch (const Unbounded&) {
+          // stays without a bound
+        }
+    }
   } catch (const Unbounded&) {
     std::ranges::fill(out, std::numeric_limits<double>::infinity());
   }

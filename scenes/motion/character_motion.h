@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/ids.h"
 #include "core/mesh/vertex_paths.h"
+#include "scenes/motion/linear_skin.h"
 #include "scenes/motion/pose_jets.h"
 #include "scenes/motion/skin_jets.h"
 
@@ -50,9 +51,8 @@ class CharacterMotion final : public VertexPaths {
   struct Place {
     std::int32_t part, vertex;
   };
-  template <class Take>
-  void for_each_vertex(const Span& span, const PoseJets::Weights& weights, std::span<const VertexId> vertices,
-                       Wanted wanted, const Take& take) const;
+  class LinearPaths;
+  bool is_linear(std::size_t part, const PoseJets::Weights& weights) const;
   double on_time_line(double seconds) const;
   Span on_time_line(double from, double to) const { return {on_time_line(from), on_time_line(to)}; }
   // The corner that is nearest to a time of the file, if it is within reach.
@@ -63,6 +63,7 @@ class CharacterMotion final : public VertexPaths {
   std::vector<double> corners_;                  // those that are no jumps, on the file's time line
   std::vector<Place> place_;                     // [vertices]
   std::vector<std::vector<BallVector>> points_;  // [parts]
+  std::vector<LinearSkin> linear_;               // [parts]
 };
 
 }  // namespace cscd::scenes

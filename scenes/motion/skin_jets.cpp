@@ -5,36 +5,14 @@
 namespace cscd::scenes {
 namespace {
 
-// Where a map takes a fixed point. `norms` are at least those of the map's centres.
-MovingVector moved(const MovingTransform& map, const std::array<double, 3>& norms, const BallVector& x,
-                   bool places = true, bool paths = true) {
-  const double length = norm_above(x.centre), uncertain = x.radius + 2 * kProductRounding * length;
-  const auto by = [&](const BallMatrix& linear, double norm, const BallVector& origin) -> BallVector {
-    return {linear.centre * x.centre + origin.centre,
-            grown(norm * uncertain + linear.radius * (length + x.radius) + origin.radius +
-                  2 * kUnitRoundoff * origin.centre.cwiseAbs().sum())};
-  };
-  MovingVector out;
-  if (places) out.value = by(map.linear.value, norms[0], map.origin.value);
-  if (!paths) return out;
-  out.rate = by(map.linear.rate, norms[1], map.origin.rate);
-  out.bend = by(map.linear.bend, norms[2], map.origin.bend);
-  return out;
-}
-std::array<double, 3> norms_of(const MovingTransform& map) {
-  return {norm_above(map.linear.value.centre), norm_above(map.linear.rate.centre),
-          norm_above(map.linear.bend.centre)};
-}
-
 void add_scaled(BallVector& sum, double weight, const BallVector& x) {
   sum.centre += weight * x.centre;
   sum.radius = grown(sum.radius + weight * x.radius +
                      2 * kUnitRoundoff * (weight * x.centre.norm() + sum.centre.norm()));
 }
 
-void add_scaled(MovingVector& sum, double weight, const MovingVector& x, bool places, bool paths) {
-  if (places) add_scaled(sum.value, weight, x.value);
-  if (!paths) return;
+void add_scaled(MovingVector& sum, double weight, const MovingVector& x) {
+  add_scaled(sum.value, weight, x.value);
   add_scaled(sum.rate, weight, x.rate);
   add_scaled(sum.bend, weight, x.bend);
 }
@@ -120,7 +98,7 @@ std::vector<BallVector> points_in_joints(const Part& part) {
 }
 
 SkinJets::SkinJets(const Part& part, const std::vector<BallVector>& points, const PoseJets::Nodes& pose,
-                   std::vector<Jet> weights, Wanted wanted)
+                   std::vector<Jet> weights)
     : part_(part), points_(points), pose_(pose.over), weights_(std::move(weights)) {
   if (!part.dual_quaternion.empty())
     for (const Joint& joint : part.joints) {
@@ -138,9 +116,6 @@ SkinJets::SkinJets(const Part& part, const std::vector<BallVector>& points, cons
     norms_[node] = norms_of(pose_[node]);
   }
   for (const Jet& weight : weights_) morphs_ = morphs_ || !weight.is_still() || !weight.value.is_zero();
-  const bool all = morphs_ || !part.dual_quaternion.empty();
-  places_ = all || wanted == Wanted::places;
-  paths_ = all || wanted == Wanted::paths;
 }
 
 // Where morph targets bring a vertex before joints move it.
@@ -164,7 +139,7 @@ MovingVector SkinJets::point(std::size_t v) const {
 
 MovingVector SkinJets::taken_by(int node, const MovingVector& at) const {
   const auto n = static_cast<std::size_t>(node);
-  return morphs_ ? pose_[n](at) : moved(pose_[n], norms_[n], at.value, places_, paths_);
+  return morphs_ ? pose_[n](at) : moved(pose_[n], norms_[n], at.value);
 }
 
 MovingVector SkinJets::taken_by_influence(std::size_t influence, const MovingVector& at) const {
@@ -180,7 +155,7 @@ MovingVector SkinJets::vertex(std::size_t v) const {
   MovingVector sum{};
   if (dual_share < 1)
     for (std::size_t i = first; i < last; ++i)
-      add_scaled(sum, part_.influences[i].weight, taken_by_influence(i, at), places_, paths_);
+      add_scaled(sum, part_.influences[i].weight, taken_by_influence(i, at));
   if (dual_share == 0) return sum;
   const MovingVector dual = by_dual_quaternions(v, at);
   return dual_share == 1 ? dual : (1 - dual_share) * sum + dual_share * dual;

@@ -11,16 +11,14 @@ namespace cscd::scenes {
 // near, so that what is uncertain of the joint's map matters little.
 std::vector<BallVector> points_in_joints(const Part& part);
 
-// What is wanted of vertices: their places, or rates and bends. The other may be left at zero.
-enum class Wanted { places, paths };
-
-// Encloses where a part's vertices are over a span of time (skin in scenes/character/pose.h).
+// Encloses where a part's vertices are over a span of time (skin in scenes/character/pose.h). LinearSkin is
+// the faster way for vertices that neither morph nor follow dual quaternions.
 class SkinJets {
  public:
   // `points` are those of points_in_joints, and `weights` are those of the part's targets. All arguments but
   // `weights` must outlive the object. Throws Unbounded.
   SkinJets(const Part& part, const std::vector<BallVector>& points, const PoseJets::Nodes& pose,
-           std::vector<Jet> weights, Wanted wanted);
+           std::vector<Jet> weights);
 
   // Throws Unbounded, also where dual quaternions of a vertex's bones turn away from each other by half a
   // turn, so that their blend may jump.
@@ -41,11 +39,10 @@ class SkinJets {
   const Part& part_;
   const std::vector<BallVector>& points_;
   const std::vector<MovingTransform>& pose_;
-  std::vector<std::array<double, 3>> norms_;  // [nodes], of those that move the part: of value, rate and bend
+  std::vector<Norms> norms_;  // [nodes], of those that move the part
   std::vector<Jet> weights_;
   std::vector<Rigid> rigid_;  // [joints], where some vertex follows dual quaternions
   bool morphs_ = false;       // some weight is not zero throughout
-  bool places_, paths_;       // are found of vertices that neither morph nor follow dual quaternions
 };
 
 }  // namespace cscd::scenes
