@@ -73,6 +73,22 @@ TEST_F(TrueMotionOption, SaysWhichMotionItAnswers) {
   EXPECT_EQ(run("cscd query small").out.find("--true-motion"), std::string::npos);
 }
 
+// The figure stays in a hug. Mutation: of intervals that start crossed, a deviation of 0 is told.
+TEST_F(TrueMotionOption, SaysNothingOfWhatItDoesNotAsk) {
+  scenes::Character figure = scenes::walking_figure();
+  scenes::Animation& hug = figure.animations[1];
+  for (scenes::Channel& channel : hug.channels) {
+    const auto value = channel.rotations[channel.rotations.size() / 2].value;
+    channel.rotations = {{hug.start, value}, {hug.start + 1, value}};
+  }
+  put("crossed.glb", scenes::to_glb(figure));
+  const json crossed = answer("crossed.glb --clip hug --true-motion");
+  const json& summary = crossed["summary"]["true_motion"];
+  EXPECT_EQ(summary["not_asked"], crossed["intervals"].size()) << summary;
+  EXPECT_TRUE(summary["deviation"].is_null());
+  EXPECT_TRUE(crossed["intervals"][0]["true_motion"]["deviation"].is_null());
+}
+
 TEST_F(TrueMotionOption, RefusesInOneLine) {
   expect_refused(run("cscd query small --true-motion"), "nothing is known but straight lines");
   expect_refused(run("cscd query figure.glb --clip walk --true-motion --thickness 0.1"),

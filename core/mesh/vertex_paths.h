@@ -15,8 +15,8 @@ class VertexPaths {
   virtual ~VertexPaths() = default;
 
   virtual std::size_t vertex_count() const = 0;
-  // Where vertices are at a time, and how far the place that is told may be from the true one. At the time of
-  // a jump, where they are after it.
+  // Where vertices are at a time, and how far the place that is told may be from the true one, infinity where
+  // that is not known. Places are finite. At the time of a jump, where they are after it.
   virtual void positions(double time, std::span<const VertexId> vertices, std::span<Vec3> at,
                          std::span<double> error) const = 0;
   // Bounds how far each true path leaves the straight line, run through at constant speed, between its true

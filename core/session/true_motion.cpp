@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/rounding.h"
@@ -48,6 +49,10 @@ Meets edge_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec
   const int ab = side(p, q, a, b), bc = side(p, q, b, c), ca = side(p, q, c, a);
   if (ab * bc < 0 || bc * ca < 0 || ca * ab < 0) return Meets::no;
   return above_p * above_q < 0 && ab * bc > 0 && bc * ca > 0 ? Meets::yes : Meets::unknown;
+}
+
+bool all_finite(std::span<const double> errors) {
+  return std::ranges::all_of(errors, [](double error) { return error < kInfinity; });
 }
 
 TrianglePair triangles_of(const CrossingPair& pair) {
@@ -144,21 +149,22 @@ TrueAnswer TrueMotion::answer(double from, double to) {
     const double stop = jump ? jump->before : to;
     if (stop > begin) {
       place_all(stop, end);
+      is_stretch_ = true;
       more = look_at(start, end);
     }
     if (!jump) break;
     ++answer_.jumps;
-    begin = jump->after;
-    if (begin >= to) {
-      place_all(to, end);
-      break;
-    }
-    place_all(begin, start);
-    if (more && !embedded_at(begin)) {
+    begin = std::min(jump->after, to);
+    Places& after = begin < to ? start : end;
+    place_all(begin, after);
+    if (more && !all_finite(after.error)) {
+      more = give_up(begin, begin);
+    } else if (more && !embedded_at(begin)) {
       answer_.verdict = TrueVerdict::intersects_at_start;
       answer_.from = answer_.to = begin;
-      break;
+      more = false;
     }
+    more = more && begin < to;
   }
   last_ = std::move(end);
   if (last_.time != to) last_.time = std::numeric_limits<double>::quiet_NaN();
@@ -188,7 +194,7 @@ bool TrueMotion::look_at(const Places& from, const Places& to) {
     wide[v] = (wide[v] + std::max(from.error[v], to.error[v])) * kGrown;
     widest = wide[v] <= kInfinity ? std::max(widest, wide[v]) : kInfinity;
   }
-  if (answer_.parts == 0) answer_.deviation = widest;
+  if (std::exchange(is_stretch_, false)) answer_.deviation = std::max(answer_.deviation, widest);
   if (++answer_.parts > options_.most_parts) return give_up(from.time, to.time);
   if (!(widest <= options_.coarse)) {
     const double middle = paths_.split(from.time, to.time);
@@ -302,6 +308,7 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
   Places between{middle, std::vector<Vec3>(piece.vertices.size()),
                  std::vector<double>(piece.vertices.size())};
   paths_.positions(middle, piece.vertices, between.at, between.error);
+  require_finite(between.at, "positions of the true motion");
   if (!look_at(piece, from, between, near) || !look_at(piece, between, to, near)) return false;
   if (!proven) return true;
   // Neither half shows what the whole does, because the middle cannot be told: the whole is the proof.

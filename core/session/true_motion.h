@@ -36,7 +36,7 @@ struct TrueAnswer {
   // or at `from` where `parts_again`, and not at the other end.
   std::optional<CrossingPair> pair = {};
   bool parts_again = false;
-  double deviation = 0;    // the largest bound of any vertex over the whole span; may be infinity
+  double deviation = 0;    // the largest bound of any vertex between two jumps; may be infinity
   std::size_t parts = 0;   // parts of the span that were looked at whole
   std::size_t pieces = 0;  // shorter parts in which single feature pairs were looked at
   std::size_t jumps = 0;   // of the motion within the span, between whose sides nothing is asked
@@ -72,7 +72,8 @@ class TrueMotion {
 
   // Answers a span at whose start nothing crosses but what is left out.
   TrueAnswer answer(double from, double to);
-  // Whether nothing crosses at a time but what is left out.
+  // Whether nothing crosses at a time but what is left out. Where places are not known, whatever it says, an
+  // answer about a span that starts or ends there is undecided.
   bool embedded_at(double time);
   // The positions of all vertices at a time that was asked about.
   std::span<const Vec3> positions_at(double time);
@@ -114,6 +115,7 @@ class TrueMotion {
   ContactSet found_;
   TrueAnswer answer_;
   double narrow_ = 0;
+  bool is_stretch_ = false;  // the next part is all that lies between two jumps
 };
 
 }  // namespace cscd

@@ -1,5 +1,7 @@
 #include "core/session/true_motion.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "core/detect/compose.h"
@@ -31,6 +33,26 @@ struct Sliding : VertexPaths {
   }
   void deviations(double begin, double end, std::span<const VertexId>, std::span<double> out) const override {
     std::ranges::fill(out, 0.5 * (end - begin) * (end - begin) / 8);
+  }
+};
+
+// The same, with jumps: at each of them the second octahedron is where it would be later.
+struct Stepping : Sliding {
+  std::vector<double> jumps;
+  double later = 0;
+  double unknown_from = 2;  // from this time on nothing is known of places
+
+  using Sliding::Sliding;
+  void positions(double time, std::span<const VertexId> vertices, std::span<Vec3> at,
+                 std::span<double> error) const override {
+    const auto passed = std::ranges::count_if(jumps, [&](double jump) { return jump <= time; });
+    Sliding::positions(time + later * static_cast<double>(passed), vertices, at, error);
+    if (time >= unknown_from) std::ranges::fill(error, std::numeric_limits<double>::infinity());
+  }
+  std::optional<Jump> next_jump(double begin, double end) const override {
+    for (const double jump : jumps)
+      if (jump > begin && jump <= end) return Jump{std::nextafter(jump, 0), jump};
+    return std::nullopt;
   }
 };
 
@@ -81,6 +103,54 @@ TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
     EXPECT_GT(answer.parts, 4u);
     EXPECT_EQ(told_embedded > 0, !crosses);
   }
+}
+
+// A jump brings the second octahedron from x = 3 into the first one. Mutation: the pose after a jump at the
+// very end is not searched.
+TEST(TrueMotion, SearchesThePoseAfterEveryJump) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  const TriangleMesh mesh = shape.mesh();
+  for (const double at : {0.25, 0.5, 1.0}) {
+    Stepping paths(shape.positions, 3, 3.01);
+    paths.jumps = {at};
+    for (const double later : {0.0, -200.0}) {  // -200 times 0.01
+      paths.later = later;
+      TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
+                        kWatched, true_motion_options(1));
+      const TrueAnswer answer = motion.answer(0, 1);
+      EXPECT_EQ(answer.verdict, later < 0 ? TrueVerdict::intersects_at_start : TrueVerdict::clear) << at;
+      EXPECT_EQ(answer.jumps, 1u);
+      if (later < 0) {
+        EXPECT_EQ(answer.from, at);
+      }
+    }
+  }
+}
+
+// Mutations: what is not known of places is taken for clear, at the end of a span or behind a jump.
+TEST(TrueMotion, DecidesNothingWherePlacesAreNotKnown) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  const TriangleMesh mesh = shape.mesh();
+  for (const bool jumps : {false, true})
+    for (const double unknown_from : {0.0, 0.3, 1.0}) {
+      Stepping paths(shape.positions, 3, 3.01);
+      if (jumps) paths.jumps = {1};
+      paths.unknown_from = unknown_from;
+      TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
+                        kWatched, true_motion_options(1));
+      EXPECT_EQ(motion.answer(0, 1).verdict, TrueVerdict::undecided);
+    }
+}
+
+// Mutation: the deviation is that of the first stretch alone.
+TEST(TrueMotion, LeavesItsLinesByTheMostBetweenAnyTwoJumps) {
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  const TriangleMesh mesh = shape.mesh();
+  Stepping paths(shape.positions, 3, 3.01);
+  paths.jumps = {0.125, 0.875};
+  TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
+                    kWatched, true_motion_options(1));
+  EXPECT_NEAR(motion.answer(0, 1).deviation, 0.5 * 0.75 * 0.75 / 8, 1e-6);
 }
 
 }  // namespace

@@ -1,4 +1,7 @@
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
 
 #include "scenes/character/pose.h"
 #include "scenes/motion/character_motion.h"
@@ -149,6 +152,40 @@ TEST(MotionBounds, PlacesAreThoseOfFrames) {
       }
     }
   }
+}
+
+// Two joints turn against each other, and are half a turn apart at some moment, where a blend of dual
+// quaternions jumps. Mutation: what cannot be enclosed ends the program.
+TEST(MotionBounds, PlacesWithoutAnEnclosureHaveNoFiniteError) {
+  test_rigs::RigMaker make(9);
+  Character character = make.tube({.dual = true}, 2);
+  Part& part = character.parts[0];
+  Animation& clip = character.animations[0];
+  part.dual_quaternion.assign(part.positions.size(), 1);
+  part.influences.clear();
+  for (std::size_t v = 0; v < part.positions.size(); ++v) {
+    part.first[v] = part.influences.size();
+    part.influences.insert(part.influences.end(), {{0, 0.5}, {1, 0.5}});
+  }
+  part.first.back() = part.influences.size();
+  // From a sixth of a turn to seven twelfths of one, in a second.
+  const double from = std::numbers::pi / 6, to = 7 * std::numbers::pi / 12;
+  clip.channels = {{2, {}, {}, {}}};
+  clip.channels[0].rotations = {{clip.start, {std::cos(from), 0, 0, std::sin(from)}},
+                                {clip.start + 1, {std::cos(to), 0, 0, std::sin(to)}}};
+  const CharacterMotion motion(whole(character));
+  const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+  std::vector<Vec3> at(vertices.size());
+  std::vector<double> error(vertices.size());
+  std::size_t unknown = 0;
+  for (int i = -200; i <= 200; ++i) {
+    motion.positions(0.8 + i * 0x1p-53, vertices, at, error);
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      ASSERT_TRUE(at[v].allFinite());
+      unknown += error[v] == std::numeric_limits<double>::infinity();
+    }
+  }
+  EXPECT_GT(unknown, 0u);
 }
 
 TEST(MotionBounds, StepsAreJumps) {

@@ -1,6 +1,10 @@
 #include "scenes/motion/character_motion.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/base/error.h"
+#include "scenes/character/pose.h"
 
 namespace cscd::scenes {
 namespace {
@@ -61,8 +65,26 @@ bool CharacterMotion::is_linear(std::size_t part, const PoseJets::Weights& weigh
          std::ranges::all_of(dual, [](double share) { return share == 0; });
 }
 
+// Where an enclosure breaks down, as at the moment at which two bones under dual quaternions are half a turn
+// apart, vertices are where a frame would show them, which may be anywhere near.
 void CharacterMotion::positions(double seconds, std::span<const VertexId> vertices, std::span<Vec3> at,
                                 std::span<double> error) const {
+  try {
+    enclose(seconds, vertices, at, error);
+  } catch (const Unbounded&) {
+    const Character& character = moving_.character;
+    const double time = on_time_line(seconds);
+    std::vector<Vec3> all;
+    skin(character, pose_at(character, clip_of(character), time),
+         weights_at(character, clip_of(character), time), all);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      at[i] = all[static_cast<std::size_t>(moving_.raw_vertex[+vertices[i]])];
+    std::ranges::fill(error, std::numeric_limits<double>::infinity());
+  }
+}
+
+void CharacterMotion::enclose(double seconds, std::span<const VertexId> vertices, std::span<Vec3> at,
+                              std::span<double> error) const {
   const Span moment = on_time_line(seconds, seconds);
   const PoseJets::Weights weights = pose_.weights(moment);
   const PoseJets::Nodes nodes = pose_.nodes(moment);

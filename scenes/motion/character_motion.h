@@ -52,6 +52,9 @@ class CharacterMotion final : public VertexPaths {
     std::int32_t part, vertex;
   };
   class LinearPaths;
+  // As positions(), and throws Unbounded where an enclosure breaks down.
+  void enclose(double seconds, std::span<const VertexId> vertices, std::span<Vec3> at,
+               std::span<double> error) const;
   bool is_linear(std::size_t part, const PoseJets::Weights& weights) const;
   double on_time_line(double seconds) const;
   Span on_time_line(double from, double to) const { return {on_time_line(from), on_time_line(to)}; }

@@ -59,6 +59,13 @@ bool meets(TrueVerdict verdict) {
   return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
 }
 
+// Of a span that starts crossed no more is asked, and nothing is known of how far it leaves straight lines.
+TrueAnswer crossing_at(double time) {
+  TrueAnswer out{.verdict = TrueVerdict::intersects_at_start, .from = time, .to = time};
+  out.deviation = std::numeric_limits<double>::infinity();
+  return out;
+}
+
 bool meets(IntervalVerdict verdict) {
   return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
 }
@@ -88,15 +95,13 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   const Stopwatch asking;
   const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
   if (answer.verdict == IntervalVerdict::intersects_at_start)
-    answer.motion = TrueAnswer{.verdict = TrueVerdict::intersects_at_start, .from = from, .to = from};
+    answer.motion = crossing_at(from);
   else {
     require_same(straight, motion_.positions_at(from), answer.index);
     // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
     // because that of the frame is another by rounding.
     const bool starts_embedded = clear_until_ == from || motion_.embedded_at(from);
-    answer.motion = starts_embedded
-                        ? motion_.answer(from, to)
-                        : TrueAnswer{.verdict = TrueVerdict::intersects_at_start, .from = from, .to = from};
+    answer.motion = starts_embedded ? motion_.answer(from, to) : crossing_at(from);
   }
   clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
   answer.motion_ms = asking.milliseconds();
@@ -111,7 +116,10 @@ IntervalVerdict final_verdict(const IntervalAnswer& answer) {
 }
 
 bool differs(const IntervalAnswer& answer) {
-  return answer.motion && meets(answer.motion->verdict) != meets(answer.verdict);
+  if (!answer.motion) return false;
+  const TrueVerdict own = answer.motion->verdict;
+  const bool is_known = meets(own) || own == TrueVerdict::clear;
+  return is_known && meets(own) != meets(answer.verdict);
 }
 
 IntervalVerdict TrueSummary::verdict() const {
@@ -128,7 +136,9 @@ void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
   ++verdicts[static_cast<std::size_t>(own.verdict)];
   parts += own.parts, pieces += own.pieces, jumps += own.jumps;
   ms += answer.motion_ms;
-  if (own.deviation < std::numeric_limits<double>::infinity())
+  if (own.parts == 0)
+    ++not_asked;
+  else if (own.deviation < std::numeric_limits<double>::infinity())
     deviation = std::max(deviation, own.deviation);
   else
     ++without_bound;
@@ -161,10 +171,18 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
     out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals, and have some in " +
            std::to_string(s.only_straight) + " in which the true motion has none";
   if (s.first_missed) out += "; the first that is missed is " + first_text(input, *s.first_missed);
-  out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation);
-  if (input.thickness.edge > 0) out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
-  if (s.without_bound > 0)
-    out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
+  if (s.not_asked == s.intervals) {
+    out += "\n  every interval starts crossed, and no more is asked of such";
+  } else if (s.bounded() == 0) {
+    out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
+  } else {
+    out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation);
+    if (input.thickness.edge > 0)
+      out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
+    if (s.without_bound > 0)
+      out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
+    if (s.not_asked > 0) out += ", apart from " + std::to_string(s.not_asked) + " that start crossed";
+  }
   if (s.jumps > 0)
     out += "; it jumps " + std::to_string(s.jumps) + " times, and nothing is asked of the way across a jump";
   return out + "; this took " + short_text(s.ms) + " ms more\n";
@@ -206,8 +224,9 @@ json true_motion_json(const Input& input, const TrueSummary& s) {
           {"only_true", s.only_true},
           {"only_straight", s.only_straight},
           {"first", std::move(first)},
-          {"deviation", s.deviation},
+          {"deviation", s.bounded() > 0 ? json(s.deviation) : json()},
           {"without_bound", s.without_bound},
+          {"not_asked", s.not_asked},
           {"parts", s.parts},
           {"pieces", s.pieces},
           {"jumps", s.jumps},

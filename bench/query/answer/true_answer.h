@@ -30,7 +30,8 @@ class TrueAnswerer {
 
 // What an interval comes to: by its true motion where that was asked for, otherwise by straight lines.
 IntervalVerdict final_verdict(const IntervalAnswer& answer);
-// Whether the true motion touches or crosses and straight lines do not, or the other way round.
+// Whether the true motion touches or crosses and straight lines do not, or the other way round, as far as the
+// true motion is known to do one or the other.
 bool differs(const IntervalAnswer& answer);
 
 // Sums up the true motion of a clip.
@@ -42,6 +43,7 @@ struct TrueSummary {
   std::size_t parts = 0, pieces = 0, jumps = 0;
   double deviation = 0, ms = 0;   // deviation: the largest bound that is finite
   std::size_t without_bound = 0;  // intervals of which a vertex has none as a whole
+  std::size_t not_asked = 0;      // intervals that start crossed
   // The first contact that straight lines do not have, and the first of all.
   struct Meeting {
     std::size_t interval = 0;
@@ -51,6 +53,7 @@ struct TrueSummary {
   std::optional<Meeting> first, first_missed;
 
   std::size_t count(TrueVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
+  std::size_t bounded() const { return intervals - without_bound - not_asked; }
   IntervalVerdict verdict() const;
   void add(const IntervalAnswer& answer, const SurfaceNames& names);
 };
