@@ -135,6 +135,7 @@ Shape tube(const TubeParameters& p) {
   std::vector<Vec3> joints;
   for (int i = 0; i <= p.bones; ++i) joints.push_back(axis.at(p.radius + i * bone_length).centre);
   append_chain(joints, shape);
+  add_details(p.details, shape);
   return shape;
 }
 
@@ -154,6 +155,7 @@ ShapeRow tube_row() {
                  {0, 1e12})
           .or_else({0}),
       vector_row("arc_side", "", "side to which the axis turns").or_else({1, 0, 0}),
+      objects_row("details", "one object for each raised, dented or folded place", detail_rows()).optional(),
   };
   return {"tube", "tube with rounded ends on a chain of bones, straight or a hairpin", rows,
           [](const Parameters& parameters) {
@@ -168,6 +170,7 @@ ShapeRow tube_row() {
             p.arc_turns = parameters.number("arc_turns");
             p.arc_radius = parameters.number("arc_radius");
             p.arc_side = parameters.vector("arc_side");
+            if (parameters.has("details")) p.details = read_details(parameters.objects("details"));
             return tube(p);
           },
           [](const Parameters& parameters, double factor) {

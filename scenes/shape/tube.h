@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "scenes/shape/shape.h"
+#include "scenes/shape/surface_details.h"
 
 namespace cscd::scenes {
 
@@ -18,6 +21,7 @@ struct TubeParameters {
   double arc_radius = 0;           // radius of that arc; larger than the tube's radius if there is an arc
   Vec3 arc_side =
       Vec3::UnitX();  // the side to which the axis turns; need not be a unit vector or perpendicular
+  std::vector<SurfaceDetail> details;  // raised and dented places of the finished surface
 };
 
 // Builds the tube. It has rings * sides + 2 vertices (ring by ring, then the first pole, then the last

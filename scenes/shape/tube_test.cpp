@@ -51,6 +51,26 @@ TEST(Tube, IsClosedOrientedAndOfGenusZero) {
   expect_well_formed(least);
 }
 
+TEST(Tube, MovesTheVerticesOfItsDetails) {
+  TubeParameters p = hairpin();
+  const Shape plain = tube(p);
+  SurfaceDetail& raised = p.details.emplace_back();
+  raised.at = Vec3(5, 0, 80);
+  raised.reach = Vec3(0.5, 0.5, 2);
+  raised.height = 0.1;
+  const Shape detailed = tube(p);
+  expect_well_formed(detailed);
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < plain.positions.size(); ++v) {
+    const Vec3 by = detailed.positions[v] - plain.positions[v];
+    moved += by.norm() > 0;
+    EXPECT_TRUE(by.norm() == 0 || by.x() > 0) << "vertex " << v << " moves outwards or stays";
+    EXPECT_LE(by.norm(), 0.1 + 1e-12);
+  }
+  EXPECT_GT(moved, 20u);
+  EXPECT_EQ(detailed.weights.size(), plain.weights.size());
+}
+
 TEST(Tube, EnclosesACapsulesVolumeOutwards) {
   // By the theorem of Pappus the hairpin has the volume of the straight tube.
   const double expected = std::numbers::pi * 188 + 4 * std::numbers::pi / 3;
