@@ -71,17 +71,18 @@ export class Marker {
     if (normals) for (let c = from; c < to; c += Math.ceil((to - from) / MOST_NORMALS)) addNormal(c, 0.02);
     marks.setContacts(points, weights);
     marks.setChosen(at);
-    const crossings = this.curves(interval);
-    if (chosen && chosen.event) first.push(...this.curves(interval, chosen.event.number));
-    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow: crossings })) marks.setLines(name, numbers);
+    const isChosen = (event) => Boolean(chosen && chosen.event && chosen.event.number === event);
+    const crossings = this.curves(interval, (event) => !isChosen(event)), crossingGlow = this.curves(interval, () => true);
+    first.push(...this.curves(interval, isChosen));
+    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow })) marks.setLines(name, numbers);
   }
 
-  // The segments of the curves in which the surface crosses itself at the start of an interval, of one event or of all.
-  curves(interval, event) {
+  // The segments of the curves in which the surface crosses itself at the start of an interval, of the events that are wanted.
+  curves(interval, isWanted) {
     const { curveOffset, curveEvent, pointOffset, curveEdge, curveShare } = this.recording, { surface } = this.stage, segments = [];
     const from = new THREE.Vector3(), to = new THREE.Vector3();
     for (let c = curveOffset[interval]; c < curveOffset[interval + 1]; ++c) {
-      if (event !== undefined && curveEvent[c] !== event) continue;
+      if (!isWanted(curveEvent[c])) continue;
       for (let i = pointOffset[c]; i < pointOffset[c + 1]; ++i) {
         surface.point(curveEdge[2 * i], from).lerp(surface.point(curveEdge[2 * i + 1], to), curveShare[i] / 65535);
         from.toArray(segments, segments.length);

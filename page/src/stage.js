@@ -98,6 +98,8 @@ export class Marks {
     this.observerSegments = lines("#ffffff", 3.5);
     this.observerSegments.material.vertexColors = true;
     this.group.add(this.observerEdges, this.observerSegments, this.observers, this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
+    // The renderer would sort what is transparent by how far away its middle is.
+    this.group.children.forEach((mark, i) => { mark.renderOrder += (i + 1) / 100; });
   }
   setContacts(numbers, weights) { setDots(this.contacts, numbers, weights); }
   setChosen(numbers) { setDots(this.chosen, numbers, numbers.length ? [1] : []); }

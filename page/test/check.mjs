@@ -203,7 +203,7 @@ try {
       }
       return { all, own, drawn: drawn("crossings"), chosen: drawn("first") };
     });
-    require(curves.own > 0 && curves.drawn === curves.all && curves.chosen === curves.own, `curves of an event are not drawn: ${JSON.stringify(curves)}`);
+    require(curves.own > 0 && curves.drawn === curves.all - curves.own && curves.chosen === curves.own, `curves of an event are not drawn: ${JSON.stringify(curves)}`);
     await page.locator("#modes button[value=place], #modes button[value=often]").first().click();
     require(different(deep, await look()) > 0, "an event is not coloured by its depth");
   }
