@@ -23,7 +23,7 @@ SelfCollision::Crossings::Region written(const CrossingRegion& region) {
   out.way = region.way;
   for (const Vec3& way : region.way) out.distance.push_back(way.norm());
   out.area = region.area;
-  out.behind = region.behind;
+  out.behind = region.side == CrossingRegion::Side::behind;
   out.other_is_open = region.other_is_open;
   out.depth = region.depth.lower;
   out.depth_bound = region.depth.upper;

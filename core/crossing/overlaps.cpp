@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/crossing/disjoint_sets.h"
+#include "core/crossing/self_winding.h"
 #include "core/crossing/sheet_distance.h"
 
 namespace cscd {
@@ -16,24 +18,6 @@ constexpr std::int32_t kNone = -1;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
-}
-
-// Disjoint sets; a root holds minus the number of its elements, or of what they stand for.
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t i) {
-  while (parent[index(i)] >= 0) {
-    std::int32_t& up = parent[index(i)];
-    if (parent[index(up)] >= 0) up = parent[index(up)];
-    i = up;
-  }
-  return i;
-}
-void unite(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  if (a == b) return;
-  if (parent[index(a)] > parent[index(b)]) std::swap(a, b);
-  parent[index(a)] += parent[index(b)];
-  parent[index(b)] = a;
 }
 
 }  // namespace
@@ -74,6 +58,8 @@ class PoseOverlaps {
   }
 
  private:
+  using Side = CrossingRegion::Side;
+
   // Edges of one component and the faces of one, the same or another, that they pierce.
   struct Group {
     std::int32_t own, other;           // components
@@ -117,28 +103,32 @@ class PoseOverlaps {
   bool is_on_curve(VertexId v) const { return finder_.is_on_curve_[+v] != 0; }
 
   std::int32_t vertex_root(VertexId v) { return root_of(finder_.parent_, static_cast<std::int32_t>(v)); }
+  // The number of a vertex's fragment, or kNone if none of its edges is pierced.
   std::int32_t fragment(VertexId v) const {
     const std::int32_t root = root_of(finder_.parent_, static_cast<std::int32_t>(v));
-    return static_cast<std::int32_t>(std::ranges::lower_bound(roots_, root) - roots_.begin());
+    const auto at = std::ranges::lower_bound(roots_, root);
+    return at == roots_.end() || *at != root ? kNone : static_cast<std::int32_t>(at - roots_.begin());
   }
 
-  // How faces of a component part the ends of an edge: not at all if they pierce it an even number of times,
-  // and else so that one end lies behind more of them.
+  // How faces of a component part the ends of an edge: not at all if as many have the one end behind them
+  // as the other. Faces of an open component may look anywhere; there, an even number of faces does not part.
   struct Parting {
-    bool parts = false;
+    int faces = 0;  // how many more have the end `behind` behind them than the end `before`
     VertexId behind{-1}, before{-1};
+    bool parts() const { return faces != 0; }
   };
   Parting parting(EdgeId edge, std::int32_t other) const {
-    int balance = 0;  // of faces that have end 0 behind them; odd if their number is
+    int balance = 0;  // of faces that have end 0 behind them
     const std::vector<Piercing>& all = crossing().piercings;
     const Edge& ends = mesh_.ends(edge);
     for (std::size_t p = index(finder_.pierced_[+edge]); p < all.size() && all[p].edge == edge; ++p)
       if (mesh_.component(all[p].face) == other) balance += all[p].behind == ends[0] ? 1 : -1;
-    return {balance % 2 != 0, ends[balance > 0 ? 0 : 1], ends[balance > 0 ? 1 : 0]};
+    if (finder_.open_[index(other)]) balance %= 2;
+    return {std::abs(balance), ends[balance > 0 ? 0 : 1], ends[balance > 0 ? 1 : 0]};
   }
 
   // For each pair of components, joins the fragments of one that the other component does not part: those at
-  // both ends of an edge that its faces pierce an even number of times.
+  // both ends of an edge that its faces do not part.
   void join_fragments() {
     const std::vector<Piercing>& all = crossing().piercings;
     for (const Piercing& p : all) {
@@ -160,12 +150,8 @@ class PoseOverlaps {
       if (is_on_curve(all[p].behind) || is_on_curve(all[p].before)) continue;
       const std::int32_t own = component(all[p].edge);
       for (Group& group : groups_)
-        if (group.own == own && !parting(all[p].edge, group.other).parts)
+        if (group.own == own && !parting(all[p].edge, group.other).parts())
           unite(group.parent, fragment(all[p].behind), fragment(all[p].before));
-    }
-    for (const std::int32_t root : roots_) {
-      const VertexId v{root};
-      vertices_of_component_[mesh_.component(mesh_.triangles_at(v).front())] -= finder_.parent_[index(root)];
     }
   }
 
@@ -186,19 +172,21 @@ class PoseOverlaps {
         const Piercing& piercing = crossing().piercings[index(node.piercing)];
         const std::size_t g = group_of(piercing);
         const Parting p = parting(piercing.edge, groups_[g].other);
-        if (!p.parts || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
+        if (!p.parts() || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
         std::vector<std::int32_t>& parent = groups_[g].parent;
         const std::int32_t behind = root_of(parent, fragment(p.behind)),
                            before = root_of(parent, fragment(p.before));
         if (behind == before) continue;
-        const bool is_behind = takes_behind(groups_[g], behind, before);
+        const Side side = side_of(groups_[g], p);
+        const bool is_behind =
+            side == Side::behind || (side == Side::smaller && is_smaller(groups_[g], behind, before));
         const auto image = static_cast<std::int32_t>(2 * c + node.edge_sheet);
         const auto [at, added] = known.try_emplace({g, is_behind ? behind : before}, regions_.size());
         if (added) regions_.push_back({g, {}, {}, {}});
         Found& found = regions_[at->second];
         found.region.own = groups_[g].own;
         found.region.other = groups_[g].other;
-        found.region.behind = found.region.behind && is_behind && !finder_.open_[index(groups_[g].other)];
+        found.region.side = side;
         found.seeds.push_back({is_behind ? p.behind : p.before, image});
         found.images.push_back(image);
         region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);
@@ -209,11 +197,37 @@ class PoseOverlaps {
     }
   }
 
-  // Whether the part behind the other sheet is the region. Sizes are minus the numbers of vertices.
-  bool takes_behind(const Group& group, std::int32_t behind, std::int32_t before) {
-    const std::int32_t inner = -group.parent[index(behind)], outer = -group.parent[index(before)];
-    if (finder_.open_[index(group.other)]) return inner <= outer;
-    return group.own != group.other || 2 * inner <= vertices_of_component_[group.own] || inner <= outer;
+  // Whether the part behind the other sheet has no more vertices than that before.
+  static bool is_smaller(const Group& group, std::int32_t behind, std::int32_t before) {
+    return group.parent[index(behind)] >= group.parent[index(before)];  // minus the numbers of vertices
+  }
+  // On which side of an edge that is parted the region lies.
+  Side side_of(const Group& group, const Parting& edge) {
+    if (finder_.open_[index(group.other)]) return Side::smaller;
+    if (!inward_.contains(group.other)) inward_[group.other] = faces_inward(mesh_, positions_, group.other);
+    const bool inward = inward_[group.other];
+    if (group.own != group.other) return inward ? Side::before : Side::behind;
+    if (!windings_.contains(group.own)) windings_[group.own] = windings_of(group.own);
+    const auto winding = [&](VertexId v) { return windings_[group.own][index(fragment(v))]; };
+    if (!winding(edge.behind)) return Side::smaller;
+    if (inward) return *winding(edge.before) < -1 ? Side::before : Side::behind;
+    return *winding(edge.behind) > 0 ? Side::behind : Side::before;
+  }
+
+  // How often a closed component winds around what is just before its faces at the vertices of each fragment:
+  // known at an outermost vertex, and one more for each of its faces behind which an edge leads from there.
+  // Nothing where this cannot be decided.
+  std::vector<std::optional<int>> windings_of(std::int32_t own) const {
+    std::vector<WindingStep> steps;
+    for (const Piercing& p : crossing().piercings) {
+      if (component(p.edge) != own || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
+      const Parting edge = parting(p.edge, own);
+      steps.push_back({fragment(edge.before), fragment(edge.behind), edge.faces});
+    }
+    const std::optional<OutermostVertex> known =
+        find_outermost_vertex(mesh_, positions_, own, [&](VertexId v) { return is_on_curve(v); });
+    if (!known) return std::vector<std::optional<int>>(roots_.size());
+    return spread_winding(roots_.size(), steps, fragment(known->vertex), known->winding);
   }
 
   // Collects the vertices of a region, from all its curves inwards.
@@ -238,7 +252,7 @@ class PoseOverlaps {
           const Edge& ends = mesh_.ends(edge);
           if (ends[0] != list[i] && ends[1] != list[i]) continue;
           const VertexId next = ends[0] == list[i] ? ends[1] : ends[0];
-          if (!is_on_curve(next) && !(finder_.pierced_[+edge] >= 0 && parting(edge, other).parts))
+          if (!is_on_curve(next) && !(finder_.pierced_[+edge] >= 0 && parting(edge, other).parts()))
             take(next, found.region.image[i]);
         }
       }
@@ -272,7 +286,7 @@ class PoseOverlaps {
     return std::ranges::none_of(curve.nodes, [&](const CrossingCurve::Node& node) {
       if (node.piercing < 0 || node.edge_sheet != image % 2) return false;
       const Piercing& p = crossing().piercings[index(node.piercing)];
-      return parting(p.edge, mesh_.component(p.face)).parts;
+      return parting(p.edge, mesh_.component(p.face)).parts();
     });
   }
 
@@ -477,9 +491,10 @@ class PoseOverlaps {
   std::span<const Vec3> positions_;
   bool each_way_;
   Overlaps out_;
-  std::vector<std::int32_t> roots_;  // of the fragments at piercings; sorted
-  std::vector<Group> groups_;        // sorted
-  std::map<std::int32_t, std::int32_t> vertices_of_component_;
+  std::vector<std::int32_t> roots_;                                   // of the fragments at piercings; sorted
+  std::vector<Group> groups_;                                         // sorted
+  std::map<std::int32_t, bool> inward_;                               // of components
+  std::map<std::int32_t, std::vector<std::optional<int>>> windings_;  // of components, [roots_]
   std::vector<Found> regions_;
   std::vector<std::int32_t> region_of_image_;   // [images], or kNone
   std::vector<std::vector<TriangleId>> sheet_;  // [images]

@@ -29,10 +29,13 @@ struct CrossingDepth {
 // curve cuts off the other sheet: to all triangles that have a vertex there, or that the curve runs through.
 struct CrossingRegion {
   std::int32_t own = 0, other = 0;  // the components of this sheet and of the other
-  // The region lies behind the faces of the other sheet, inside a closed body. Otherwise it is the smaller
-  // side of the curves: the other sheet is open, or one surface crosses itself and more than half of its
-  // vertices lie behind.
-  bool behind = true;
+  // On which side of the curves the region lies. Behind the faces of the other sheet, inside a closed body;
+  // where one closed surface crosses itself, it winds once or more around what is just before the region's
+  // faces. Before them, where that surface is turned inside out and winds -1 times or less, or where all
+  // faces of a closed component look inward. The smaller side, where the other sheet is open, or where it
+  // cannot be decided how often the surface winds around the region.
+  enum class Side : std::uint8_t { behind, before, smaller };
+  Side side = Side::behind;
   // What the curves cut off the other sheet is not bounded: a curve ends on it, or has no vertex of it
   // beyond. The distance is then that to the other component, or within one component to the curves'
   // triangles alone; there the depth is an upper bound, and `lower` is 0.

@@ -186,7 +186,8 @@ PYBIND11_MODULE(_cscd, module) {
           "sheet. A repair moves vertices along their ways.")
       .def_readonly("area", &Crossings::Region::area)
       .def_readonly("behind", &Crossings::Region::behind,
-                    "Whether it lies behind the faces of the other sheet; otherwise it is the smaller side.")
+                    "Whether it lies behind the faces of the other sheet, inside a closed surface. Otherwise "
+                    "the surface is turned inside out there, or it is the smaller side of an open one.")
       .def_readonly("other_is_open", &Crossings::Region::other_is_open,
                     "Whether what is cut off the other sheet is not bounded.")
       .def_readonly("depth", &Crossings::Region::depth, "The largest distance of a vertex.")

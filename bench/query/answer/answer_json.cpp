@@ -123,6 +123,11 @@ json moment_json(const Input& input, const ClipMoment& moment) {
           {"seconds", seconds ? json(*seconds) : json()}};
 }
 
+const char* side_name(CrossingRegion::Side side) {
+  using Side = CrossingRegion::Side;
+  return side == Side::behind ? "behind" : side == Side::before ? "before" : "smaller";
+}
+
 json event_json(const Input& input, const OverlapEvent& event) {
   const auto moment = [&](std::size_t interval) { return moment_json(input, {interval, 0}); };
   json out = {{"first", event.names.first},
@@ -135,7 +140,7 @@ json event_json(const Input& input, const OverlapEvent& event) {
               {"out", event.depth.nearest == TriangleId{-1} ? json() : vector_json(event.depth.out)},
               {"vertices", event.vertices},
               {"area", event.area},
-              {"side", event.vertices == 0 ? json() : json(event.behind ? "behind" : "smaller")},
+              {"side", event.vertices == 0 ? json() : json(side_name(event.side))},
               {"other_is_open", event.other_is_open},
               {"pairs", event.pairs},
               {"curves", event.curves},

@@ -120,7 +120,7 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
     const CrossingRegion& deepest = overlap.regions.front();
     event.vertices = deepest.vertices.size();
     event.area = deepest.area;
-    event.behind = deepest.behind;
+    event.side = deepest.side;
     event.other_is_open = deepest.other_is_open;
   }
   event.point = event.depth.nearest != TriangleId{-1}

@@ -26,7 +26,8 @@ struct OverlapEvent {
   // Of the deepest region (CrossingRegion). There is none where no vertex lies in the other sheet.
   std::size_t vertices = 0;
   double area = 0;
-  bool behind = true, other_is_open = false;
+  CrossingRegion::Side side = CrossingRegion::Side::behind;
+  bool other_is_open = false;
   std::vector<double> depth_at;  // of intervals first to last; 0 where it pauses
   std::size_t contacts = 0;      // of these intervals, between its pieces
 };

@@ -55,7 +55,7 @@ TEST(OverlapEvents, BeginAreDeepestAndEnd) {
   ASSERT_EQ(events[0].depth_at.size(), 3u);
   EXPECT_EQ(events[0].depth_at[1], events[0].depth.lower);
   EXPECT_GT(events[0].depth_at[2], events[0].depth_at[0]);
-  EXPECT_TRUE(events[0].behind);
+  EXPECT_EQ(events[0].side, CrossingRegion::Side::behind);
   EXPECT_FALSE(events[0].other_is_open);
   EXPECT_EQ(events[0].curves, 1u);
   EXPECT_EQ(within, events[0].contacts + events[1].contacts);
