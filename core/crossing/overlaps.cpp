@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/crossing/disjoint_sets.h"
+#include "core/crossing/reach.h"
 #include "core/crossing/self_winding.h"
 #include "core/crossing/sheet_distance.h"
 
@@ -134,7 +134,8 @@ class PoseOverlaps {
     for (const Piercing& p : all) {
       roots_.push_back(vertex_root(p.behind));
       roots_.push_back(vertex_root(p.before));
-      groups_.push_back({component(p.edge), mesh_.component(p.face), {}});
+      Group group{component(p.edge), mesh_.component(p.face), {}};
+      if (groups_.empty() || groups_.back() != group) groups_.push_back(std::move(group));
     }
     const auto make_unique = [](auto& items) {
       std::ranges::sort(items);
@@ -204,14 +205,17 @@ class PoseOverlaps {
   // On which side of an edge that is parted the region lies.
   Side side_of(const Group& group, const Parting& edge) {
     if (finder_.open_[index(group.other)]) return Side::smaller;
+    if (group.own == group.other) {
+      if (!windings_.contains(group.own)) windings_[group.own] = windings_of(group.own);
+      const auto winding = [&](VertexId v) { return windings_[group.own][index(fragment(v))]; };
+      if (!winding(edge.behind)) return Side::smaller;
+      if (*winding(edge.behind) > 0) return Side::behind;
+      if (*winding(edge.before) < -1) return Side::before;
+    }
+    // What winds 0 times behind an edge and -1 times before it is turned inside out, unless all faces look
+    // inward: then the surface winds -1 times around its own inside.
     if (!inward_.contains(group.other)) inward_[group.other] = faces_inward(mesh_, positions_, group.other);
-    const bool inward = inward_[group.other];
-    if (group.own != group.other) return inward ? Side::before : Side::behind;
-    if (!windings_.contains(group.own)) windings_[group.own] = windings_of(group.own);
-    const auto winding = [&](VertexId v) { return windings_[group.own][index(fragment(v))]; };
-    if (!winding(edge.behind)) return Side::smaller;
-    if (inward) return *winding(edge.before) < -1 ? Side::before : Side::behind;
-    return *winding(edge.behind) > 0 ? Side::behind : Side::before;
+    return inward_[group.other] == (group.own == group.other) ? Side::behind : Side::before;
   }
 
   // How often a closed component winds around what is just before its faces at the vertices of each fragment:
@@ -346,7 +350,7 @@ class PoseOverlaps {
       }
     }
     point_out(region.depth);
-    region.depth.upper = region.depth.lower + reach(regions_[r].images, region.vertices);
+    region.depth.upper = region.depth.lower + reach_of(regions_[r].images, region.vertices);
     if (region.other_is_open && region.own == region.other) region.depth.lower = 0;
   }
 
@@ -380,60 +384,13 @@ class PoseOverlaps {
       deepen(depth, middle, VertexId{-1}, to->nearest(middle, depth.lower));
     }
     point_out(depth);
-    depth.upper = depth.lower + reach(std::span(&image, 1), {});
+    depth.upper = depth.lower + reach_of(std::span(&image, 1), {});
     if (is_open) depth = {.upper = depth.upper};
     return depth;
   }
 
-  // How far a point of what the images bound can be from all vertices there and all points of the curves.
-  // Within one triangle, that part is a union of triangles between such points, and any point of a triangle
-  // is within 1 / sqrt(3) of its longest edge of some corner.
-  double reach(std::span<const std::int32_t> images, std::span<const VertexId> vertices) const {
-    std::vector<std::uint64_t> order;  // a triangle in the upper half, and one of its points in the lower
-    std::vector<Vec3> points;
-    const auto add = [&](TriangleId t, const Vec3& point) {
-      order.push_back(static_cast<std::uint64_t>(+t) << 32 | points.size());
-      points.push_back(point);
-    };
-    for (const std::int32_t image : images) {
-      const CrossingCurve& curve = crossing().curves[index(image / 2)];
-      for (std::size_t i = 0; i < curve.segments.size(); ++i)
-        for (const std::size_t node : {i, (i + 1) % curve.nodes.size()})
-          add(curve.segments[i][index(image % 2)], crossing().point(curve.nodes[node], positions_));
-    }
-    double most = 0;
-    for (const VertexId v : vertices)
-      for (const TriangleId t : mesh_.triangles_at(v)) {
-        const Triangle& c = mesh_.corners(t);
-        if (finder_.is_cut_[+t]) {
-          add(t, positions_[+v]);
-          for (const VertexId corner : c)
-            if (is_on_curve(corner)) add(t, positions_[+corner]);
-          continue;
-        }
-        if (v != c[0] && !is_on_curve(c[0])) continue;  // each triangle once
-        for (std::size_t k = 0; k < 3; ++k)
-          most = std::max(most, (positions_[+c[k]] - positions_[+c[(k + 1) % 3]]).squaredNorm());
-      }
-    std::ranges::sort(order);
-    const auto point = [&](std::size_t i) -> const Vec3& { return points[order[i] & 0xffffffff]; };
-    for (std::size_t i = 0; i < order.size();) {
-      Vec3 low = point(i), high = low;
-      const std::size_t first = i;
-      for (; i < order.size() && order[i] >> 32 == order[first] >> 32; ++i) {
-        low = low.cwiseMin(point(i));
-        high = high.cwiseMax(point(i));
-      }
-      double widest = 0;
-      if (i - first <= 8)
-        for (std::size_t a = first; a < i; ++a)
-          for (std::size_t b = a + 1; b < i; ++b)
-            widest = std::max(widest, (point(a) - point(b)).squaredNorm());
-      else
-        widest = (high - low).squaredNorm();
-      most = std::max(most, widest);
-    }
-    return std::sqrt(most) * std::numbers::inv_sqrt3;
+  double reach_of(std::span<const std::int32_t> images, std::span<const VertexId> vertices) const {
+    return reach(mesh_, positions_, crossing(), {images, vertices, finder_.is_cut_, finder_.is_on_curve_});
   }
 
   static void deepest_of(CrossingDepth& depth, const CrossingDepth& other) {

@@ -10,12 +10,15 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
                              std::span<const std::size_t> number) {
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (number[i] == kNone) continue;
+    const auto add = [&](TriangleId t) {
+      triangles_.push_back(static_cast<std::uint64_t>(+t) << 32 | number[i]);
+    };
     for_each_segment(all.crossing, all.overlaps[i], [&](const auto& segment) {
-      for (const TriangleId t : segment) triangles_.emplace_back(t, number[i]);
+      for (const TriangleId t : segment) add(t);
     });
     for (const CrossingRegion& region : all.overlaps[i].regions)
       for (const VertexId v : region.vertices)
-        for (const TriangleId t : mesh.triangles_at(v)) triangles_.emplace_back(t, number[i]);
+        for (const TriangleId t : mesh.triangles_at(v)) add(t);
   }
   std::ranges::sort(triangles_);
   triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
@@ -23,11 +26,14 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
 
 std::size_t OverlapPieces::find(TriangleId a, TriangleId b) const {
   const auto numbers_of = [&](TriangleId t) {
-    return std::ranges::equal_range(triangles_, t, {}, [](const auto& entry) { return entry.first; });
+    const std::uint64_t first = static_cast<std::uint64_t>(+t) << 32;
+    return std::ranges::subrange(std::ranges::lower_bound(triangles_, first),
+                                 std::ranges::lower_bound(triangles_, first + (std::uint64_t{1} << 32)));
   };
-  for (const auto& entry : numbers_of(a))
-    for (const auto& other : numbers_of(b))
-      if (entry.second == other.second) return entry.second;
+  for (const std::uint64_t one : numbers_of(a))
+    for (const std::uint64_t other : numbers_of(b))
+      if (constexpr std::uint64_t kNumber = 0xffffffff; (one & kNumber) == (other & kNumber))
+        return one & kNumber;
   return kNone;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -19,7 +19,8 @@ class OverlapPieces {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
   OverlapPieces() = default;
-  // `number`, [all.overlaps], names each overlap; those with the number kNone are left out.
+  // `number`, [all.overlaps], names each overlap by a number below 2^32; those with the number kNone are left
+  // out.
   OverlapPieces(const TriangleMesh& mesh, const Overlaps& all, std::span<const std::size_t> number);
 
   bool empty() const { return triangles_.empty(); }
@@ -30,7 +31,7 @@ class OverlapPieces {
   std::size_t find(const TriangleMesh& mesh, const FeaturePair& pair) const;
 
  private:
-  std::vector<std::pair<TriangleId, std::size_t>> triangles_;  // sorted
+  std::vector<std::uint64_t> triangles_;  // the triangle in the upper half, the number in the lower; sorted
 };
 
 }  // namespace cscd

@@ -16,15 +16,14 @@ std::optional<VertexId> farthest_vertex(const TriangleMesh& mesh, std::span<cons
                                         std::int32_t component, int axis, int sign) {
   std::optional<VertexId> best;
   bool alone = true;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    const TriangleId id{static_cast<std::int32_t>(t)};
-    if (mesh.component(id) != component) continue;
-    for (const VertexId v : mesh.corners(id)) {
-      if (best == v) continue;
-      const double gain = best ? sign * (positions[+v][axis] - positions[+*best][axis]) : 1;
-      if (gain > 0) best = v, alone = true;
-      if (gain == 0) alone = false;
-    }
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+    const VertexId v{static_cast<std::int32_t>(i)};
+    const double gain = best ? sign * (positions[i][axis] - positions[+*best][axis]) : 1;
+    if (gain < 0) continue;
+    const std::span<const TriangleId> at = mesh.triangles_at(v);
+    if (at.empty() || mesh.component(at.front()) != component) continue;
+    if (gain > 0) best = v;
+    alone = gain > 0;
   }
   return alone ? best : std::nullopt;
 }
