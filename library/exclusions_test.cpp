@@ -145,7 +145,9 @@ struct Within {
     });
   }
   bool operator()(const Truth::value_type& contact) const {
-    const auto& [edges, v, face] = contact.first;
+    const bool edges = std::get<0>(contact.first);
+    const std::array<int, 4>& v = std::get<1>(contact.first);
+    const int face = std::get<2>(contact.first);
     return std::ranges::any_of(faces, [&](const std::set<int>& of_overlap) {
       const auto any_with = [&](std::initializer_list<int> corners) {
         return std::ranges::any_of(of_overlap, [&](int f) {

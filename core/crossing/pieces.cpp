@@ -27,8 +27,8 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
 std::size_t OverlapPieces::find(TriangleId a, TriangleId b) const {
   const auto numbers_of = [&](TriangleId t) {
     const std::uint64_t first = static_cast<std::uint64_t>(+t) << 32;
-    return std::ranges::subrange(std::ranges::lower_bound(triangles_, first),
-                                 std::ranges::lower_bound(triangles_, first + (std::uint64_t{1} << 32)));
+    const auto from = std::lower_bound(triangles_.begin(), triangles_.end(), first);
+    return std::span(from, std::lower_bound(from, triangles_.end(), first + (std::uint64_t{1} << 32)));
   };
   for (const std::uint64_t one : numbers_of(a))
     for (const std::uint64_t other : numbers_of(b))
