@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/base/ids.h"
 #include "core/base/vec3.h"
@@ -24,6 +25,16 @@ class VertexPaths {
   // `to`.
   virtual void deviations(double from, double to, std::span<const VertexId> vertices,
                           std::span<double> out) const = 0;
+  // A bound on the deviations of all vertices, which may be larger than theirs and cost less.
+  virtual double largest_deviation(double from, double to) const {
+    std::vector<VertexId> all;
+    for (std::size_t v = 0; v < vertex_count(); ++v) all.push_back(VertexId{static_cast<std::int32_t>(v)});
+    std::vector<double> out(all.size());
+    deviations(from, to, all, out);
+    double largest = 0;
+    for (const double x : out) largest = largest >= x ? largest : x;  // NaN stays
+    return largest;
+  }
   // A time strictly between, at which to divide a span of time.
   virtual double split(double from, double to) const { return from + (to - from) / 2; }
   // A time within `reach` of another at which paths turn corners, or else that other time. Spans that end at

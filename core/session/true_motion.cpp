@@ -8,6 +8,7 @@
 #include "core/base/rounding.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/start/crossings.h"
+#include "core/fast/drvbc_fast.h"
 
 namespace cscd {
 namespace {
@@ -18,8 +19,10 @@ constexpr double kGrown = 1 + 32 * kUnitRoundoff;
 
 // Parts are searched at more than their distance by this factor, so that the next ones need no more; and
 // after how many that is tried again.
-constexpr double kRoom = 2;
-constexpr int kWaits = 16;
+constexpr double kRoom = 1.25;
+constexpr int kWaits = 4;
+// A bound for all vertices at once that is too large by less than this is looked at vertex by vertex.
+constexpr double kLooser = 4;
 // No square of a length below this overflows.
 constexpr double kMostLength = 1e150;
 
@@ -97,6 +100,11 @@ TrueMotion::TrueMotion(const VertexPaths& paths, const StrategyInput& setup, con
                      " vertices, and the mesh has " + std::to_string(vertices));
   detector_ = strategy.make(setup_).detector;
   for (std::size_t v = 0; v < vertices; ++v) everything_.push_back(VertexId{static_cast<std::int32_t>(v)});
+  if (strategy.looks_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr) {
+    StrategyInput first = setup_;
+    first.first_only = true;
+    free_ = kDrvbcFast.make(first).detector;
+  }
   a_.resize(vertices), b_.resize(vertices), wide_.resize(vertices);
 }
 
@@ -187,12 +195,13 @@ void TrueMotion::say_close(double from, double to, double within, const std::vec
 }
 
 bool TrueMotion::look_at(const Places& from, const Places& to) {
-  std::vector<double> wide(everything_.size());
-  paths_.deviations(from.time, to.time, everything_, wide);
-  double widest = 0;
-  for (std::size_t v = 0; v < wide.size(); ++v) {
-    wide[v] = (wide[v] + std::max(from.error[v], to.error[v])) * kGrown;
-    widest = wide[v] <= kInfinity ? std::max(widest, wide[v]) : kInfinity;
+  double error = 0;
+  for (const Places* places : {&from, &to})
+    for (const double e : places->error) error = std::max(error, e);
+  double widest = (paths_.largest_deviation(from.time, to.time) + error) * kGrown;
+  if (!(widest <= options_.coarse) && widest < kLooser * options_.coarse) {
+    const std::vector<double> wide = widths(from, to);
+    widest = *std::ranges::max_element(wide);
   }
   if (std::exchange(is_stretch_, false)) answer_.deviation = std::max(answer_.deviation, widest);
   if (++answer_.parts > options_.most_parts) return give_up(from.time, to.time);
@@ -203,19 +212,28 @@ bool TrueMotion::look_at(const Places& from, const Places& to) {
     place_all(middle, between);
     return look_at(from, between) && look_at(between, to);
   }
-  find_close(from, to, wide, widest);
+  find_close(from, to, widest);
   std::vector<FeaturePair> pairs;
   for (const Contact& contact : found_.contacts)
     if (!is_out(contact.pair)) pairs.push_back(contact.pair);
   return pairs.empty() || look_closer(from, to, pairs);
 }
 
+std::vector<double> TrueMotion::widths(const Places& from, const Places& to) const {
+  std::vector<double> wide(everything_.size());
+  paths_.deviations(from.time, to.time, everything_, wide);
+  for (std::size_t v = 0; v < wide.size(); ++v) {
+    wide[v] = (wide[v] + std::max(from.error[v], to.error[v])) * kGrown;
+    if (!(wide[v] <= kInfinity)) wide[v] = kInfinity;
+  }
+  return wide;
+}
+
 // Finds all pairs that come close on the lines: within the widths of their vertices, or within one distance
 // for all that is more. A part that ends with nothing so close starts the next one clear, and a clear start
 // of a closed surface is answered in a fraction of the time. Where something stays close, that is tried again
 // after some parts.
-void TrueMotion::find_close(const Places& from, const Places& to, std::span<const double> wide,
-                            double widest) {
+void TrueMotion::find_close(const Places& from, const Places& to, double widest) {
   const double distance = 2 * widest * kGrown;
   // What crosses need not be close. So a part is no clear start where something may cross: where pairs that
   // cross are left out, or where two features have come together in this span and cannot be told apart.
@@ -224,6 +242,20 @@ void TrueMotion::find_close(const Places& from, const Places& to, std::span<cons
   const bool starts_clear = !may_cross && clear_time_ == from.time && distance <= clear_at_;
   const bool by_one = starts_clear || (setup_.exclusions == nullptr && waits_ == 0);
   const double asked = starts_clear ? std::min(clear_at_, kRoom * distance) : kRoom * distance;
+  // After a clear start the first contact alone is enough to know that there is none, and soon known.
+  if (starts_clear && free_) {
+    free_->detect({.motion = Motion(from.at, to.at),
+                   .starts_embedded = true,
+                   .thickness = Thickness(asked),
+                   .any_contact = true},
+                  found_);
+    if (found_.contacts.empty()) {
+      clear_time_ = to.time;
+      clear_at_ = asked;
+      return;
+    }
+  }
+  const std::vector<double> wide = by_one ? std::vector<double>() : widths(from, to);
   detector_->detect({.motion = Motion(from.at, to.at),
                      .starts_embedded = starts_clear,
                      .thickness = by_one ? Thickness(asked) : Thickness(0, wide)},

@@ -92,7 +92,9 @@ class TrueMotion {
   bool is_out(const FeaturePair& pair) const;
   // Each returns false once the answer is known.
   bool look_at(const Places& from, const Places& to);
-  void find_close(const Places& from, const Places& to, std::span<const double> wide, double widest);
+  void find_close(const Places& from, const Places& to, double widest);
+  // How far vertices leave their lines, what is uncertain of their places included, [vertices].
+  std::vector<double> widths(const Places& from, const Places& to) const;
   bool look_closer(const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
   bool look_at(Piece& piece, const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
   bool proves_contact(const Piece& piece, const Places& from, const Places& to,
@@ -104,6 +106,8 @@ class TrueMotion {
   StrategyInput setup_;
   TrueMotionOptions options_;
   std::unique_ptr<Detector> detector_;
+  std::unique_ptr<Detector>
+      free_;  // tells whether anything comes close after a clear start; null where none can
   std::vector<VertexId> everything_;
   Places last_;  // where the span asked about last ended
   // At this time the pose is clear (core/soundness.md, "Contacts at a distance") at this distance; 0 where

@@ -229,6 +229,30 @@ void CharacterMotion::deviations(double from, double to, std::span<const VertexI
   }
 }
 
+double CharacterMotion::largest_deviation(double from, double to) const {
+  const Span span = on_time_line(from, to);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  if (next_jump(from, to)) return kNone;
+  try {
+    const PoseJets::Weights weights = pose_.weights(span);
+    std::vector<std::size_t> moved;
+    for (const Place& place : place_)
+      if (const auto part = static_cast<std::size_t>(place.part); moved.empty() || moved.back() != part)
+        moved.push_back(part);
+    std::ranges::sort(moved);
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    for (const std::size_t part : moved)
+      if (!is_linear(part, weights)) return VertexPaths::largest_deviation(from, to);
+    const auto of_joints = LinearPaths(*this, moved).deviations(span);
+    double largest = 0;
+    for (std::size_t p = 0; p < moved.size(); ++p)
+      largest = std::max(largest, linear_[moved[p]].largest_deviation(of_joints[p]));
+    return largest < kNone ? largest : kNone;
+  } catch (const Unbounded&) {
+    return kNone;
+  }
+}
+
 double CharacterMotion::split(double from, double to) const {
   const Span span = on_time_line(from, to);
   const double h = span.to - span.from;

@@ -43,6 +43,7 @@ class CharacterMotion final : public VertexPaths {
                  std::span<double> error) const override;
   void deviations(double from, double to, std::span<const VertexId> vertices,
                   std::span<double> out) const override;
+  double largest_deviation(double from, double to) const override;
   double split(double from, double to) const override;
   double at_corner(double seconds, double reach) const override;
   std::optional<Jump> next_jump(double from, double to) const override;

@@ -27,6 +27,7 @@ struct Interval {
   // The largest absolute value of any number of the interval.
   double magnitude() const { return std::max(-low, high); }
   bool is_zero() const { return low == 0 && high == 0; }
+  bool is_one() const { return low == 1 && high == 1; }
 };
 
 inline double rounded_down(double x) {

@@ -64,7 +64,8 @@ inline Jet cosine(const Jet& a) {
 
 using JetVector = std::array<Jet, 3>;
 
-inline JetVector hull(const JetVector& a, const JetVector& b) {
+template <class Each>
+std::array<Each, 3> hull(const std::array<Each, 3>& a, const std::array<Each, 3>& b) {
   return {hull(a[0], b[0]), hull(a[1], b[1]), hull(a[2], b[2])};
 }
 inline JetVector operator+(const JetVector& a, const JetVector& b) {

@@ -180,6 +180,78 @@ JetRotation jets_of(const std::vector<Key<Quaternion>>& keys, const Span& span) 
       }));
 }
 
+namespace {
+
+// sin(x) / x for x in [0, pi / 2], off by less than 8 units in the last place.
+double sinc_of(double x) {
+  return x < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
+}
+
+// A unit quaternion, off by less than 4 units in the last place of 1.
+Eigen::Vector4d unit(const Quaternion& q) {
+  const Eigen::Vector4d v(q.x, q.y, q.z, q.w);
+  return v / v.norm();
+}
+
+Eigen::Matrix3d cross_matrix(const Vec3& w) {
+  Eigen::Matrix3d out;
+  out << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+  return out;
+}
+
+// The matrix of a quaternion of length 1: the identity plus 2 (w [v] + [v]^2), [v] being the matrix of the
+// cross product.
+Eigen::Matrix3d matrix_of(const Eigen::Vector4d& q) {
+  const Eigen::Matrix3d v = cross_matrix(q.head<3>());
+  return Eigen::Matrix3d::Identity() + 2 * (q[3] * v + v * v);
+}
+
+// What quaternions and angles of slerp are off by, in units in the last place of 1: the ends by 4, the angle
+// by 16 of them, the weights by what follows from that (their derivatives by share and angle are at most 1.6)
+// and 16 of their own.
+constexpr double kTurnRounding = 128 * kUnitRoundoff;
+// The matrix of quaternions is off by at most 6 times as much (it is of second degree), and a few roundings.
+constexpr double kMatrixRounding = 6 * kTurnRounding + 64 * kUnitRoundoff;
+
+}  // namespace
+
+// Slerp turns about one axis at a constant speed: with w the angular velocity, R' = [w] R and R'' = [w]^2 R.
+// What turns stays within |w| times half the span of where it is in the middle, and its derivatives within
+// |w|^2 and |w|^3 times that.
+std::optional<MovingMatrix> turning_of(const std::vector<Key<Quaternion>>& keys, const Span& span) {
+  const auto next = std::upper_bound(keys.begin(), keys.end(), span.from,
+                                     [](double time, const Key<Quaternion>& key) { return time < key.time; });
+  const auto still = [](const Key<Quaternion>& key) {
+    return MovingMatrix{{matrix_of(unit(key.value)), kMatrixRounding}, {}, {}};
+  };
+  if (next == keys.begin())
+    return span.to <= keys.front().time || keys.size() == 1 ? std::optional(still(keys.front()))
+                                                            : std::nullopt;
+  const Key<Quaternion>& before = *(next - 1);
+  if (next == keys.end()) return still(before);
+  if (span.to > next->time || before.next == Between::cubic) return std::nullopt;
+  if (before.next == Between::constant) return still(before);
+  const Eigen::Vector4d a = unit(before.value);
+  Eigen::Vector4d b = unit(next->value);
+  if (dot(before.value, next->value) < 0) b = -b;
+  const double length = next->time - before.time, middle = span.from + (span.to - span.from) / 2;
+  const double share = std::clamp((middle - before.time) / length, 0.0, 1.0);
+  const double angle = 2 * std::asin(std::min((b - a).norm() / 2, 1.0)), whole = sinc_of(angle);
+  const Eigen::Vector4d q =
+      (1 - share) * (sinc_of((1 - share) * angle) / whole) * a + share * (sinc_of(share * angle) / whole) * b;
+  const Vec3 va = a.head<3>(), vb = b.head<3>();
+  const Vec3 turned = a[3] * vb - b[3] * va - vb.cross(va);  // of b times the conjugate of a
+  const Vec3 w = (2 / (whole * length)) * turned;
+  const double speed = grown(w.norm() + 4 * kTurnRounding / length),
+               off = 4 * kTurnRounding / length + kTurnRounding * speed;
+  const double half = rounded_up(std::max(middle - span.from, span.to - middle));
+  const Eigen::Matrix3d value = matrix_of(q), rate = cross_matrix(w) * value, bend = cross_matrix(w) * rate;
+  const double away = grown(speed * half + 2 * kMatrixRounding);
+  if (!std::isfinite(speed * speed * speed * away)) throw Unbounded();
+  return MovingMatrix{
+      {value, away}, {rate, grown(speed * away + off)}, {bend, grown(speed * (speed * away + 2 * off))}};
+}
+
 Jet jets_of(const Curve& curve, const Span& span) {
   const Extrapolation& beyond = curve.beyond;
   if (curve.keys.size() >= 2) {

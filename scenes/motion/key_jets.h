@@ -1,9 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "scenes/character/character.h"
-#include "scenes/motion/jet.h"
+#include "scenes/motion/ball.h"
 
 // The values of an animation over a span of time, as sample.h gives them at one moment. A span lies between
 // two neighbouring keys of what is asked for, or is one moment: `from` <= `to`.
@@ -20,6 +21,9 @@ using JetQuaternion = std::array<Jet, 4>;
 
 JetVector jets_of(const std::vector<Key<Vec3>>& keys, const Span& span);
 JetRotation jets_of(const std::vector<Key<Quaternion>>& keys, const Span& span);
+// The rotation where that turns at a constant speed or stays, which is cheaper and tighter than boxes of its
+// numbers; nothing where it does neither.
+std::optional<MovingMatrix> turning_of(const std::vector<Key<Quaternion>>& keys, const Span& span);
 Jet jets_of(const Curve& curve, const Span& span);
 JetVector jets_of(const Layered<3>& layered, const Span& span);
 Jet jets_of(const Layered<1>& layered, const Span& span);

@@ -110,4 +110,12 @@ double LinearSkin::deviation(std::size_t v, std::span<const Growing> of_joints) 
   return grown(sum);
 }
 
+double LinearSkin::largest_deviation(std::span<const Growing> of_joints) const {
+  double largest = 0;
+  for (std::size_t j = 0; j < clouds_.size(); ++j)
+    if (clouds_[j].used)
+      largest = std::max(largest, of_joints[j].at_centre + of_joints[j].per_distance * clouds_[j].radius);
+  return grown(largest);
+}
+
 }  // namespace cscd::scenes

@@ -48,6 +48,8 @@ class LinearSkin {
   std::vector<Growing> turns(const Going& before, const Going& after) const;
   // How far the vertex leaves its line where the joints' points leave theirs as is told, [joints].
   double deviation(std::size_t v, std::span<const Growing> of_joints) const;
+  // The same for any vertex.
+  double largest_deviation(std::span<const Growing> of_joints) const;
 
  private:
   struct Influence {

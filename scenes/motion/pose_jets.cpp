@@ -1,8 +1,7 @@
 #include "scenes/motion/pose_jets.h"
 
+#include <algorithm>
 #include <map>
-
-#include "scenes/character/pose.h"
 
 namespace cscd::scenes {
 namespace {
@@ -70,7 +69,8 @@ PoseJets::PoseJets(const Character& character, const Animation& animation)
     append(jumps_, breaks.jumps);
     append(breaks.corners, breaks.jumps);
     sort_out(breaks.corners);
-    driven_.push_back({&channel, std::move(breaks.corners)});
+    driven_.push_back(
+        {&channel, parts_at_rest(character.nodes[at(channel.node)]), std::move(breaks.corners)});
   }
   Breaks breaks;
   for (const MorphChannel& morph : animation.morphs)
@@ -96,24 +96,26 @@ std::string PoseJets::refused() const {
   return {};
 }
 
-PoseJets::Local PoseJets::local_of(const Channel& channel, const Span& span) const {
-  const ScaleTurnMove rest = parts_at_rest(character_.nodes[at(channel.node)]);
-  JetVector move = fixed(rest.move), scale = fixed(rest.scale);
-  const Quaternion& q = rest.rotation;
-  JetRotation rotation = columns_of({Jet(q.w), Jet(q.x), Jet(q.y), Jet(q.z)});
-  if (!channel.moves.empty()) move = jets_of(channel.moves, span);
-  if (!channel.move_components.empty()) move = jets_of(channel.move_components, span);
-  if (!channel.rotations.empty()) rotation = jets_of(channel.rotations, span);
-  if (!channel.angles.degrees.empty()) rotation = jets_of(channel.angles, span);
-  if (!channel.scales.empty()) scale = jets_of(channel.scales, span);
-  if (!channel.scale_components.empty()) scale = jets_of(channel.scale_components, span);
-  for (std::size_t i = 0; i < 3; ++i) rotation[i] = scale[i] * rotation[i];
-  return {rotation, move, scale};
+PoseJets::ScaleAndMove PoseJets::beside_rotation(const Driven& driven, const Span& span) {
+  const Channel& channel = *driven.channel;
+  ScaleAndMove out{fixed(driven.rest.scale), fixed(driven.rest.move)};
+  if (!channel.moves.empty()) out.move = jets_of(channel.moves, span);
+  if (!channel.move_components.empty()) out.move = jets_of(channel.move_components, span);
+  if (!channel.scales.empty()) out.scale = jets_of(channel.scales, span);
+  if (!channel.scale_components.empty()) out.scale = jets_of(channel.scale_components, span);
+  return out;
 }
 
-PoseJets::Local PoseJets::local_of(const Driven& driven, const Span& span) const {
-  return hull_of_pieces(driven.breaks, span,
-                        [&](const Span& piece) { return local_of(*driven.channel, piece); });
+MovingMatrix PoseJets::rotation_of(const Driven& driven, const Span& span) {
+  const Channel& channel = *driven.channel;
+  if (channel.angles.degrees.empty() && !channel.rotations.empty())
+    if (const std::optional<MovingMatrix> turning = turning_of(channel.rotations, span)) return *turning;
+  return ball_around(hull_of_pieces(driven.breaks, span, [&](const Span& piece) {
+    if (!channel.angles.degrees.empty()) return jets_of(channel.angles, piece);
+    if (!channel.rotations.empty()) return jets_of(channel.rotations, piece);
+    const Quaternion& q = driven.rest.rotation;
+    return columns_of({Jet(q.w), Jet(q.x), Jet(q.y), Jet(q.z)});
+  }));
 }
 
 std::vector<MovingTransform> PoseJets::locals(const Span& span) const {
@@ -121,9 +123,16 @@ std::vector<MovingTransform> PoseJets::locals(const Span& span) const {
   for (const Node& node : character_.nodes) out.push_back(fixed(node.local));
   std::map<int, JetVector> scales;
   for (const Driven& driven : driven_) {
-    const Local local = local_of(driven, span);
-    out[at(driven.channel->node)] = {ball_around(local.columns), ball_around(local.origin)};
-    scales[driven.channel->node] = local.scale;
+    const auto node = driven.channel->node;
+    const ScaleAndMove beside = hull_of_pieces(
+        driven.breaks, span, [&](const Span& piece) { return beside_rotation(driven, piece); });
+    MovingTransform& local = out[at(node)] = {rotation_of(driven, span), ball_around(beside.move)};
+    scales[node] = beside.scale;
+    if (std::ranges::all_of(beside.scale, [](const Jet& x) { return x.is_still() && x.value.is_one(); }))
+      continue;
+    JetRotation columns{};
+    for (std::size_t k = 0; k < 3; ++k) columns[k][k] = beside.scale[k];
+    local.linear = local.linear * ball_around(columns);
   }
   for (std::size_t n = 0; n < out.size(); ++n) {
     const std::optional<FollowedScale>& follows = character_.nodes[n].follows;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scenes/character/character.h"
+#include "scenes/character/pose.h"
 #include "scenes/motion/ball.h"
 #include "scenes/motion/key_jets.h"
 
@@ -42,21 +43,18 @@ class PoseJets {
  private:
   struct Driven {
     const Channel* channel;
+    ScaleTurnMove rest;
     std::vector<double> breaks;  // sorted
   };
-  struct Local {
-    JetRotation columns;
-    JetVector origin, scale;
+  struct ScaleAndMove {
+    JetVector scale, move;
   };
-  friend Local hull(const Local& a, const Local& b) {
-    return {{hull(a.columns[0], b.columns[0]), hull(a.columns[1], b.columns[1]),
-             hull(a.columns[2], b.columns[2])},
-            hull(a.origin, b.origin),
-            hull(a.scale, b.scale)};
+  friend ScaleAndMove hull(const ScaleAndMove& a, const ScaleAndMove& b) {
+    return {hull(a.scale, b.scale), hull(a.move, b.move)};
   }
   std::vector<MovingTransform> locals(const Span& span) const;
-  Local local_of(const Channel& channel, const Span& span) const;
-  Local local_of(const Driven& driven, const Span& span) const;
+  static ScaleAndMove beside_rotation(const Driven& driven, const Span& span);
+  static MovingMatrix rotation_of(const Driven& driven, const Span& span);
 
   const Character& character_;
   const Animation& animation_;
