@@ -20,7 +20,7 @@ constexpr double kGrown = 1 + 32 * kUnitRoundoff;
 // Parts are searched at more than their distance by this factor, so that the next ones need no more; and
 // after how many that is tried again.
 constexpr double kRoom = 1.25;
-constexpr int kWaits = 4;
+constexpr int kWaits = 4, kWaitsForSigns = 256;
 // A bound for all vertices at once that is too large by less than this is looked at vertex by vertex.
 constexpr double kLooser = 4;
 // No square of a length below this overflows.
@@ -244,22 +244,26 @@ void TrueMotion::find_close(const Places& from, const Places& to, double widest)
   const double asked = starts_clear ? std::min(clear_at_, kRoom * distance) : kRoom * distance;
   // After a clear start the first contact alone is enough to know that there is none, and soon known.
   if (starts_clear && free_) {
-    free_->detect({.motion = Motion(from.at, to.at),
-                   .starts_embedded = true,
-                   .thickness = Thickness(asked),
-                   .any_contact = true},
-                  found_);
+    const Report report = free_->detect({.motion = Motion(from.at, to.at),
+                                         .starts_embedded = true,
+                                         .thickness = Thickness(asked),
+                                         .any_contact = true},
+                                        found_);
     if (found_.contacts.empty()) {
+      // Where spikes are thin, signs leave more pairs of triangles than boxes do.
+      const bool pays = report.cull.pctp <= pairs_without_start_;
       clear_time_ = to.time;
-      clear_at_ = asked;
+      clear_at_ = pays ? asked : 0;
+      if (!pays) waits_ = kWaitsForSigns;
       return;
     }
   }
   const std::vector<double> wide = by_one ? std::vector<double>() : widths(from, to);
-  detector_->detect({.motion = Motion(from.at, to.at),
-                     .starts_embedded = starts_clear,
-                     .thickness = by_one ? Thickness(asked) : Thickness(0, wide)},
-                    found_);
+  const Report report = detector_->detect({.motion = Motion(from.at, to.at),
+                                           .starts_embedded = starts_clear,
+                                           .thickness = by_one ? Thickness(asked) : Thickness(0, wide)},
+                                          found_);
+  if (!starts_clear) pairs_without_start_ = report.cull.pctp;
   clear_time_ = to.time;
   clear_at_ = 0;
   if (!by_one) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -113,9 +114,10 @@ class TrueMotion {
   // At this time the pose is clear (core/soundness.md, "Contacts at a distance") at this distance; 0 where
   // that is not known.
   double clear_time_ = std::numeric_limits<double>::quiet_NaN(), clear_at_ = 0;
-  int waits_ = 0;             // parts that are not asked about one distance
-  std::vector<Vec3> a_, b_;   // [vertices]: places of those vertices alone that are looked at
-  std::vector<double> wide_;  // [vertices]
+  int waits_ = 0;                          // parts that are not asked about one distance
+  std::uint64_t pairs_without_start_ = 0;  // of triangles, passed on for the last part of an unknown start
+  std::vector<Vec3> a_, b_;                // [vertices]: places of those vertices alone that are looked at
+  std::vector<double> wide_;               // [vertices]
   ContactSet found_;
   TrueAnswer answer_;
   double narrow_ = 0;

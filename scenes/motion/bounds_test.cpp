@@ -109,6 +109,36 @@ TEST(MotionBounds, GrowShortWithTheSquareOfTheSpan) {
   EXPECT_LT(largest(from, from + 0.005), largest(from, from + 0.01) / 3.5);
 }
 
+// Each vertex has one bone, and the bone turns at a constant speed about an axis through its origin.
+TEST(MotionBounds, OfARigidBodyFallWithTheSquareOfTheSpan) {
+  test_rigs::RigMaker make(4);
+  Character character = make.tube({}, 1);
+  Animation& clip = character.animations[0];
+  clip.channels = {{1, {}, {}, {}}};
+  clip.channels[0].rotations = {{clip.start, {}}, {clip.start + 1, {std::cos(1), 0, 0, std::sin(1)}}};
+  const CharacterMotion motion(whole(character));
+  const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
+  std::vector<double> bound(vertices.size());
+  double last = 0;
+  for (const double h : {0.08, 0.04, 0.02, 0.01}) {
+    motion.deviations(0.3, 0.3 + h, vertices, bound);
+    const std::vector<Vec3> start = sampled(character, 0.3), middle = sampled(character, 0.3 + h / 2),
+                            end = sampled(character, 0.3 + h);
+    double largest = 0;
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const double off = (middle[v] - (start[v] + end[v]) / 2).norm();
+      EXPECT_LE(off, bound[v] + kPosing);
+      largest = std::max(largest, off);
+    }
+    const double most = *std::ranges::max_element(bound);
+    EXPECT_LT(most, 1.5 * largest);
+    if (last > 0) {
+      EXPECT_NEAR(last / most, 4, 0.5);
+    }
+    last = most;
+  }
+}
+
 // A vertex that two joints take to places that stay, half each, while one of them begins to turn about its
 // place: what the blend does comes from that joint's angular acceleration alone. Mutation: the second
 // derivative of a joint's quaternion without its angular acceleration.
