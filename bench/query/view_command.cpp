@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/answer_json.h"
 #include "bench/query/answer/surface_names.h"
+#include "bench/query/answer/true_answer.h"
 #include "bench/query/input/input.h"
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
@@ -65,6 +67,27 @@ struct Contestant {
 
 namespace {
 
+// What the page has to know of an interval's true motion.
+json true_moment(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
+                 std::size_t first) {
+  const TrueAnswer& own = *answer.motion;
+  json out = true_motion_json(input, answer);
+  out["interval"] = answer.index - first;
+  out["at"] = out[own.parts_again ? "from" : "to"];
+  std::string text = "true motion: ";
+  if (own.pair) {
+    const NamePair met{names.place_of(own.pair->first), names.place_of(own.pair->second)};
+    text += met.first + (own.verdict == TrueVerdict::touches ? " touches " : " comes close to ") +
+            (met.first == met.second ? "itself" : met.second);
+  } else {
+    text += to_string(own.verdict);
+  }
+  const bool lines = answer.verdict != IntervalVerdict::clear;
+  if (differs(answer)) text += lines ? ", where straight lines touch" : ", where straight lines do not";
+  out["text"] = std::move(text);
+  return out;
+}
+
 // Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it. Says on
 // standard output what was answered.
 json record_clip(const ViewRequest& options, Input input, Sections& sections) {
@@ -92,6 +115,10 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
     contestants.emplace_back(
         new Contestant{std::move(answerer), StrategyRecording(std::move(answer), clip.grid())});
   }
+  std::optional<TrueAnswerer> true_motion;
+  if (input.motion)
+    true_motion.emplace(input, elementary, contestants.front()->answerer.rest_crossings(), options.answers);
+  json true_moments = json::array();
   OverlapEvents events(input, names);
   OverlapRecording overlaps;
   input.use_bones = true;  // strategies that do without take no notice
@@ -100,9 +127,19 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       clip.add_frame(input.clip->load_frame(i));
       bool touches = false;
+      std::optional<TrueAnswer> motion;  // the same beside all strategies
       for (const auto& contestant : contestants) {
         watchdog.restart();
-        const IntervalAnswer answer = contestant->answerer.answer(i);
+        IntervalAnswer answer = contestant->answerer.answer(i);
+        if (true_motion && contestant == contestants.front()) {
+          true_motion->answer(input.clip->load(i).motion, answer);
+          motion = answer.motion;
+          if (motion->verdict != TrueVerdict::clear || differs(answer))
+            true_moments.push_back(true_moment(input, names, answer, range.first));
+          if (motion->pair && differs(answer) && answer.found.contacts.empty())
+            clip.add_other_end(true_motion->positions_at(motion->parts_again ? motion->from : motion->to));
+        }
+        answer.motion = motion;
         contestant->recording.add(answer, input.clip->load(i), texts);
         touches = touches || !answer.found.contacts.empty();
         // All strategies see the same starts.
@@ -110,7 +147,7 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
           overlaps.add(events.add(answer, input.clip->load(i).motion.start(), {.ways = true}),
                        input.clip->load(i).motion.start());
       }
-      if (touches && input.clip->header().predicted) clip.add_predicted_end(input.clip->load(i).motion.end());
+      if (touches && input.clip->header().predicted) clip.add_other_end(input.clip->load(i).motion.end());
       progress.advance();
     }
     clip.add_frame(input.clip->load_frame(range.last));
@@ -130,6 +167,7 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
                  {"events", event_lines(input, events.all())},
+                 {"true_motion", input.motion ? std::move(true_moments) : json()},
                  {"rest", rest_json(contestants.front()->recording.answer())},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
@@ -222,6 +260,9 @@ void add_view(CLI::App& app) {
       "the\n"
       "clip's box for the page; the answers come from the exact ones.");
   add_answer_options(*command, *options);
+  command->add_flag(
+      "--true-motion", options->model.true_motion,
+      "of a model file, show also where the paths on which keys and bones carry the surface touch");
   command->add_option("--strategy", options->strategies,
                       "culling strategy (cscd list); several, each with its own --strategy, stand side by "
                       "side;\nwithout it, the best that the input allows");

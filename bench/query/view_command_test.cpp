@@ -65,6 +65,26 @@ TEST_F(View, WritesThePageBesideTheInputsName) {
   EXPECT_EQ(run("cscd view small -o - | head -c 15").out, "<!doctype html>");
 }
 
+TEST_F(View, ShowsTheTrueMotion) {
+  const std::string options = "figure.glb --clip hug --fps 3 ";
+  ASSERT_EQ(run("cscd view " + options + "--true-motion -o page.html").status, 0);
+  const json moments = header_of(text("page.html"))["true_motion"];
+  const json query = json::parse(run("cscd query " + options + "--true-motion --json -").out);
+  std::size_t shown = 0;
+  for (const json& interval : query["intervals"]) {
+    const json& own = interval["true_motion"];
+    if (own["verdict"] == "clear" && !own["differs"]) continue;
+    ASSERT_LT(shown, moments.size());
+    EXPECT_EQ(moments[shown]["interval"], interval["index"]);
+    for (const char* key : {"verdict", "differs", "pair"}) EXPECT_EQ(moments[shown][key], own[key]) << key;
+    ++shown;
+  }
+  EXPECT_EQ(shown, moments.size());
+  EXPECT_GT(shown, 0u);
+  ASSERT_EQ(run("cscd view " + options + "-o lines.html").status, 0);
+  EXPECT_TRUE(header_of(text("lines.html"))["true_motion"].is_null());
+}
+
 TEST_F(View, GivesTheAnswersOfAQuery) {
   ASSERT_EQ(run("cscd view figure.glb --clip hug --strategy drvbc_fast_complete --strategy base -o page.html")
                 .status,

@@ -21,12 +21,15 @@ export class Captions {
     const contacts = strategy.contacts[interval], pairs = strategy.start_pairs[interval], text = [];
     if (pairs > 0) text.push(`${many(pairs, "pair")} of triangles cross at this start`);
     if (contacts > 0) text.push(`${many(contacts, contactWord(strategy))} in this interval`);
-    if (predicted) text.push("in the simulator's step, before it resolves them");
+    if (predicted && !this.recording.truths) text.push("in the simulator's step, before it resolves them");
+    const truth = this.recording.truths?.get(interval);
+    if (truth) text.push(truth.text);
     byId("moment").textContent = text.join(" · ");
     const facts = [["interval", String(interval + this.recording.clip.first_interval)], ["verdict", VERDICTS[strategy.verdict[interval]]],
       ["answered by", strategy.answered_by[strategy.answerer[interval]] + (strategy.proven[interval] ? ", proven" : ", not proven")],
       ["triangle pairs left by culling", strategy.pairs[interval].toLocaleString("en")],
       ["elementary tests", strategy.tests[interval].toLocaleString("en")]];
+    if (this.recording.truths) facts.push(["true motion", (this.recording.truths.get(interval)?.verdict ?? "clear").replaceAll("_", " ")]);
     if (strategy.has_clusters)
       facts.push(["clusters in force", strategy.clusters[interval].toLocaleString("en")],
         ["positive", `${this.positiveShare(strategy, interval)} % of triangles`]);
@@ -48,6 +51,7 @@ export class Captions {
         if (!strategy.close || strategy.verdict[interval] !== CLOSE) rows.push(item(ORANGE, "touches"));
       }
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
+      if (this.recording.truths?.get(interval)?.pair) rows.push(item(PINK, "true motion"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
     } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), item(YELLOW, "lies in another piece"), item(RED, "deepest; lines: where pieces cross"));
     else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));

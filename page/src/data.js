@@ -144,6 +144,8 @@ export async function loadRecording() {
     curveEdge: arrays.curve_edge,
     curveShare: arrays.curve_share,
     events: header.events.map(({ event, text }) => ({ text, ...eventOf(header, event) })),
+    // By interval, where the true motion does anything; `at` is when, in the interval. Null where nobody asked for it.
+    truths: header.true_motion && new Map(header.true_motion.map((truth) => [truth.interval, truth])),
     strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
     // A unit of observers' places is four steps of the grid.
     observerToView: (place, axis) => (4 * place) / 65535 - middle[axis],

@@ -50,7 +50,7 @@ export class Framing {
   // Looks at a moment that has a place, from where least hides it.
   showMoment(strategy, moment, point, smooth) {
     const { stage, marker } = this, { contact, pair, interval, event } = moment;
-    this.setAnchor(event ? this.nearestVertex(point) : contact !== undefined ? strategy.contact_vertex[4 * contact] : this.recording.corners[3 * strategy.crossing[2 * pair]]);
+    this.setAnchor(event ? this.nearestVertex(point) : contact !== undefined ? strategy.contact_vertex[4 * contact] : this.recording.corners[3 * (moment.truth ? moment.truth.pair[0] : strategy.crossing[2 * pair])]);
     const whole = stage.surface.bounds(), points = [point];
     let spread = 0;  // of what lies near the moment's point
     const take = (other) => {

@@ -1,6 +1,6 @@
 // The list of moments, with the contacts of the chosen one below it.
 import { element } from "./dom.js";
-import { momentsOf, namesOf, timeOf } from "./moments.js";
+import { momentsOf, namesOf, timeOf, truthsOf } from "./moments.js";
 import { both, contactVerb, contactWord, many, momentText } from "./words.js";
 
 const MOST_ROWS = 1500;  // browsers grow slow with more
@@ -54,7 +54,13 @@ export class MomentList {
     });
     const more = this.recording.events.length - events.length;
     if (events.length > 0) events.unshift(element("p", `Lies in itself in ${many(this.recording.events.length, "place")}${more > 0 ? ", deepest in" : ""}:`));
-    this.box.replaceChildren(...events, ...rows);
+    const truths = truthsOf(this.recording).slice(0, MOST_EVENTS).map((moment) => {
+      const row = element("button", undefined, "event");
+      row.moment = moment;
+      row.append(element("span", moment.truth.text, "what"), element("span", momentText(this.recording, moment.interval + moment.truth.at), "when"));
+      return row;
+    });
+    this.box.replaceChildren(...truths, ...events, ...rows);
   }
 
   expand(strategy, interval) {
@@ -80,7 +86,8 @@ export class MomentList {
     if (!chosen) return;
     const one = chosen.contact === undefined ? null
       : Array.from(this.box.querySelectorAll("button.one")).find((row) => row.moment.contact === chosen.contact);
-    const event = chosen.event && Array.from(this.box.querySelectorAll("button.event")).find((row) => row.moment.event === chosen.event);
+    const special = chosen.event || chosen.truth;
+    const event = special && Array.from(this.box.querySelectorAll("button.event")).find((row) => (row.moment.event || row.moment.truth) === special);
     const row = event || one || this.rowOf.get(chosen.interval);
     if (!row) return;
     row.setAttribute("aria-current", "true");

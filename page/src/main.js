@@ -8,7 +8,7 @@ import { byId, prefersDark, setDark } from "./dom.js";
 import { Framing } from "./framing.js";
 import { MomentList } from "./list.js";
 import { Marker } from "./marker.js";
-import { momentsOf, timeOf } from "./moments.js";
+import { momentsOf, timeOf, truthsOf } from "./moments.js";
 import { modesOf, Painter } from "./painter.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
@@ -26,7 +26,7 @@ class Viewer {
     this.normalsShown = true;
     this.playing = false;
     this.position = 0;  // in frames
-    this.pinned = null;  // the moment of a chosen contact: {interval, t, predicted}
+    this.pinned = null;  // the moment of a chosen contact: {interval, t, predicted}, and `at`, when that is in the interval
     this.chosen = null;  // the chosen moment (moments.js), or null
     this.upName = recording.header.up.axis;
     this.stage = new Stage(byId("canvas"), recording, this.upName, () => this.placeInset());
@@ -65,7 +65,8 @@ class Viewer {
 
   open() {
     if (this.openLinked()) return;
-    if (this.moments.length > 0) this.select(this.moments[0], false);
+    const [first] = [...truthsOf(this.recording), ...this.moments];
+    if (first) this.select(first, false);
     else {
       this.seek(Math.round(this.recording.intervals / 3));  // in motion, and not at rest
       this.showWhole(false);
@@ -109,7 +110,9 @@ class Viewer {
     const t = timeOf(this.active, moment);
     this.chosen = moment;
     if (moment.event) this.mode = "depth";
-    this.pinned = { interval: moment.interval, t, predicted: this.recording.endOfInterval.has(moment.interval) };
+    // The other end of an interval of the true motion is a pose within it.
+    this.pinned = { interval: moment.interval, t: moment.truth ? 1 : t, at: t,
+      predicted: moment.truth ? true : !this.recording.truths && this.recording.endOfInterval.has(moment.interval) };
     this.position = moment.interval + t;
     this.refresh();
     this.showChosen(smooth);
@@ -208,13 +211,13 @@ class Viewer {
       stage.meanEdge = stage.surface.meanEdge();
       this.framing.follow();
     }
-    stage.setBones(this.bonesShown, pose.interval, pose.t);
+    stage.setBones(this.bonesShown, pose.interval, pose.at ?? pose.t);
     const chosen = this.chosen && this.chosen.interval === interval ? this.chosen : null;
     this.shown.forEach((s, i) => {
       const look = stage.looks[i];
       this.painter.paint(look, s, mode, interval);
       this.marker.mark(look.marks, s, interval, s === this.strategy ? chosen : null, this.normalsShown, mode);
-      this.marker.markObservers(look.marks, s, mode, interval, pose.t, this.observersShown);
+      this.marker.markObservers(look.marks, s, mode, interval, pose.at ?? pose.t, this.observersShown);
     });
     stage.setInsetPoint(this.pointOf(this.chosen));
     for (const box of ["modes", "engine-modes"]) byId(box).update(mode);

@@ -26,10 +26,11 @@ export class Marker {
     if (!moment) return null;
     if (moment.event) return new THREE.Vector3(...moment.event.point.map((x, axis) => this.recording.toView(x, axis)));
     if (moment.contact !== undefined) return this.contactPoint(strategy, moment.interval, moment.contact);
-    if (moment.pair === undefined) return null;
+    if (moment.pair === undefined && !moment.truth) return null;
+    const triangles = moment.truth ? moment.truth.pair : strategy.crossing.subarray(2 * moment.pair, 2 * moment.pair + 2);
     const { corners } = this.recording, sum = new THREE.Vector3(), point = new THREE.Vector3();
-    for (let i = 0; i < 2; ++i)
-      for (let k = 0; k < 3; ++k) sum.add(this.stage.surface.point(corners[3 * strategy.crossing[2 * moment.pair + i] + k], point));
+    for (const t of triangles)
+      for (let k = 0; k < 3; ++k) sum.add(this.stage.surface.point(corners[3 * t + k], point));
     return sum.divideScalar(6);
   }
 

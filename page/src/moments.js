@@ -25,5 +25,9 @@ export function namesOf({ texts, place }, strategy, moment) {
   return [0, 1].map((side) => texts[strategy.contact_place[2 * moment.contact + side]]);
 }
 
+// Moments of the true motion that straight lines do not have. The other ends of their intervals are the poses then.
+export const truthsOf = ({ truths, endOfInterval }) =>
+  Array.from(truths?.values() ?? []).filter((truth) => endOfInterval.has(truth.interval)).map((truth) => ({ interval: truth.interval, truth }));
+
 // When a moment is, in its interval.
-export const timeOf = (strategy, moment) => (moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);
+export const timeOf = (strategy, moment) => (moment.truth ? moment.truth.at : moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);

@@ -1,6 +1,6 @@
 // The colour of every triangle, by what the reader wants to tell apart.
 import { bitOf } from "./data.js";
-import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, RED, rgb, SKIN, SKY, YELLOW } from "./palette.js";
+import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, PINK, RED, rgb, SKIN, SKY, YELLOW } from "./palette.js";
 
 // Ways of colouring that change from interval to interval.
 const CHANGING = ["verdict", "depth", "cluster", "positive"];
@@ -66,6 +66,7 @@ export class Painter {
       if (strategy.contacts[interval] > 0)
         for (let t = 0; t < triangles; ++t) if (bitOf(strategy.touched, triangles, interval, t)) setGlowing(t, touched);
       for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) setGlowing(strategy.crossing[i], crossed);
+      for (const t of this.recording.truths?.get(interval)?.pair ?? []) setGlowing(t, rgb(PINK));
     } else if (mode === "depth") {
       const depths = this.depthsAt(interval), most = this.mostDepth(), low = rgb(YELLOW), high = rgb(RED), { corners } = this.recording;
       if (depths.size === 0) return;

@@ -1,5 +1,6 @@
 // The bar under the slider: one column for each interval, as high as there are contacts, with the worst moments marked.
-import { ORANGE, RED, SKY, YELLOW } from "./palette.js";
+import { truthsOf } from "./moments.js";
+import { ORANGE, PINK, RED, SKY, YELLOW } from "./palette.js";
 import { CLOSE, momentOf } from "./words.js";
 
 export class Timeline {
@@ -79,6 +80,8 @@ export class Timeline {
       const h = Math.max(4, (amount(i) / most) * (bottom - top));
       context.fillRect(x(i), bottom - h, Math.max(1.5, x(i + 1) - x(i) - 0.3), h);
     }
+    context.fillStyle = PINK;
+    for (const { interval, truth } of truthsOf(recording)) context.fillRect(x(interval + truth.at) - 2, top, 4, bottom - top);
     this.drawDepth(context, x, top, bottom, colour("--text"));
     context.font = "11px system-ui, sans-serif";
     context.fillStyle = colour("--text");

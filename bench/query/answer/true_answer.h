@@ -20,6 +20,8 @@ class TrueAnswerer {
 
   // Adds to an answer about straight lines, whose motion is given, what is known of the true motion.
   void answer(const Motion& straight, IntervalAnswer& answer);
+  // Where all vertices are at a second of the clip.
+  std::span<const Vec3> positions_at(double seconds) { return motion_.positions_at(seconds); }
 
  private:
   const Input& input_;

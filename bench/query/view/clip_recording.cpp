@@ -43,7 +43,7 @@ void ClipRecording::add_frame(const scenes::FrameView& frame) {
   ++added_;
 }
 
-void ClipRecording::add_predicted_end(std::span<const Vec3> end) {
+void ClipRecording::add_other_end(std::span<const Vec3> end) {
   interval_of_end_.push_back(static_cast<std::uint32_t>(added_ - 1));
   ends_.append(end);
 }

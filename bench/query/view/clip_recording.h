@@ -28,8 +28,9 @@ class ClipRecording {
 
   // Adds frames, in order: range.first to range.last.
   void add_frame(const scenes::FrameView& frame);
-  // Adds the predicted end of the interval that begins at the frame added last.
-  void add_predicted_end(std::span<const Vec3> end);
+  // Adds another end of the interval that begins at the frame added last: the predicted one, or a pose within
+  // the interval that the true motion goes through.
+  void add_other_end(std::span<const Vec3> end);
 
   // Adds the arrays and returns what else the page has to know: counts, grid, and the time of every frame.
   nlohmann::json write(Sections& sections) const;

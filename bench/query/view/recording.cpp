@@ -80,6 +80,7 @@ StrategyRecording::StrategyRecording(ClipAnswer answer, const ViewGrid& grid)
 void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInterval& interval,
                             TextTable& places) {
   answer_.summary.add(answer, interval.motion, answer_.names);
+  answer_.true_motion.add(answer, answer_.names);
   const std::string by(answer.strategy->name);
   auto known = std::find(answered_by_.begin(), answered_by_.end(), by);
   if (known == answered_by_.end()) known = answered_by_.insert(known, by);
