@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,7 +34,10 @@ class VertexPaths {
     std::vector<double> out(all.size());
     deviations(from, to, all, out);
     double largest = 0;
-    for (const double x : out) largest = largest >= x ? largest : x;  // NaN stays
+    for (const double x : out) {
+      if (!(x < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, x);
+    }
     return largest;
   }
   // A time strictly between, at which to divide a span of time.

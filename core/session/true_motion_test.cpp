@@ -153,5 +153,24 @@ TEST(TrueMotion, LeavesItsLinesByTheMostBetweenAnyTwoJumps) {
   EXPECT_NEAR(motion.answer(0, 1).deviation, 0.5 * 0.75 * 0.75 / 8, 1e-6);
 }
 
+// Mutation: the largest of deviations passes over one that is no number.
+TEST(TrueMotion, SaysNothingOfPathsWithoutABound) {
+  struct Unknown : Sliding {
+    using Sliding::Sliding;
+    void deviations(double, double, std::span<const VertexId>, std::span<double> out) const override {
+      std::ranges::fill(out, 0);
+      out[0] = std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  const TriangleMesh mesh = shape.mesh();
+  const Unknown paths(shape.positions, 3, 4);
+  TrueMotionOptions options = true_motion_options(1);
+  options.most_parts = 16;
+  TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
+                    kWatched, options);
+  EXPECT_EQ(motion.answer(0, 1).verdict, TrueVerdict::undecided);
+}
+
 }  // namespace
 }  // namespace cscd
