@@ -58,7 +58,7 @@ int run(int argc, char** argv) {
       "  cscd compare before after            faster or slower, truer or less true?\n"
       "  cscd help query                      what a command does and takes\n\n"
       "Exit status: 0 done; 1 a verification failed, or compare found something worse; 2 bad usage or bad "
-      "input; 3 query\n--fail-on-contact found one.",
+      "input; 3 query\n--fail-on-contact or --fail-deeper-than found what it fails on.",
       "cscd");
   app.formatter(std::make_shared<cscd::bench::HelpFormat>());  // commands that are added have it, too
   app.require_subcommand(1);

@@ -155,8 +155,8 @@ bool any_exclusions(Numbers& numbers, Index vertices, Index faces, SelfCollision
       out.rest_distance = is_odd(numbers) ? any_double(numbers) : std::abs(numbers.coordinate());
       return out.rest_distance >= 0 && std::isfinite(out.rest_distance);
     case 4:
-      for (Index v = any_count(numbers, vertices); v > 0; --v) out.obstacle.push_back(numbers.byte() % 2);
-      return out.obstacle.empty() || static_cast<Index>(out.obstacle.size()) == vertices;
+      for (Index v = any_count(numbers, vertices); v > 0; --v) out.rigid.push_back(numbers.byte() % 2);
+      return out.rigid.empty() || static_cast<Index>(out.rigid.size()) == vertices;
     case 5:
       out.ongoing = true;
       return true;

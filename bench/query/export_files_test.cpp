@@ -45,6 +45,15 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
   EXPECT_EQ(verdicts(answer("exact.0007.ply")), expected);
   const Ran fps = run("cscd query exact.0000.obj --fps 60 --frames 0:1 -- 2>&1");
   EXPECT_NE(fps.out.find("60 frames a second, as asked"), std::string::npos) << fps.out;
+  // A cache says its rate, and the names of a sequence say the numbers of its frames.
+  ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest --fps 24 film.mdd && "
+                "for f in exact.*.ply; do n=${f#exact.}; n=${n%.ply}; mv $f late.$((1000 + 10#$n)).ply; done")
+                .status,
+            0);
+  EXPECT_NE(run("cscd query film.mdd").out.find("24 frames a second, as the file says"), std::string::npos);
+  const json late = answer("late.1003.ply");
+  EXPECT_EQ(verdicts(late), expected);
+  EXPECT_EQ(late["intervals"][0]["frame"], 1000);
   for (const char* input : {"near.pc2", "near.mdd", "baked.glb"}) {
     const auto found = verdicts(answer(input));
     ASSERT_EQ(found.size(), expected.size()) << input;

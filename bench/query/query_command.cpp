@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
@@ -111,6 +112,7 @@ struct Said {
   IntervalVerdict verdict = IntervalVerdict::clear;  // of a clip that touches or crosses, if there is one
   json document = nullptr;                           // unless it was asked for
   bool too_deep = false;                             // for --fail-deeper-than
+  std::vector<std::string> apart;                    // of what the verdict does not speak
 };
 
 Said say_clip(const QueryOptions& options, Input input, bool with_json, bool is_brief = false) {
@@ -120,13 +122,12 @@ Said say_clip(const QueryOptions& options, Input input, bool with_json, bool is_
   const SurfaceNames names(input);
   const ClipAnswer answer = answer_clip(options, input, names, with_json);
   std::printf("%s", (is_brief ? brief_clip_text(answer) : clip_text(answer)).c_str());
-  Said said{input.motion ? answer.true_motion.verdict() : answer.summary.verdict()};
+  Said said;
+  said.verdict = input.motion ? answer.true_motion.verdict() : answer.summary.verdict();
+  said.apart = verdict_exceptions(answer.summary);
   if (options.fail_deeper_than) {
-    const double most = options.fail_deeper_than->length(input.thickness.edge);
-    // A start of which nothing is known may be too deep.
-    said.too_deep = answer.not_measured > 0 || std::ranges::any_of(answer.events, [&](const OverlapEvent& e) {
-                      return e.depth.lower > most;
-                    });
+    said.too_deep = is_too_deep(answer, *options.fail_deeper_than);
+    std::printf("  %s\n", too_deep_text(answer, *options.fail_deeper_than).c_str());
   }
   if (!with_json) return said;
   said.document = clip_json(answer, most_start_pairs(options.start_pairs));
@@ -148,7 +149,8 @@ std::string listed_names(const std::vector<std::string>& names) {
 // What the verdicts of all clips come to, as a sentence and in JSON.
 class AllVerdicts {
  public:
-  void add(const std::string& clip, IntervalVerdict verdict) {
+  void add(const std::string& clip, IntervalVerdict verdict, const std::vector<std::string>& apart) {
+    apart_.insert(apart.begin(), apart.end());
     names_[static_cast<std::size_t>(verdict)].push_back(clip);
   }
   void pass_over(const std::string& clip) { still_.push_back(clip); }
@@ -172,6 +174,8 @@ class AllVerdicts {
     say(of(IntervalVerdict::clear), "does not touch itself", "do not touch themselves");
     say(still_, "is one pose and was passed over", "are one pose and were passed over");
     const std::size_t count = answered() + still_.size();
+    if (!apart_.empty()) text += "; all of this apart from ";
+    for (const std::string& each : apart_) text += (each == *apart_.begin() ? "" : " and ") + each;
     return std::filesystem::path(input).filename().string() + ", " + std::to_string(count) +
            (count == 1 ? " clip in all:" : " clips in all:") + text + ".";
   }
@@ -193,6 +197,7 @@ class AllVerdicts {
   }
   std::array<std::vector<std::string>, 5> names_;  // of clips, by their verdicts
   std::vector<std::string> still_;
+  std::set<std::string> apart_;
 };
 
 // Answers the clips of a model file, one after the other. A clip of one pose moves nothing and is passed
@@ -221,7 +226,7 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
     const bool is_open = seen.chosen_clip == static_cast<long>(clip);
     Said one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model),
                         with_json, seen.clips.size() > 1);
-    verdicts.add(seen.clips[clip].name, one.verdict);
+    verdicts.add(seen.clips[clip].name, one.verdict, one.apart);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;
     if (with_json) all.document["clips"].push_back(std::move(one.document));
@@ -293,7 +298,7 @@ void add_query(CLI::App& app) {
       "Prints what a person wants to know. With --json FILE the whole answer goes there as JSON (schema\n"
       "cscd.query/3); --json - is standard output, and the text then goes to standard error. A file of "
       "several\n"
-      "clips is answered as a list, `clips`, unless --clip names one; with --clip all any file is.\n\n"
+      "clips is answered as a list, `clips`, unless --clip names one; with --clip all any model file is.\n\n"
       "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close: "
       "then\n"
       "something comes that near and nothing touches (with --first, as far as is looked). What crosses at "

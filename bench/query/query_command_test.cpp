@@ -70,6 +70,11 @@ TEST_F(Query, SaysHowDeepItLiesInItself) {
   };
   EXPECT_EQ(status(std::to_string(0.9 * deepest)), 3);
   EXPECT_EQ(status(std::to_string(1.1 * deepest)), 0);
+  const std::string query = "cscd query figure.glb --clip hug --fail-deeper-than ";
+  EXPECT_TRUE(has(run(query + std::to_string(0.9 * deepest)).out, ": fails, because something lies "));
+  EXPECT_TRUE(
+      has(run(query + std::to_string(1.1 * deepest)).out, ": passes: nothing is known to lie deeper"));
+  expect_refused(run("cscd query small --json ''"), "argument 4, after --json, is empty");
   EXPECT_TRUE(has(run("cscd query figure.glb --clip hug").out, "  lies in itself in "));
   EXPECT_TRUE(answer("small")["summary"]["events"].empty());
   expect_refused(run("cscd query small --fail-deeper-than much"), "--fail-deeper-than much");
@@ -215,6 +220,7 @@ TEST_F(Query, AnswersAllClipsUnlessOneIsNamed) {
   EXPECT_TRUE(has(ran.out, "--clip NAME says more of one"));
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "figure.glb, 2 clips in all: ")) << unnamed["summary"];
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "('hug')")) << unnamed["summary"];
+  EXPECT_TRUE(has(unnamed["summary"]["sentence"], "; all of this apart from what crosses at rest."));
   expect_refused(run("cscd query figure.glb --frames 0:1"), "has 2; name one with --clip");
 
   // A clip that moves nothing is not said to be clear alone.

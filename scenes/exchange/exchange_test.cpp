@@ -81,6 +81,8 @@ TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
     const MeshCache cache(format, bytes);
     EXPECT_EQ(cache.vertices(), 2u);
     ASSERT_EQ(cache.frames(), 2u);
+    EXPECT_EQ(cache.fps(), format == MeshCacheFormat::mdd ? std::optional(30.0) : std::nullopt);
+    EXPECT_EQ(cache.first_frame(), 0);
     std::vector<Vec3> read;
     cache.read_frame(0, read);
     EXPECT_EQ(read, one);

@@ -1,6 +1,7 @@
 #include "scenes/exchange/mesh_cache.h"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -66,6 +67,23 @@ MeshCache::MeshCache(MeshCacheFormat format, std::string_view bytes) : format_(f
                      std::to_string(vertices_) + " vertices, which is not what its " +
                      std::to_string(bytes.size()) + " bytes hold; export it again");
   body_ = bytes.substr(head);
+  const auto number = [&](std::size_t at) {
+    return double{std::bit_cast<float>(static_cast<std::uint32_t>(count(at)))};
+  };
+  if (pc2) {
+    if (const double first = number(20); std::isfinite(first)) first_frame_ = first;
+    return;
+  }
+  // An MDD cache holds the second of every frame. Its rate is known where they are evenly spaced.
+  const auto second = [&](std::size_t frame) { return number(kMddHead + 4 * frame); };
+  if (frames_ < 2) return;
+  const double first = second(0), step = (second(frames_ - 1) - first) / static_cast<double>(frames_ - 1);
+  if (!(step > 0) || !std::isfinite(step)) return;
+  for (std::size_t f = 0; f < frames_; ++f)
+    if (!(std::abs(second(f) - (first + static_cast<double>(f) * step)) <= 0.01 * step)) return;
+  const double rate = 1 / step, whole = std::round(rate);
+  fps_ = std::abs(rate - whole) <= 1e-3 * rate ? whole : rate;
+  first_frame_ = std::round(first * *fps_);
 }
 
 void MeshCache::read_frame(std::size_t frame, std::vector<Vec3>& positions) const {

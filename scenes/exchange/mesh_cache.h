@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,12 +29,18 @@ class MeshCache {
 
   std::size_t vertices() const { return vertices_; }
   std::size_t frames() const { return frames_; }
+  // The number of the first frame: what PC2 says, and in MDD its second times the rate; 0 where neither says.
+  double first_frame() const { return first_frame_; }
+  // Frames a second: of MDD, if they are evenly spaced. PC2 does not say.
+  std::optional<double> fps() const { return fps_; }
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) const;
 
  private:
   MeshCacheFormat format_;
   std::string_view body_;
   std::size_t vertices_ = 0, frames_ = 0;
+  double first_frame_ = 0;
+  std::optional<double> fps_;
 };
 
 }  // namespace cscd::scenes

@@ -47,6 +47,13 @@ SurfaceFile read_surface(const fs::path& path) {
   }
 }
 
+void require_finite_frame(const std::vector<Vec3>& positions, std::size_t frame) {
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (!positions[v].allFinite())
+      throw InputError("frame " + std::to_string(frame) + ", vertex " + std::to_string(v) +
+                       ": a coordinate is not finite; export it again");
+}
+
 // A name cut at its last number: "walk.", "0001", ".obj".
 struct CutName {
   std::string before, number, after;
@@ -73,6 +80,7 @@ class FileSequence final : public MeshSequence {
     return extension_of(files_[0]) == ".ply" ? "PLY sequence" : "OBJ sequence";
   }
   std::size_t frame_count() const override { return files_.size(); }
+  double first_frame() const override { return std::stod(cut(files_[0]).number); }
   std::size_t vertex_count() const override { return first_.positions.size(); }
   std::span<const std::array<std::int32_t, 3>> triangles() const override { return first_.triangles; }
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) override {
@@ -122,7 +130,10 @@ class CacheSequence final : public MeshSequence {
   std::span<const std::array<std::int32_t, 3>> triangles() const override { return surface_.triangles; }
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) override {
     cache_.read_frame(frame, positions);
+    require_finite_frame(positions, frame);
   }
+  double first_frame() const override { return cache_.first_frame(); }
+  std::optional<double> fps() const override { return cache_.fps(); }
 
  private:
   bool pc2_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ class MeshSequence {
   virtual ~MeshSequence() = default;
   virtual std::string format() const = 0;
   virtual std::size_t frame_count() const = 0;
+  // The number of the first frame: that in the name of the first file, or what a cache says.
+  virtual double first_frame() const = 0;
+  // Frames a second, where the file says so.
+  virtual std::optional<double> fps() const { return std::nullopt; }
   virtual std::size_t vertex_count() const = 0;
   // Corners of all triangles, in the order of the file of the first frame; those that repeat a corner too.
   virtual std::span<const std::array<std::int32_t, 3>> triangles() const = 0;

@@ -244,9 +244,10 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   report.meshes = report.nodes = 1;
   report.vertices = sequence->vertex_count();
   report.triangles = sequence->triangles().size();
-  report.fps = options.fps.value_or(kAssumedFps);
-  report.fps_from = options.fps ? kAsked : kAssumed;
-  report.clips.push_back({"", 0, static_cast<double>(frames - 1) / report.fps, 0, frames, 0});
+  report.fps = options.fps ? *options.fps : sequence->fps().value_or(kAssumedFps);
+  report.fps_from = options.fps ? kAsked : sequence->fps() ? kStated : kAssumed;
+  report.clips.push_back(
+      {"", 0, static_cast<double>(frames - 1) / report.fps, 0, frames, 0, sequence->first_frame()});
   report.parts.push_back({model.stem().string(), "the surface", -1, -1});
   report.chosen_clip = options.survey ? -1 : 0;
   report.collapsed_triangles = surface.collapsed;

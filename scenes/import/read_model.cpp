@@ -48,10 +48,11 @@ const Format& format_of(const std::filesystem::path& path) {
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   for (const Format& format : kFormats) {
     if (extension == format.extension) return format;
+    if (format.extension == ".bvh") continue;  // holds bones alone
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
   throw InputError("files of the kind '" + extension + "' are not read; convert it to one of " + known +
-                   ", or to .obj, .ply, .pc2 or .mdd");
+                   ", or to .h5, .obj, .ply, .pc2 or .mdd");
 }
 
 void keep_only(Assimp::Importer& importer, std::string_view name) {

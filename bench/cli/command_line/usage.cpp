@@ -125,6 +125,10 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
 void require_text(int count, const char* const* words) {
   for (int i = 1; i < count; ++i) {
     const std::string argument = "argument " + std::to_string(i);
+    // What a script writes for a variable that is not set.
+    if (words[i][0] == '\0')
+      throw InputError(argument + (i > 1 ? ", after " + std::string(words[i - 1]) + "," : "") +
+                       " is empty; give a value, or leave the option out");
     try {
       nlohmann::json(words[i]).dump();
     } catch (const nlohmann::json::exception&) {

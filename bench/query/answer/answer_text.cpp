@@ -134,12 +134,9 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
                     cross = s.count(IntervalVerdict::intersects_at_start),
                     undecided = s.count(IntervalVerdict::undecided);
-  // What the verdict does not speak of.
   std::string apart;
-  for (const std::string& each : {std::string(s.with_left_out > 0 ? "what crosses at rest" : ""),
-                                  std::string(s.with_ignored > 0 ? "what is ignored" : ""),
-                                  std::string(s.with_old > 0 ? "what lies in itself already" : "")})
-    if (!each.empty()) apart += (apart.empty() ? ", apart from " : " and ") + each;
+  for (const std::string& each : verdict_exceptions(s))
+    apart += (apart.empty() ? ", apart from " : " and ") + each;
   if (!collides(s.verdict())) {
     const std::string frames = " in frames " + frame_text(frame_of(input, {s.first_index, 0})) + " to " +
                                frame_text(frame_of(input, {s.last_index, 1}));
@@ -222,18 +219,51 @@ Sentences sentences(const ClipAnswer& answer) {
 
 }  // namespace
 
+std::vector<std::string> verdict_exceptions(const AnswerSummary& s) {
+  std::vector<std::string> out;
+  if (s.with_left_out > 0) out.push_back("what crosses at rest");
+  if (s.with_ignored > 0) out.push_back("what is ignored");
+  if (s.with_old > 0) out.push_back("what lies in itself already");
+  return out;
+}
+
 std::string event_text(const Input& input, const OverlapEvent& event) {
   std::string out =
       event.names.first +
       (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
   const std::string most = "at most " + distance_text(input, event.depth.upper);
-  out += event.depth.lower > 0 ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
-                               : most + " deep";
+  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
+  out += event.depth.lower > kRounding * event.depth.upper
+             ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
+             : most + " deep";
   if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
   const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
   if (event.first == event.last) return out + ", frame " + frame(event.first);
   return out + ", frames " + frame(event.first) + " to " + frame(event.last) + ", deepest at " +
          frame(event.deepest);
+}
+
+bool is_too_deep(const ClipAnswer& answer, const WrittenLength& most) {
+  const double length = most.length(answer.input.thickness.edge);
+  // A start of which nothing is known may be too deep.
+  return answer.not_measured > 0 || std::ranges::any_of(answer.events, [&](const OverlapEvent& event) {
+           return event.depth.lower > length;
+         });
+}
+
+std::string too_deep_text(const ClipAnswer& answer, const WrittenLength& most) {
+  const double length = most.length(answer.input.thickness.edge);
+  const std::string limit = "--fail-deeper-than " + length_text(most, answer.input.thickness.edge) + ": ";
+  if (answer.not_measured > 0) return limit + "fails, because some starts were not measured";
+  double lower = 0, upper = 0;
+  for (const OverlapEvent& event : answer.events)
+    lower = std::max(lower, event.depth.lower), upper = std::max(upper, event.depth.upper);
+  if (lower > length)
+    return limit + "fails, because something lies " + distance_text(answer.input, lower) + " deep";
+  std::string text = limit + "passes: nothing is known to lie deeper";
+  if (upper > length) text += ", and something may lie up to " + distance_text(answer.input, upper) + " deep";
+  text += "; the clip's last pose was not looked at";
+  return text + (answer.rest.total > 0 && answer.rest_left_out ? ", nor was what crosses at rest" : "");
 }
 
 std::string verdict_sentence(const ClipAnswer& answer) {
@@ -288,7 +318,10 @@ std::string clip_text(const ClipAnswer& answer) {
 
 std::string brief_clip_text(const ClipAnswer& answer) {
   std::string out = verdict_sentence(answer) + "\n" + not_measured_text(answer);
-  if (answer.summary.proven < answer.summary.intervals()) out += "  " + sentences(answer).proven + "\n";
+  const Sentences said = sentences(answer);
+  if (answer.summary.proven < answer.summary.intervals()) out += "  " + said.proven + "\n";
+  for (const std::string* line : {&said.ignored, &said.rest})
+    if (!line->empty()) out += "  " + *line + "\n";
   if (!answer.events.empty())
     out += "  lies in itself in " + many(answer.events.size(), "place") +
            ", deepest: " + event_text(answer.input, answer.events[deepest_first(answer.events)[0]]) + "\n";

@@ -28,7 +28,7 @@ void add_answer_options(CLI::App& command, AnswerRequest& request) {
                    "count pairs of triangles that cross at rest like all others");
   command
       .add_option("--interval-seconds", request.interval_seconds,
-                  "seconds after which an interval is given up; default 60 for model files, else none")
+                  "seconds after which an interval ends the program; default 60 for model files, else none")
       ->check(CLI::Range(0.01, 1e6));
   add_ignore_options(command, request.ignored);
   add_thickness_options(command, request.thickness);

@@ -236,6 +236,11 @@ json parsed(std::string_view text) {
   try {
     return json::parse(text.begin(), text.end());
   } catch (const json::exception& error) {
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos ||
+        text[text.find_first_not_of(" \t\r\n")] != '{')
+      throw InputError(
+          "is no glTF file, whatever its name says: it does not begin as one; give it the extension of its "
+          "own format");
     throw InputError(std::string("the glTF file's JSON is damaged (") + error.what() + "); export it again");
   }
 }
