@@ -82,7 +82,7 @@ PYBIND11_MODULE(_cscd, module) {
           py::init([](std::vector<bool> rigid, std::vector<int> group,
                       std::vector<std::pair<int, int>> ignoring, std::vector<std::pair<int, int>> vertices,
                       std::vector<std::pair<int, int>> faces, int rings, double rest_distance, bool ongoing) {
-            return SelfCollision::Exclusions{std::move(rigid), std::move(group), std::move(ignoring),
+            return SelfCollision::Exclusions{std::move(rigid),    std::move(group), std::move(ignoring),
                                              std::move(vertices), std::move(faces), rings,
                                              rest_distance,       ongoing};
           }));

@@ -196,8 +196,8 @@ class CSCD_EXPORT SelfCollision {
       std::vector<double> distance;
       double area;  // a third of each face for each of its corners here
       // Behind the faces of the other sheet, inside a closed surface. Otherwise before them, where one closed
-      // surface crosses itself and is turned inside out, or looks inward as a whole; or the smaller side, where
-      // the other sheet is open.
+      // surface crosses itself and is turned inside out, or looks inward as a whole; or the smaller side,
+      // where the other sheet is open.
       bool behind;
       // What is cut off the other sheet is not bounded. Distances are those to the other component, or within
       // one component no more than upper bounds; then `depth` is 0.

@@ -151,6 +151,8 @@ TEST(GltfDocument, TextThatIsNoGltfIsRefused) {
   for (int i = 0; i < 100'000; ++i) deep += '[';
   EXPECT_NE(told(folder, "test.gltf", deep).find("nests deeper"), std::string::npos);
   EXPECT_NE(told(folder, "test.gltf", "").find("JSON is damaged"), std::string::npos);
+  EXPECT_NE(told(folder, "test.gltf", "Kaydara FBX Binary").find("whatever its name says"),
+            std::string::npos);
   EXPECT_NE(told(folder, "test.gltf", "[]").find("is no object"), std::string::npos);
   EXPECT_NE(told(folder, "test.gltf", R"({"asset":{"version":"2.0"},"scene":1e999})").find("damaged"),
             std::string::npos);

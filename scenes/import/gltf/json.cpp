@@ -236,8 +236,8 @@ json parsed(std::string_view text) {
   try {
     return json::parse(text.begin(), text.end());
   } catch (const json::exception& error) {
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos ||
-        text[text.find_first_not_of(" \t\r\n")] != '{')
+    const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+    if (first != std::string_view::npos && text[first] != '{')
       throw InputError(
           "is no glTF file, whatever its name says: it does not begin as one; give it the extension of its "
           "own format");
