@@ -108,6 +108,11 @@ struct IntervalMarks {
   std::vector<float> time, kind, normal;  // kind: 0 vertex and face, 1 two edges
 };
 
+// The last frame begins no interval, and nothing is known of its depths.
+std::vector<float> depth_of(const IntervalMarks& marks, const TriangleMesh& mesh) {
+  return marks.depth.empty() ? std::vector<float>(mesh.vertex_count()) : marks.depth;
+}
+
 // Answers the intervals of an input as cscd query does by default.
 class Marker {
  public:
@@ -224,8 +229,7 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     cells("second_cover", marks.second_cover);
     cells("third_cover", marks.third_cover);
     cells("patch", marks.patch);
-    surface.add_to_points("depth",
-                          marks.depth.empty() ? std::vector<float>(input.mesh.vertex_count()) : marks.depth);
+    surface.add_to_points("depth", depth_of(marks, input.mesh));
     scenes::VtkSurface lines(marks.curves);
     lines.add("event", marks.event);
     scenes::VtkSurface points(marks.points, {});
@@ -265,8 +269,7 @@ void export_usd(Input& input, const fs::path& output, bool force) {
     std::vector<std::uint8_t> colour(triangles, 0);
     for (std::size_t t = 0; t < marks.touches.size(); ++t)
       colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
-    surface.append(input.clip->load_frame(f).positions, colour, kPalette,
-                   marks.depth.empty() ? std::vector<float>(input.mesh.vertex_count()) : marks.depth,
+    surface.append(input.clip->load_frame(f).positions, colour, kPalette, depth_of(marks, input.mesh),
                    marks.points, marks.curves);
     progress.advance();
   }

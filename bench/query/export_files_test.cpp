@@ -91,6 +91,9 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
       {"printf 'v 0 0 0\\nf 1 2 9\\n' > a.0000.obj", "a.0000.obj", "has a face of vertex"},
       {"head -c 500 c.pc2 > d.pc2; cp c.obj d.obj", "d.pc2", "which is not what its 500 bytes hold"},
       {"cp c.mdd e.mdd", "e.mdd", "has no faces; put the OBJ file"},
+      {"cp c.obj n.obj; cp c.pc2 n.pc2; printf '\\0\\0\\300\\177' | dd of=n.pc2 bs=1 seek=44 conv=notrunc "
+       "2>/dev/null",
+       "n.pc2", "n.pc2: frame 0, vertex 1: a coordinate is not finite"},
       {"printf 'ply\\nformat ascii 1.0\\nend_header\\n' | tee f.1.ply > f.2.ply", "f.1.ply",
        "has no vertices"},
       {"true", "c.pc2 --clip x", "leave out all options"},

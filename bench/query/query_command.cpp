@@ -126,8 +126,9 @@ Said say_clip(const QueryOptions& options, Input input, bool with_json, bool is_
   said.verdict = input.motion ? answer.true_motion.verdict() : answer.summary.verdict();
   said.apart = verdict_exceptions(answer.summary);
   if (options.fail_deeper_than) {
-    said.too_deep = is_too_deep(answer, *options.fail_deeper_than);
-    std::printf("  %s\n", too_deep_text(answer, *options.fail_deeper_than).c_str());
+    const DepthCheck check = check_depth(answer, *options.fail_deeper_than);
+    said.too_deep = check.fails;
+    std::printf("  %s\n", check.text.c_str());
   }
   if (!with_json) return said;
   said.document = clip_json(answer, most_start_pairs(options.start_pairs));

@@ -131,8 +131,9 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
       for (const auto& contestant : contestants) {
         watchdog.restart();
         IntervalAnswer answer = contestant->answerer.answer(i);
+        const scenes::ClipInterval loaded = input.clip->load(i);
         if (true_motion && contestant == contestants.front()) {
-          true_motion->answer(input.clip->load(i).motion, answer);
+          true_motion->answer(loaded.motion, answer);
           motion = answer.motion;
           if (motion->verdict != TrueVerdict::clear || differs(answer))
             true_moments.push_back(true_moment(input, names, answer, range.first));
@@ -140,12 +141,11 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
             clip.add_other_end(true_motion->positions_at(motion->parts_again ? motion->from : motion->to));
         }
         answer.motion = motion;
-        contestant->recording.add(answer, input.clip->load(i), texts);
+        contestant->recording.add(answer, loaded, texts);
         touches = touches || !answer.found.contacts.empty();
         // All strategies see the same starts.
         if (contestant == contestants.front())
-          overlaps.add(events.add(answer, input.clip->load(i).motion.start(), {.ways = true}),
-                       input.clip->load(i).motion.start());
+          overlaps.add(events.add(answer, loaded.motion.start(), {.ways = true}), loaded.motion.start());
       }
       if (touches && input.clip->header().predicted) clip.add_other_end(input.clip->load(i).motion.end());
       progress.advance();

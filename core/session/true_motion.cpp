@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/rounding.h"
@@ -100,11 +99,8 @@ TrueMotion::TrueMotion(const VertexPaths& paths, const StrategyInput& setup, con
                      " vertices, and the mesh has " + std::to_string(vertices));
   detector_ = strategy.make(setup_).detector;
   for (std::size_t v = 0; v < vertices; ++v) everything_.push_back(VertexId{static_cast<std::int32_t>(v)});
-  if (strategy.looks_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr) {
-    StrategyInput first = setup_;
-    first.first_only = true;
-    free_ = kDrvbcFast.make(first).detector;
-  }
+  if (strategy.looks_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr)
+    by_signs_ = kDrvbcFast.make(setup_).detector;
   a_.resize(vertices), b_.resize(vertices), wide_.resize(vertices);
 }
 
@@ -157,8 +153,9 @@ TrueAnswer TrueMotion::answer(double from, double to) {
     const double stop = jump ? jump->before : to;
     if (stop > begin) {
       place_all(stop, end);
-      is_stretch_ = true;
-      more = look_at(start, end);
+      const double widest = largest_width(start, end);
+      answer_.deviation = std::max(answer_.deviation, widest);
+      more = look_at(start, end, widest);
     }
     if (!jump) break;
     ++answer_.jumps;
@@ -194,23 +191,25 @@ void TrueMotion::say_close(double from, double to, double within, const std::vec
   answer_.pair = carriers(setup_.mesh, pairs.front()).front();
 }
 
-bool TrueMotion::look_at(const Places& from, const Places& to) {
+double TrueMotion::largest_width(const Places& from, const Places& to) const {
   double error = 0;
   for (const Places* places : {&from, &to})
     for (const double e : places->error) error = std::max(error, e);
-  double widest = (paths_.largest_deviation(from.time, to.time) + error) * kGrown;
-  if (!(widest <= options_.coarse) && widest < kLooser * options_.coarse) {
-    const std::vector<double> wide = widths(from, to);
-    widest = *std::ranges::max_element(wide);
-  }
-  if (std::exchange(is_stretch_, false)) answer_.deviation = std::max(answer_.deviation, widest);
+  const double widest = (paths_.largest_deviation(from.time, to.time) + error) * kGrown;
+  if (widest <= options_.coarse || widest >= kLooser * options_.coarse) return widest;
+  const std::vector<double> wide = widths(from, to);
+  return *std::ranges::max_element(wide);
+}
+
+bool TrueMotion::look_at(const Places& from, const Places& to, double widest) {
   if (++answer_.parts > options_.most_parts) return give_up(from.time, to.time);
   if (!(widest <= options_.coarse)) {
     const double middle = paths_.split(from.time, to.time);
     if (!(from.time < middle && middle < to.time)) return give_up(from.time, to.time);
     Places between;
     place_all(middle, between);
-    return look_at(from, between) && look_at(between, to);
+    return look_at(from, between, largest_width(from, between)) &&
+           look_at(between, to, largest_width(between, to));
   }
   find_close(from, to, widest);
   std::vector<FeaturePair> pairs;
@@ -243,12 +242,12 @@ void TrueMotion::find_close(const Places& from, const Places& to, double widest)
   const bool by_one = starts_clear || (setup_.exclusions == nullptr && waits_ == 0);
   const double asked = starts_clear ? std::min(clear_at_, kRoom * distance) : kRoom * distance;
   // After a clear start the first contact alone is enough to know that there is none, and soon known.
-  if (starts_clear && free_) {
-    const Report report = free_->detect({.motion = Motion(from.at, to.at),
-                                         .starts_embedded = true,
-                                         .thickness = Thickness(asked),
-                                         .any_contact = true},
-                                        found_);
+  if (starts_clear && by_signs_) {
+    const Report report = by_signs_->detect({.motion = Motion(from.at, to.at),
+                                             .starts_embedded = true,
+                                             .thickness = Thickness(asked),
+                                             .any_contact = true},
+                                            found_);
     if (found_.contacts.empty()) {
       // Where spikes are thin, signs leave more pairs of triangles than boxes do.
       const bool pays = report.cull.pctp <= pairs_without_start_;

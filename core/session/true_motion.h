@@ -91,11 +91,14 @@ class TrueMotion {
   void place_all(double time, Places& out) const;
   bool is_out(const TrianglePair& pair) const;
   bool is_out(const FeaturePair& pair) const;
-  // Each returns false once the answer is known.
-  bool look_at(const Places& from, const Places& to);
-  void find_close(const Places& from, const Places& to, double widest);
-  // How far vertices leave their lines, what is uncertain of their places included, [vertices].
+  // How far vertices leave their lines, what is uncertain of their places included: each, [vertices], and a
+  // bound for all of them.
   std::vector<double> widths(const Places& from, const Places& to) const;
+  double largest_width(const Places& from, const Places& to) const;
+  // `widest` is the largest width of the part.
+  void find_close(const Places& from, const Places& to, double widest);
+  // Each returns false once the answer is known.
+  bool look_at(const Places& from, const Places& to, double widest);
   bool look_closer(const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
   bool look_at(Piece& piece, const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
   bool proves_contact(const Piece& piece, const Places& from, const Places& to,
@@ -107,8 +110,8 @@ class TrueMotion {
   StrategyInput setup_;
   TrueMotionOptions options_;
   std::unique_ptr<Detector> detector_;
-  std::unique_ptr<Detector>
-      free_;  // tells whether anything comes close after a clear start; null where none can
+  // Tells whether anything comes close after a clear start; null where signs do not hold.
+  std::unique_ptr<Detector> by_signs_;
   std::vector<VertexId> everything_;
   Places last_;  // where the span asked about last ended
   // At this time the pose is clear (core/soundness.md, "Contacts at a distance") at this distance; 0 where
@@ -121,7 +124,6 @@ class TrueMotion {
   ContactSet found_;
   TrueAnswer answer_;
   double narrow_ = 0;
-  bool is_stretch_ = false;  // the next part is all that lies between two jumps
 };
 
 }  // namespace cscd

@@ -1,4 +1,5 @@
 #include <bit>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -92,6 +93,29 @@ TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
       EXPECT_NE(test::refusal([&] { MeshCache(format, std::string_view(bytes).substr(0, cut)); }), "") << cut;
     EXPECT_NE(test::refusal([&] { MeshCache(format, bytes + "x"); }), "");
   }
+}
+
+// Mutations: the first second, or frame, is not looked at; frames that are not evenly spaced have a rate.
+TEST(MeshCaches, SayWhenTheirFramesAre) {
+  const std::vector<Vec3> one = {{1, 2, 3}};
+  const auto with = [&](MeshCacheFormat format, std::size_t at, std::initializer_list<float> numbers) {
+    std::string bytes = mesh_cache_head(format, 1, 3, 25);
+    for (int f = 0; f < 3; ++f) bytes += mesh_cache_frame(format, one);
+    for (const float x : numbers) {
+      const auto bits = std::bit_cast<std::uint32_t>(x);
+      for (int k = 0; k < 4; ++k, ++at)
+        bytes[at] = static_cast<char>(bits >> (format == MeshCacheFormat::pc2 ? 8 * k : 24 - 8 * k));
+    }
+    return bytes;
+  };
+  const std::string late = with(MeshCacheFormat::mdd, 8, {2.0F, 2.04F, 2.08F}),
+                    uneven = with(MeshCacheFormat::mdd, 8, {2.0F, 2.05F, 2.08F}),
+                    named = with(MeshCacheFormat::pc2, 20, {101.0F});
+  EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, late).fps(), 25);
+  EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, late).first_frame(), 50);
+  EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).fps(), std::nullopt);
+  EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).first_frame(), 0);
+  EXPECT_EQ(MeshCache(MeshCacheFormat::pc2, named).first_frame(), 101);
 }
 
 TEST(VtkFiles, EscapeNames) {

@@ -67,14 +67,19 @@ MeshCache::MeshCache(MeshCacheFormat format, std::string_view bytes) : format_(f
                      std::to_string(vertices_) + " vertices, which is not what its " +
                      std::to_string(bytes.size()) + " bytes hold; export it again");
   body_ = bytes.substr(head);
+  read_times(bytes);
+}
+
+// An MDD cache holds the second of every frame. Its rate is known where they are evenly spaced.
+void MeshCache::read_times(std::string_view bytes) {
   const auto number = [&](std::size_t at) {
-    return double{std::bit_cast<float>(static_cast<std::uint32_t>(count(at)))};
+    return double{
+        std::bit_cast<float>(static_cast<std::uint32_t>(bits_of(bytes.substr(at, 4), is_big(format_))))};
   };
-  if (pc2) {
+  if (format_ == MeshCacheFormat::pc2) {
     if (const double first = number(20); std::isfinite(first)) first_frame_ = first;
     return;
   }
-  // An MDD cache holds the second of every frame. Its rate is known where they are evenly spaced.
   const auto second = [&](std::size_t frame) { return number(kMddHead + 4 * frame); };
   if (frames_ < 2) return;
   const double first = second(0), step = (second(frames_ - 1) - first) / static_cast<double>(frames_ - 1);

@@ -36,6 +36,8 @@ class MeshCache {
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) const;
 
  private:
+  void read_times(std::string_view bytes);
+
   MeshCacheFormat format_;
   std::string_view body_;
   std::size_t vertices_ = 0, frames_ = 0;

@@ -90,13 +90,13 @@ void CharacterMotion::enclose(double seconds, std::span<const VertexId> vertices
   const PoseJets::Nodes nodes = pose_.nodes(moment);
   const std::vector<Part>& parts = moving_.character.parts;
   std::vector<std::optional<SkinJets>> skins(parts.size());
-  std::vector<std::vector<LinearSkin::Placing>> placings(parts.size());
+  std::vector<std::vector<LinearSkin::JointPlace>> joint_places(parts.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const auto part = static_cast<std::size_t>(place_[+vertices[i]].part);
     const auto v = static_cast<std::size_t>(place_[+vertices[i]].vertex);
-    if (placings[part].empty() && !skins[part]) {
+    if (joint_places[part].empty() && !skins[part]) {
       if (is_linear(part, weights))
-        placings[part] = linear_[part].placings(nodes.over);
+        joint_places[part] = linear_[part].joint_places(nodes.over);
       else
         skins[part].emplace(parts[part], points_[part], nodes, weights.of_part[part]);
     }
@@ -105,7 +105,7 @@ void CharacterMotion::enclose(double seconds, std::span<const VertexId> vertices
       at[i] = place.centre;
       error[i] = place.radius;
     } else {
-      error[i] = linear_[part].place(v, placings[part], at[i]);
+      error[i] = linear_[part].place(v, joint_places[part], at[i]);
     }
   }
 }
@@ -118,9 +118,9 @@ class CharacterMotion::LinearPaths {
       : motion_(motion), parts_(std::move(parts)), last_(parts_.size()), bends_(parts_.size()) {}
 
   // How far joints take points off their lines, in the order of the parts. Throws Unbounded.
-  std::vector<std::vector<LinearSkin::Growing>> deviations(const Span& span) {
+  std::vector<std::vector<LinearSkin::AffineBound>> deviations(const Span& span) {
     const double h = rounded_up(span.to - span.from);
-    std::vector<std::vector<LinearSkin::Growing>> corners(parts_.size());
+    std::vector<std::vector<LinearSkin::AffineBound>> corners(parts_.size());
     double from = span.from;
     for (auto corner = std::upper_bound(motion_.pose_.corners().begin(), motion_.pose_.corners().end(), from);
          corner != motion_.pose_.corners().end() && *corner < span.to; ++corner) {
@@ -135,49 +135,52 @@ class CharacterMotion::LinearPaths {
   }
 
  private:
-  static void add_product(const LinearSkin::Growing& x, double factor, LinearSkin::Growing& to) {
+  static void add_product(const LinearSkin::AffineBound& x, double factor, LinearSkin::AffineBound& to) {
     to.at_centre = grown(to.at_centre + x.at_centre * factor);
     to.per_distance = grown(to.per_distance + x.per_distance * factor);
   }
 
-  void add(const Span& span, int halvings, std::vector<std::vector<LinearSkin::Growing>>& corners) {
+  void add(const Span& span, int halvings, std::vector<std::vector<LinearSkin::AffineBound>>& corners) {
     const PoseJets::Nodes nodes = motion_.pose_.nodes(span);
-    std::vector<LinearSkin::Going> going;
-    double bend = 0, doubt = 0;
+    std::vector<LinearSkin::JointMotions> motions;
+    double bend = 0, uncertainty = 0;
     for (const std::size_t part : parts_) {
-      going.push_back(motion_.linear_[part].going(nodes.over));
-      bend = std::max(bend, going.back().bend), doubt = std::max(doubt, going.back().doubt);
+      motions.push_back(motion_.linear_[part].motions(nodes.over));
+      bend = std::max(bend, motions.back().bend),
+      uncertainty = std::max(uncertainty, motions.back().uncertainty);
     }
     const double middle = span.from + (span.to - span.from) / 2;
-    if (doubt > kMostDoubt * bend && halvings < kMostHalvings && span.from < middle && middle < span.to) {
+    if (uncertainty > kMostUncertainty * bend && halvings < kMostHalvings && span.from < middle &&
+        middle < span.to) {
       add({span.from, middle}, halvings + 1, corners);
       add({middle, span.to}, halvings + 1, corners);
       return;
     }
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      const std::size_t joints = going[p].joints.size();
+      const std::size_t joints = motions[p].joints.size();
       bends_[p].resize(joints), corners[p].resize(joints);
       for (std::size_t j = 0; j < joints; ++j) {
-        LinearSkin::Growing& most = bends_[p][j];
-        const LinearSkin::Growing& own = going[p].joints[j].bend;
+        LinearSkin::AffineBound& most = bends_[p][j];
+        const LinearSkin::AffineBound& own = motions[p].joints[j].bend;
         most = {std::max(most.at_centre, own.at_centre), std::max(most.per_distance, own.per_distance)};
       }
       if (corner_ > 0) {
-        const std::vector<LinearSkin::Growing> turns = motion_.linear_[parts_[p]].turns(last_[p], going[p]);
-        for (std::size_t j = 0; j < joints; ++j) add_product(turns[j], corner_, corners[p][j]);
+        const std::vector<LinearSkin::AffineBound> changes =
+            motion_.linear_[parts_[p]].rate_changes(last_[p], motions[p]);
+        for (std::size_t j = 0; j < joints; ++j) add_product(changes[j], corner_, corners[p][j]);
       }
     }
     corner_ = 0;
-    last_ = std::move(going);
+    last_ = std::move(motions);
   }
 
-  static constexpr double kMostDoubt = 0.5;
+  static constexpr double kMostUncertainty = 0.5;
   static constexpr int kMostHalvings = 4;
 
   const CharacterMotion& motion_;
   std::vector<std::size_t> parts_;
-  std::vector<LinearSkin::Going> last_;                  // [parts], over the last piece
-  std::vector<std::vector<LinearSkin::Growing>> bends_;  // [parts][joints], the largest over all pieces
+  std::vector<LinearSkin::JointMotions> last_;               // [parts], over the last piece
+  std::vector<std::vector<LinearSkin::AffineBound>> bends_;  // [parts][joints], the largest over all pieces
   double corner_ = 0;  // what a change of the rate between the last piece and the next one is worth
 };
 

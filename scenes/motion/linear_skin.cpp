@@ -39,8 +39,8 @@ LinearSkin::LinearSkin(const Part& part) {
 
 // A sum of weighted points is off by what the points are, and by two roundings of each partial sum and of
 // each point. Partial sums are no longer than the longest point, because weights sum to 1 up to rounding.
-std::vector<LinearSkin::Placing> LinearSkin::placings(const std::vector<MovingTransform>& pose) const {
-  std::vector<Placing> out(clouds_.size());
+std::vector<LinearSkin::JointPlace> LinearSkin::joint_places(const std::vector<MovingTransform>& pose) const {
+  std::vector<JointPlace> out(clouds_.size());
   double longest = 0;
   for (std::size_t j = 0; j < clouds_.size(); ++j) {
     const Cloud& cloud = clouds_[j];
@@ -54,23 +54,23 @@ std::vector<LinearSkin::Placing> LinearSkin::placings(const std::vector<MovingTr
     longest = std::max(longest, grown(norm * cloud.length + off));
   }
   const double summing = grown(8 * kUnitRoundoff * static_cast<double>(most_ + 1) * longest);
-  for (Placing& placing : out) placing.error = grown(placing.error + summing);
+  for (JointPlace& joint_place : out) joint_place.error = grown(joint_place.error + summing);
   return out;
 }
 
-double LinearSkin::place(std::size_t v, std::span<const Placing> placings, Vec3& at) const {
+double LinearSkin::place(std::size_t v, std::span<const JointPlace> joint_places, Vec3& at) const {
   double error = 0;
   at = Vec3::Zero();
   for (const Influence& influence : of(v)) {
-    const Placing& joint = placings[influence.joint];
+    const JointPlace& joint = joint_places[influence.joint];
     at += influence.weight * (joint.linear * influence.point + joint.origin);
     error += influence.weight * joint.error;
   }
   return grown(error);
 }
 
-LinearSkin::Going LinearSkin::going(const std::vector<MovingTransform>& pose) const {
-  Going out;
+LinearSkin::JointMotions LinearSkin::motions(const std::vector<MovingTransform>& pose) const {
+  JointMotions out;
   out.joints.resize(clouds_.size());
   for (std::size_t j = 0; j < clouds_.size(); ++j) {
     const Cloud& cloud = clouds_[j];
@@ -78,39 +78,40 @@ LinearSkin::Going LinearSkin::going(const std::vector<MovingTransform>& pose) co
     const MovingTransform& map = pose[cloud.node];
     const BallVector centre{cloud.centre, 0};
     const BallVector bend = map.linear.bend * centre + map.origin.bend;
-    const double sure = norm_above(bend.centre), round = norm_above(map.linear.bend.centre);
+    const double sure = norm_above(bend.centre), around = norm_above(map.linear.bend.centre);
     out.joints[j] = {map.linear.rate * centre + map.origin.rate,
                      map.linear.rate,
-                     {grown(sure + bend.radius), grown(round + map.linear.bend.radius)}};
-    const double doubt = bend.radius + cloud.radius * map.linear.bend.radius;
-    if (!std::isfinite(doubt + sure + round)) throw Unbounded();
-    out.bend = std::max(out.bend, sure + cloud.radius * round + doubt);
-    out.doubt = std::max(out.doubt, doubt);
+                     {grown(sure + bend.radius), grown(around + map.linear.bend.radius)}};
+    const double uncertainty = bend.radius + cloud.radius * map.linear.bend.radius;
+    if (!std::isfinite(uncertainty + sure + around)) throw Unbounded();
+    out.bend = std::max(out.bend, sure + cloud.radius * around + uncertainty);
+    out.uncertainty = std::max(out.uncertainty, uncertainty);
   }
   return out;
 }
 
-std::vector<LinearSkin::Growing> LinearSkin::turns(const Going& before, const Going& after) const {
+std::vector<LinearSkin::AffineBound> LinearSkin::rate_changes(const JointMotions& before,
+                                                              const JointMotions& after) const {
   const auto between = [](const auto& a, const auto& b) {
     return grown(norm_above(decltype(a.centre)(b.centre - a.centre)) + a.radius + b.radius);
   };
-  std::vector<Growing> out(clouds_.size());
+  std::vector<AffineBound> out(clouds_.size());
   for (std::size_t j = 0; j < out.size(); ++j)
     out[j] = {between(before.joints[j].rate, after.joints[j].rate),
-              between(before.joints[j].rate_round, after.joints[j].rate_round)};
+              between(before.joints[j].rate_around, after.joints[j].rate_around)};
   return out;
 }
 
-double LinearSkin::deviation(std::size_t v, std::span<const Growing> of_joints) const {
+double LinearSkin::deviation(std::size_t v, std::span<const AffineBound> of_joints) const {
   double sum = 0;
   for (const Influence& influence : of(v)) {
-    const Growing& joint = of_joints[influence.joint];
+    const AffineBound& joint = of_joints[influence.joint];
     sum += influence.weight * (joint.at_centre + joint.per_distance * influence.distance);
   }
   return grown(sum);
 }
 
-double LinearSkin::largest_deviation(std::span<const Growing> of_joints) const {
+double LinearSkin::largest_deviation(std::span<const AffineBound> of_joints) const {
   double largest = 0;
   for (std::size_t j = 0; j < clouds_.size(); ++j)
     if (clouds_[j].used)

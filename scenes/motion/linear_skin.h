@@ -17,39 +17,40 @@ class LinearSkin {
   explicit LinearSkin(const Part& part);
 
   // Where a joint takes its points at one moment.
-  struct Placing {
+  struct JointPlace {
     Eigen::Matrix3d linear;
     Vec3 origin;
     double error;  // of the place of any of its points
   };
   // [joints]. `pose` is that of one moment, [nodes]. Throws Unbounded.
-  std::vector<Placing> placings(const std::vector<MovingTransform>& pose) const;
+  std::vector<JointPlace> joint_places(const std::vector<MovingTransform>& pose) const;
   // Returns how far the place may be from the true one.
-  double place(std::size_t v, std::span<const Placing> placings, Vec3& at) const;
+  double place(std::size_t v, std::span<const JointPlace> joint_places, Vec3& at) const;
 
-  // A number for the points of a joint, as a function of their distance from the centre of all of them.
-  struct Growing {
+  // Bounds a number of each point of a joint: at the centre of all its points, and so much more for each unit
+  // of distance from there.
+  struct AffineBound {
     double at_centre = 0, per_distance = 0;
   };
   // How the joints move their points over a span of time without corners.
-  struct Going {
+  struct JointMotions {
     struct Joint {
-      BallVector rate;        // at the centre
-      BallMatrix rate_round;  // what the points around have beside it
-      Growing bend;
+      BallVector rate;         // at the centre
+      BallMatrix rate_around;  // what points have beside it, for each unit of distance
+      AffineBound bend;
     };
     std::vector<Joint> joints;
     double bend = 0,
-           doubt = 0;  // the largest bound on a bend of any point, and how much of one is uncertainty
+           uncertainty = 0;  // the largest bound on a bend of any point, and how much of one is uncertainty
   };
   // Throws Unbounded.
-  Going going(const std::vector<MovingTransform>& pose) const;
+  JointMotions motions(const std::vector<MovingTransform>& pose) const;
   // Bounds how far rates of one span are from those of the next, [joints].
-  std::vector<Growing> turns(const Going& before, const Going& after) const;
+  std::vector<AffineBound> rate_changes(const JointMotions& before, const JointMotions& after) const;
   // How far the vertex leaves its line where the joints' points leave theirs as is told, [joints].
-  double deviation(std::size_t v, std::span<const Growing> of_joints) const;
+  double deviation(std::size_t v, std::span<const AffineBound> of_joints) const;
   // The same for any vertex.
-  double largest_deviation(std::span<const Growing> of_joints) const;
+  double largest_deviation(std::span<const AffineBound> of_joints) const;
 
  private:
   struct Influence {

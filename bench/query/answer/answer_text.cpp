@@ -243,27 +243,21 @@ std::string event_text(const Input& input, const OverlapEvent& event) {
          frame(event.deepest);
 }
 
-bool is_too_deep(const ClipAnswer& answer, const WrittenLength& most) {
-  const double length = most.length(answer.input.thickness.edge);
-  // A start of which nothing is known may be too deep.
-  return answer.not_measured > 0 || std::ranges::any_of(answer.events, [&](const OverlapEvent& event) {
-           return event.depth.lower > length;
-         });
-}
-
-std::string too_deep_text(const ClipAnswer& answer, const WrittenLength& most) {
+DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   const double length = most.length(answer.input.thickness.edge);
   const std::string limit = "--fail-deeper-than " + length_text(most, answer.input.thickness.edge) + ": ";
-  if (answer.not_measured > 0) return limit + "fails, because some starts were not measured";
+  // A start of which nothing is known may be too deep.
+  if (answer.not_measured > 0) return {true, limit + "fails, because some starts were not measured"};
   double lower = 0, upper = 0;
   for (const OverlapEvent& event : answer.events)
     lower = std::max(lower, event.depth.lower), upper = std::max(upper, event.depth.upper);
   if (lower > length)
-    return limit + "fails, because something lies " + distance_text(answer.input, lower) + " deep";
+    return {true, limit + "fails, because something lies " + distance_text(answer.input, lower) + " deep"};
   std::string text = limit + "passes: nothing is known to lie deeper";
   if (upper > length) text += ", and something may lie up to " + distance_text(answer.input, upper) + " deep";
   text += "; the clip's last pose was not looked at";
-  return text + (answer.rest.total > 0 && answer.rest_left_out ? ", nor was what crosses at rest" : "");
+  return {false,
+          text + (answer.rest.total > 0 && answer.rest_left_out ? ", nor was what crosses at rest" : "")};
 }
 
 std::string verdict_sentence(const ClipAnswer& answer) {

@@ -14,16 +14,20 @@ std::string verdict_sentence(const ClipAnswer& answer);
 
 // Several lines, the verdict first.
 std::string clip_text(const ClipAnswer& answer);
-// The verdict and what lies deepest in the surface: two lines for each of several clips.
+// A few lines for each of several clips: the verdict, what it leaves out, and what lies deepest in the
+// surface.
 std::string brief_clip_text(const ClipAnswer& answer);
 
 // Of what a verdict does not speak: "what crosses at rest", "what is ignored".
 std::vector<std::string> verdict_exceptions(const AnswerSummary& summary);
 
-// Whether something certainly lies deeper in the surface than a length, or a start was not measured.
-bool is_too_deep(const ClipAnswer& answer, const WrittenLength& most);
-// What --fail-deeper-than found, and what it does not know.
-std::string too_deep_text(const ClipAnswer& answer, const WrittenLength& most);
+// What --fail-deeper-than finds. It fails where something certainly lies deeper than the length, and where a
+// start was not measured; the text says why, or what is not known.
+struct DepthCheck {
+  bool fails;
+  std::string text;
+};
+DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most);
 
 // "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
 std::string event_text(const Input& input, const OverlapEvent& event);

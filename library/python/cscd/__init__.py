@@ -180,7 +180,6 @@ class SelfCollision(_cscd.SelfCollision):
                                      ((start, "start"), (end, "end"), (position_error, "position_error"),
                                       (resolution, "resolution"))))
 
-
     def crossings(self, positions):
         """Returns a Crossings: which pieces of the mesh lie in each other in a pose, how deep, and along which curves.
 
