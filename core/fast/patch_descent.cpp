@@ -142,7 +142,7 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
 // Removes the triangles that the star of a common corner proves apart.
 inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
                                      const SharedVertices& common) {
-  if (input_.stars == nullptr || grid_.has_margin()) return wanted;
+  if (input_.stars == nullptr) return wanted;
   const Patch& patch = patches_[p];
   for (const Places16& place : patch.corner) {
     const Mask16 sharing = common.at[place[lane]];
@@ -224,7 +224,7 @@ const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
 inline bool PatchDescent::flat(VertexId vertex) {
   Star& star = star_[+vertex];
   if (star == Star::unknown)
-    star = input_.stars->flat(vertex, input_.positions) ? Star::flat : Star::uncertain;
+    star = input_.stars->flat(vertex, input_.positions, grid_.distance()) ? Star::flat : Star::uncertain;
   return star == Star::flat;
 }
 

@@ -32,7 +32,7 @@ struct DescentInput {
   const PatchTree& tree;
   const LocalPositions& positions;
   const Certificates& certificates;
-  // Stars and planes prove that nothing touches, and are not asked where bounds have a margin.
+  // Planes prove that nothing touches, and are not asked where bounds have a margin.
   const Stars* stars;  // null: without stars
   bool time_linear;
   bool planes;  // whether planes of triangles are asked

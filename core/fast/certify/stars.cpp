@@ -20,14 +20,37 @@
 // most 12 u D L. That is 120 u of the length of `side`, if that length is at least kLeastSide D L. The
 // distance of an edge with components up to A from the plane, in units of that length, is then off by less
 // than 120 sqrt(3) u A, by its own roundings and by 2 d. kOffSide bounds the sum of the first two.
+//
+// The edge between two neighbours of the vertex is the difference of two edges, so its length is off by up to
+// sqrt(3) (4 d + u (A + B)), and by the roundings of a length, for which kRoundUp pays. Whatever else
+// least_height() computes rounds less than ten times, for which kRoundDown pays.
 namespace cscd::fast {
 namespace {
 
 constexpr float kTiny = 1e-30F;
 constexpr float kLeastSide = 0.1F, kOffSide = 1e-4F;
+constexpr float kRoundUp = 1 + 0x1p-20F, kRoundDown = 1 - 0x1p-18F;
 
 float sum(Float16 v) {
   return folded(v, [](auto a, auto b) { return a + b; });
+}
+
+// Returns the least height of a star's triangles at any t, seen along a direction of unit length. `area` is
+// at most twice each triangle's area, seen so, and `a` and `b` are its edges at the vertex. Lengths may be
+// off by `off`.
+float least_height(Float16 area, const PatchLanes& a, const PatchLanes& b, Float16 off) {
+  Float16 longest = {};  // squared
+  const auto take = [&](const auto& component) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      const Float16 x = component(end, 0), y = component(end, 1), z = component(end, 2);
+      longest = larger(longest, product_plus(z, z, product_plus(y, y, x * x)));
+    }
+  };
+  take([&](std::size_t end, std::size_t i) { return a.at[end][i]; });
+  take([&](std::size_t end, std::size_t i) { return b.at[end][i]; });
+  take([&](std::size_t end, std::size_t i) { return b.at[end][i] - a.at[end][i]; });
+  const Float16 heights = area / (kRoundUp * square_root(longest) + off);
+  return kRoundDown * folded(heights, [](auto x, auto y) { return x < y ? x : y; });
 }
 
 // For rings that are repeated over all lanes: the lane of the vertex after each, by the length of the ring.
@@ -84,7 +107,7 @@ void Stars::warm_cache() const {
   cscd::warm_cache(std::span(ring_));
 }
 
-bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
+bool Stars::flat(VertexId vertex, const LocalPositions& positions, float distance) const {
   const auto first = static_cast<std::size_t>(offset_[+vertex]);
   const std::size_t count = static_cast<std::size_t>(offset_[+vertex + 1]) - first;
   if (count == 0 || count > kLanes16 || !positions.known()) return false;
@@ -123,6 +146,13 @@ bool Stars::flat(VertexId vertex, const LocalPositions& positions) const {
   const unsigned positive = above(along(0), bound) & above(along(1), 2 * bound) & above(along(2), bound) &
                             above(area, all_lanes(kTiny));
   if (!(largest > 1e-6F) || positive != 0xffffU) return false;
+  if (distance > 0) {
+    const Float16 least = smaller(smaller(along(0) - bound, along(2) - bound), along(1) / 2 - bound);
+    const float length =
+        std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+    const Float16 off = 8 * positions.error() + 0x1p-22F * (longest_a + longest_b);
+    if (!(least_height(least / (kRoundUp * length), a, b, off) > distance)) return false;
+  }
 
   // Take the direction in the middle of the first triangle at t = 0. A triangle contains it only if the
   // triangle has a corner on either side of it.

@@ -16,13 +16,17 @@ namespace cscd::fast {
 // its triangles have positive area, so the angles under which they are seen at the vertex sum to a whole
 // number of turns, which cannot change as long as the areas stay positive. At t = 0 some direction lies in
 // one triangle alone, so the number is one: the sectors of the triangles never overlap.
+//
+// Seen along that normal, features of two triangles of a flat star that share no vertex are as far apart as
+// the least height of its triangles ("Theorem: flat stars keep a distance", core/soundness.md).
 class Stars {
  public:
   explicit Stars(const TriangleMesh& mesh);
 
-  // Whether the star of the vertex is certainly flat in the interval of these positions. False proves
-  // nothing.
-  bool flat(VertexId vertex, const LocalPositions& positions) const;
+  // Whether the star of the vertex is certainly flat in the interval of these positions, and features of two
+  // of its triangles that share no vertex are certainly farther apart than a distance, in local units. False
+  // proves nothing.
+  bool flat(VertexId vertex, const LocalPositions& positions, float distance = 0) const;
   // Reads everything once from end to end, for a caller who is going to ask about most vertices.
   void warm_cache() const;
 

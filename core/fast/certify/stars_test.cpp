@@ -1,6 +1,7 @@
 #include "core/fast/certify/stars.h"
 
 #include <gtest/gtest.h>
+#include <random>
 
 #include "core/detect/carried_pairs.h"
 #include "core/detect/start/embedding.h"
@@ -55,6 +56,66 @@ TEST(Stars, TrianglesOfAFlatStarDoNotTouch) {
   EXPECT_EQ(embedded, 12u);
   EXPECT_GT(flat, 500u);
   EXPECT_GT(others_with_contacts, 20u);
+}
+
+// At a thickness, no features of a flat star come closer than it. Mutations: heights are not looked at; the
+// longest edge is that at one end alone; only edges at the vertex count; the last control vector is ignored.
+TEST(Stars, FeaturesOfAFlatStarKeepItsHeight) {
+  std::size_t settled = 0, close = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    test::Body body(0, 1);
+    const test::Body noisy(0.02 * seed, 1, {}, 1, seed);
+    body.end = noisy.end;
+    std::mt19937 random(static_cast<unsigned>(seed));
+    LocalPositions local(body.start);
+    local.update(body.motion());
+    const Stars stars(body.mesh);
+    for (std::size_t v = 0; v < body.mesh.vertex_count(); v += 3) {
+      const VertexId vertex{static_cast<std::int32_t>(v)};
+      // From far below an edge's length to above it.
+      const double r = std::exp2(1 - 6 * static_cast<double>(random()) * 0x1p-32);
+      const bool kept = stars.flat(vertex, local, local.in_local(r));
+      settled += kept;
+      std::size_t found = 0;
+      const std::span<const TriangleId> star = body.mesh.triangles_at(vertex);
+      for (std::size_t i = 0; i < star.size(); ++i)
+        for (std::size_t j = i + 1; j < star.size(); ++j)
+          for_each_carried(body.mesh, TrianglePair{star[i], star[j]}, [&](const FeaturePair& pair) {
+            found += ask_close(exact(), body.mesh, body.motion(), pair, r).verdict != Verdict::apart;
+          });
+      close += found > 0 && stars.flat(vertex, local);
+      if (kept) {
+        EXPECT_EQ(found, 0u) << "seed " << seed << ", vertex " << v << ", r " << r;
+      }
+    }
+  }
+  EXPECT_GT(settled, 300u);
+  EXPECT_GT(close, 300u);
+}
+
+// A hexagon of radius 1 has heights of 0.87. It is stretched until these are smaller by as much as its edges
+// get longer, or seen slantwise. Mutations: the edge opposite to the vertex does not count; the direction is
+// taken for one of unit length.
+TEST(Stars, AStretchedStarKeepsItsLeastHeight) {
+  for (const double stretch : {1.0, 4.0})
+    for (const double slope : {0.0, 1.0}) {
+      test::Shape star{{{0, 0, 0}}, {}};
+      for (int i = 0; i < 6; ++i) {
+        const double angle = std::numbers::pi / 3 * i, x = stretch * std::cos(angle);
+        star.positions.emplace_back(x, std::sin(angle), slope * std::sin(angle));
+        star.triangles.push_back(test::corners(0, 1 + i, 1 + (i + 1) % 6));
+      }
+      const TriangleMesh mesh = star.mesh();
+      LocalPositions local(star.positions);
+      local.update(Motion(star.positions, star.positions));
+      double least = 10;  // seen along the star's own normal
+      for (std::size_t i = 0; i < 6; ++i) {
+        const Vec3 a = star.positions[1 + i], b = star.positions[1 + (i + 1) % 6];
+        least = std::min(least, a.cross(b).norm() / std::max({a.norm(), b.norm(), (b - a).norm()}));
+      }
+      EXPECT_TRUE(Stars(mesh).flat(VertexId{0}, local, local.in_local(0.999 * least)));
+      EXPECT_FALSE(Stars(mesh).flat(VertexId{0}, local, local.in_local(1.001 * least)));
+    }
 }
 
 // The stars round a tip that is turned inside out are no graphs all the time. Mutation: only the ends of the

@@ -31,7 +31,8 @@ template <class Low, class High>
 
 }  // namespace
 
-Grid::Grid(float error, float margin) : steps_(kSteps * 0x1p-24F / (error + 0x1p-24F * margin)) {
+Grid::Grid(float error, float margin)
+    : steps_(kSteps * 0x1p-24F / (error + 0x1p-24F * margin)), distance_(2 * margin) {
   if (margin == 0) return;
   // Axes have length 1, the other directions length sqrt(2). Both margins are below 23000 steps, and with the
   // coordinates, which then are fewer steps, below 32100.

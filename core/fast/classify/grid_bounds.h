@@ -72,13 +72,14 @@ class Grid {
   explicit Grid(float error, float margin = 0);
 
   float steps() const { return steps_; }  // steps of the grid in a local unit
-  bool has_margin() const { return margin_[0] != 0; }
+  bool has_margin() const { return distance_ != 0; }
+  float distance() const { return distance_; }  // twice the margin
   NodeBounds bounds_of(const PatchLanes& lanes) const;
   TriangleBounds bounds_of_triangles(const PatchLanes& lanes, const Patch& patch) const;
 
  private:
   static constexpr float kSteps = 16000;
-  float steps_;
+  float steps_, distance_;
   Short32 margin_{};  // of a node, in steps along each direction
 };
 
