@@ -16,6 +16,9 @@ constexpr double kWorthCutting = 1.0 / 2;
 // Where the first contact alone is wanted, a part whose descent takes more than so many overlap tests for
 // each patch is halved, which is about what it costs to look at a part.
 constexpr std::uint64_t kMostBySigns = 32, kMostByCaps = 64;
+// At a distance, a look by signs that leaves more pairs near on the surface for each patch takes longer than
+// one by caps, which leaves none of them.
+constexpr std::size_t kMostNear = 8;
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
 
 std::vector<CappedClusters> capped(const StrategyInput& setup, const Covers& covers,
@@ -48,6 +51,7 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
 
 void FastCuller::refit(const Step& step) {
   motion_ = step.motion;
+  if (step.thickness.largest() != thickness_.largest()) near_ = 0;
   thickness_ = step.thickness;
   move_to({0, 1});
 }
@@ -58,7 +62,8 @@ void FastCuller::refit_beginning(const Step& step, double until) {
 }
 
 bool FastCuller::classify(const Step& step) {
-  by_signs_ = step.starts_embedded && signs_suffice_;
+  by_signs_ =
+      step.starts_embedded && signs_suffice_ && (local_thickness_ == 0 || near_ <= kMostNear * patch_count());
   look_at_positions();
   return true;
 }
@@ -114,9 +119,14 @@ std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
 }
 
 // Passes on the pairs near on the surface of which signs say nothing (certify/tall_rings.h).
-void FastCuller::pass_on_near(TrianglePairSink& sink) const {
+void FastCuller::pass_on_near(TrianglePairSink& sink) {
+  if (local_thickness_ == 0 || looks_by_caps()) return;
+  near_ = 0;
   sink.test_owned(true);
-  certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { sink.add(a, b); });
+  certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) {
+    ++near_;
+    sink.add(a, b);
+  });
   sink.test_owned(false);
 }
 
@@ -297,6 +307,7 @@ void FastCuller::move_to(const Part& part) {
 }
 
 void FastCuller::forget() {
+  near_ = 0;
   if (following_) following_->forget(certificates_);
   tests_.reset();
 }

@@ -96,7 +96,7 @@ class FastCuller : public Culler {
   std::uint64_t descend(TrianglePairSink& sink);
   std::uint64_t descend_to_first(TrianglePairSink& sink);
   std::uint64_t run(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
-  void pass_on_near(TrianglePairSink& sink) const;
+  void pass_on_near(TrianglePairSink& sink);
   Grid grid_of(float error) const { return Grid(error, local_thickness_ / 2); }
   std::optional<std::uint64_t> cut_short(TrianglePairSink& sink);
   std::uint64_t patience() const;
@@ -130,6 +130,7 @@ class FastCuller : public Culler {
   std::optional<Motion> motion_;
   Thickness thickness_;
   float local_thickness_ = 0;  // the largest of any pair, in local units
+  std::size_t near_ = 0;       // pairs near on the surface that the last look by signs left
   Part part_;                  // that is looked at
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;

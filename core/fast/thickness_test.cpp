@@ -113,6 +113,27 @@ TEST(Thickness, OfVerticesIsThatOfTheirPairs) {
   }
 }
 
+// Where signs leave many pairs near on the surface, the next steps are looked at by caps alone, until another
+// thickness is asked for. Mutations: the pairs are not counted; the count outlives its thickness.
+TEST(Thickness, SignsAreNotAskedWhereTheyLeaveMuch) {
+  const ThickTube tube(2, 0.02, 0);
+  const auto detector = make_drvbc_fast(tube.setup(), {.name = "test", .follows = false, .complete = true});
+  const auto looks_by_signs = [&](double r) {
+    const Step step{.motion = Motion(tube.shape.positions, tube.shape.positions),
+                    .starts_embedded = true,
+                    .thickness = Thickness(r * tube.edge)};
+    Report report;
+    EXPECT_TRUE(answer_of(*detector.detector, step, &report).contacts.empty());
+    return report.cull.pctp;
+  };
+  const double large = 0.2, small = 1e-6;
+  const std::uint64_t by_signs = looks_by_signs(large);
+  EXPECT_LT(looks_by_signs(large), by_signs / 4);
+  EXPECT_LT(looks_by_signs(large), by_signs / 4);
+  EXPECT_LT(looks_by_signs(small), by_signs);
+  EXPECT_EQ(looks_by_signs(large), by_signs);
+}
+
 // What was asked with a thickness before leaves nothing behind.
 TEST(Thickness, DoesNotOutliveItsStep) {
   const ThickTube tube(4, 0.1, 5.6);
