@@ -7,7 +7,9 @@ import functools
 import re
 
 from markdown import built, number, short, table, with_interval
+from motion_table import rate_table
 from records import MARK_NOTE, mark_of, read_json
+from results_index import environment_of, first_record
 from script import ROOT, answer_of, output_of, refuse
 from tracked import tracked_files
 
@@ -364,11 +366,21 @@ def sweep(results):
         f"{built(results.records[0]['environment'])}."]) + "\n"
 
 
-PAGES = ("README.md", "bench/paper.md", "bench/METHODOLOGY.md", "core/fast/README.md")
-OWN_KIND = {"starts": "starts", "cloth": "cloth", "real": "real", "steps": "real"}
+def motion(folder):
+    """How often the true motion of characters differs from straight lines, and what it costs."""
+    record = read_json(folder / "motion.json.gz")
+    lines = rate_table(record)
+    left_out = [one["model"] for one in record["left_out"]]
+    return "\n".join(lines + [
+        *([f"Left out: {', '.join(left_out)}; the record says why."] if left_out else []),
+        f"Measured on {built(record['environment'])}; [model by model](../../{folder.relative_to(ROOT).as_posix()}/motion.md)."]) + "\n"
+
+
+PAGES = ("README.md", "bench/paper.md", "bench/METHODOLOGY.md", "core/fast/README.md", "scenes/import/README.md")
+OWN_KIND = {"starts": "starts", "cloth": "cloth", "real": "real", "steps": "real", "motion": "motion"}
 PARTS = {"picture": picture, "door": door, "headline": headline, "starts": starts, "paper": paper, "ideas": ideas, "cloth": cloth,
          "real": real, "steps": steps,
-         "sweep": sweep}
+         "sweep": sweep, "motion": None}  # motion() takes a folder: its record holds no tables
 
 
 def query(program):
@@ -399,14 +411,14 @@ def faults_of_default(program):
 
 
 def newest(kind):
-    """The newest results folder of a kind that is a study of its own. None of `real`, whose data not everybody has."""
+    """The newest results folder of a kind that is a study of its own. None of `real` and `motion`, whose data not everybody has."""
     folders = {path.parent for path in tracked_files("results") if path.parent.name.endswith(f"-{kind}")}
-    if not folders and kind == "real":
+    if not folders and kind in ("real", "motion"):
         return None
     if not folders:
         command = {"cloth": "--cloth", "starts": "--starts --scene all"}[kind]
         refuse(f"results: holds no record of kind {kind}; run scripts/reproduce {command}")
-    return max(folders, key=lambda folder: read_json(folder / "tables.json.gz")["records"][0]["environment"]["date"])
+    return max(folders, key=lambda folder: environment_of(first_record(folder, sorted(path.name for path in folder.iterdir())))["date"])
 
 
 def linked_folder():
@@ -427,7 +439,7 @@ def page_of(page, folder, program):
         if of is None:
             return match[1] + match[3]
         try:
-            text = PARTS[match[2]](Results(of, page))
+            text = motion(of) if match[2] == "motion" else PARTS[match[2]](Results(of, page))
         except (OSError, ValueError) as error:
             refuse(f"{of}: holds a record that cannot be read ({error}); write it anew with scripts/reproduce")
         if "\\*" in text and MARK_NOTE not in text:

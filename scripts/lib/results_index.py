@@ -7,8 +7,8 @@ from script import ROOT, refuse
 from tracked import tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "latency", "waits")
-PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "latency.md", "waits.md", "notes.md")
+KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "motion", "latency", "waits")
+PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "motion.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
 Made by `scripts/pages` from the records themselves. A folder is named by its date, its machine, its commit
@@ -24,6 +24,7 @@ and its kind.
 | benchmark | `scripts/record benchmark` | scores of this project's strategies and today's packages on [the public benchmark](../bench/BENCHMARK.md) |
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |
 | thickness | `scripts/record thickness --real DIR` | what it costs that features count which come within a distance |
+| motion | `scripts/record motion DIR` | where the true motion of characters differs from straight lines, and what it costs to ask |
 | latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
 
 The newest record of each kind is here. A record is never rewritten after its day; whatever is found out later stands in a
