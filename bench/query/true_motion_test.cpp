@@ -89,6 +89,32 @@ TEST_F(TrueMotionOption, SaysNothingOfWhatItDoesNotAsk) {
   EXPECT_TRUE(crossed["intervals"][0]["true_motion"]["deviation"].is_null());
 }
 
+// A frame lies between two keys that are a millionth of a second apart, and one of them stands for it.
+// Mutation: a frame that is not where its key is counts as a fault of the program.
+TEST_F(TrueMotionOption, TakesKeysThatAreNextToEachOther) {
+  scenes::Character figure = scenes::walking_figure();
+  scenes::Channel& pelvis = figure.animations[0].channels.back();
+  const Vec3 before = pelvis.moves.front().value, after = pelvis.moves.back().value;
+  const double frame = 4.0 / 12;
+  pelvis.moves = {{0, before}, {frame - 5e-7, before}, {frame + 5e-7, after}, {1, after}};
+  put("ramp.glb", scenes::to_glb(figure));
+  // The eye turns in a step, between the frame and a key of other bones.
+  pelvis.moves = {{0, before}, {frame + 5e-7, after}, {1, after}};
+  scenes::Channel& eye = figure.animations[0].channels[7];
+  eye.rotations[1].time = frame + 2e-7;
+  json step = json::parse(scenes::to_gltf(figure));
+  for (const json& channel : step["animations"][0]["channels"])
+    if (channel["target"]["node"] == eye.node)
+      step["animations"][0]["samplers"][channel["sampler"].get<std::size_t>()]["interpolation"] = "STEP";
+  put("step.gltf", step.dump());
+  for (const char* file : {"ramp.glb", "step.gltf"}) {
+    const json found = answer(std::string(file) + " --clip walk --fps 12 --true-motion");
+    for (const json& interval : found["intervals"])
+      EXPECT_EQ(interval["true_motion"]["verdict"], interval["index"] == 4 ? "undecided" : "clear")
+          << file << ": " << interval["true_motion"];
+  }
+}
+
 TEST_F(TrueMotionOption, RefusesInOneLine) {
   expect_refused(run("cscd query small --true-motion"), "nothing is known but straight lines");
   expect_refused(run("cscd query figure.glb --clip walk --true-motion --thickness 0.1"),

@@ -33,21 +33,22 @@ TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out,
   return out;
 }
 
-void require_same(const Motion& straight, std::span<const Vec3> positions, std::size_t interval) {
+// How far a frame is from the positions of the motion through it, if that is too far.
+std::optional<double> gap_between(const Motion& straight, std::span<const Vec3> positions) {
   double size = 0, off = 0;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     size = std::max(size, positions[v].cwiseAbs().maxCoeff());
     off = std::max(off, (positions[v] - straight.start()[v]).norm());
   }
-  if (off <= kSamePlace * size) return;
-  throw InputError("--true-motion: frame " + std::to_string(interval) + " and the motion through it are " +
-                   exact_text(off) +
-                   " apart, which is a fault of this program; ask about straight lines, without it");
+  return off <= kSamePlace * size ? std::nullopt : std::optional(off);
+}
+
+double exact_second_of(const Input& input, std::size_t frame) {
+  return second_of_frame(*input.import, frame, input.clip->frame_count());
 }
 
 double second_of(const Input& input, std::size_t frame) {
-  const std::size_t frames = input.clip->frame_count();
-  return input.motion->at_corner(second_of_frame(*input.import, frame, frames), kAtKey / input.import->fps);
+  return input.motion->at_corner(exact_second_of(input, frame), kAtKey / input.import->fps);
 }
 
 double at_share(const Input& input, std::size_t interval, double seconds) {
@@ -94,10 +95,21 @@ TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary,
 void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   const Stopwatch asking;
   const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
-  if (answer.verdict == IntervalVerdict::intersects_at_start)
+  if (answer.verdict == IntervalVerdict::intersects_at_start) {
     answer.motion = crossing_at(from);
-  else {
-    require_same(straight, motion_.positions_at(from), answer.index);
+  } else if (gap_between(straight, motion_.positions_at(from))) {
+    // The surface moves far between the frame and the key that stands for it: the frame's start is not known
+    // to be the key's.
+    const double frame = exact_second_of(input_, answer.index);
+    if (const std::optional<double> gap = gap_between(straight, motion_.positions_at(frame)))
+      throw InputError("--true-motion: frame " + std::to_string(answer.index) +
+                       " and the motion through it are " + exact_text(*gap) +
+                       " apart, which is a fault of this program; ask about straight lines, without it");
+    answer.motion = TrueAnswer{.verdict = TrueVerdict::undecided,
+                               .from = from,
+                               .to = to,
+                               .deviation = std::numeric_limits<double>::infinity()};
+  } else {
     // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
     // because that of the frame is another by rounding.
     const bool starts_embedded = clear_until_ == from || motion_.embedded_at(from);
