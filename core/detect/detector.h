@@ -39,7 +39,7 @@ class Detector {
   // or refuses the positions (baselines/embree, baselines/fcl).
   virtual Report detect(const Step& step, ContactSet& out) = 0;
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
-  // that follow the surface (Strategy::follows) have anything to forget.
+  // that follow the surface (StrategyKind::adaptive) have anything to forget.
   virtual void forget() {}
   // Returns what preparation has found out about the surface, for StrategyInput::preparation of another
   // detector. Empty for strategies whose preparation takes no time worth saving.
