@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/base/error.h"
 #include "core/base/rounding.h"
@@ -281,12 +282,13 @@ void TrueMotion::find_close(const Places& from, const Places& to, double widest)
 
 bool TrueMotion::look_closer(const Places& from, const Places& to, const std::vector<FeaturePair>& pairs) {
   Piece piece;
+  std::vector<bool> is_wanted(everything_.size());
   for (const FeaturePair& pair : pairs)
     for (const CrossingPair& both : carriers(setup_.mesh, pair))
       for (const TriangleId triangle : {both.first, both.second})
-        for (const VertexId v : setup_.mesh.corners(triangle)) piece.vertices.push_back(v);
-  std::ranges::sort(piece.vertices);
-  piece.vertices.erase(std::unique(piece.vertices.begin(), piece.vertices.end()), piece.vertices.end());
+        for (const VertexId v : setup_.mesh.corners(triangle)) is_wanted[+v] = true;
+  std::ranges::copy_if(everything_, std::back_inserter(piece.vertices),
+                       [&](VertexId v) { return is_wanted[+v]; });
   piece.deviation.resize(piece.vertices.size());
   const auto of_piece = [&](const Places& all) {
     Places some{all.time, {}, {}};

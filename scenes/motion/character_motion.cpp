@@ -117,10 +117,9 @@ class CharacterMotion::LinearPaths {
   LinearPaths(const CharacterMotion& motion, std::vector<std::size_t> parts)
       : motion_(motion), parts_(std::move(parts)), last_(parts_.size()), bends_(parts_.size()) {}
 
-  // How far joints take points off their lines, in the order of the parts. Throws Unbounded.
-  std::vector<std::vector<LinearSkin::AffineBound>> deviations(const Span& span) {
+  JointBounds deviations(const Span& span) {
     const double h = rounded_up(span.to - span.from);
-    std::vector<std::vector<LinearSkin::AffineBound>> corners(parts_.size());
+    JointBounds corners(parts_.size());
     double from = span.from;
     for (auto corner = std::upper_bound(motion_.pose_.corners().begin(), motion_.pose_.corners().end(), from);
          corner != motion_.pose_.corners().end() && *corner < span.to; ++corner) {
@@ -140,7 +139,7 @@ class CharacterMotion::LinearPaths {
     to.per_distance = grown(to.per_distance + x.per_distance * factor);
   }
 
-  void add(const Span& span, int halvings, std::vector<std::vector<LinearSkin::AffineBound>>& corners) {
+  void add(const Span& span, int halvings, JointBounds& corners) {
     const PoseJets::Nodes nodes = motion_.pose_.nodes(span);
     std::vector<LinearSkin::JointMotions> motions;
     double bend = 0, uncertainty = 0;
@@ -179,10 +178,17 @@ class CharacterMotion::LinearPaths {
 
   const CharacterMotion& motion_;
   std::vector<std::size_t> parts_;
-  std::vector<LinearSkin::JointMotions> last_;               // [parts], over the last piece
-  std::vector<std::vector<LinearSkin::AffineBound>> bends_;  // [parts][joints], the largest over all pieces
+  std::vector<LinearSkin::JointMotions> last_;  // [parts], over the last piece
+  JointBounds bends_;                           // the largest over all pieces
   double corner_ = 0;  // what a change of the rate between the last piece and the next one is worth
 };
+
+const CharacterMotion::JointBounds& CharacterMotion::joint_bounds(
+    const Span& span, const std::vector<std::size_t>& parts) const {
+  if (last_.from != span.from || last_.to != span.to || last_.parts != parts)
+    last_ = {span.from, span.to, parts, LinearPaths(*this, parts).deviations(span)};
+  return last_.bounds;
+}
 
 void CharacterMotion::deviations(double from, double to, std::span<const VertexId> vertices,
                                  std::span<double> out) const {
@@ -206,7 +212,7 @@ void CharacterMotion::deviations(double from, double to, std::span<const VertexI
       if (!of_part[p].empty()) (is_linear(p, weights) ? linear : others).push_back(p);
     const auto vertex = [&](std::size_t i) { return static_cast<std::size_t>(place_[+vertices[i]].vertex); };
     if (!linear.empty()) {
-      const auto of_joints = LinearPaths(*this, linear).deviations(span);
+      const JointBounds& of_joints = joint_bounds(span, linear);
       for (std::size_t p = 0; p < linear.size(); ++p)
         for (const std::size_t i : of_part[linear[p]])
           if (const double bound = linear_[linear[p]].deviation(vertex(i), of_joints[p]);
@@ -246,7 +252,7 @@ double CharacterMotion::largest_deviation(double from, double to) const {
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
     for (const std::size_t part : moved)
       if (!is_linear(part, weights)) return VertexPaths::largest_deviation(from, to);
-    const auto of_joints = LinearPaths(*this, moved).deviations(span);
+    const JointBounds& of_joints = joint_bounds(span, moved);
     double largest = 0;
     for (std::size_t p = 0; p < moved.size(); ++p)
       largest = std::max(largest, linear_[moved[p]].largest_deviation(of_joints[p]));

@@ -53,6 +53,10 @@ class CharacterMotion final : public VertexPaths {
     std::int32_t part, vertex;
   };
   class LinearPaths;
+  // How far joints take points off their lines over a span, [parts][joints].
+  using JointBounds = std::vector<std::vector<LinearSkin::AffineBound>>;
+  // Those of some parts, whose skins are linear. Throws Unbounded.
+  const JointBounds& joint_bounds(const Span& span, const std::vector<std::size_t>& parts) const;
   // As positions(), and throws Unbounded where an enclosure breaks down.
   void enclose(double seconds, std::span<const VertexId> vertices, std::span<Vec3> at,
                std::span<double> error) const;
@@ -68,6 +72,13 @@ class CharacterMotion final : public VertexPaths {
   std::vector<Place> place_;                     // [vertices]
   std::vector<std::vector<BallVector>> points_;  // [parts]
   std::vector<LinearSkin> linear_;               // [parts]
+  // What joint_bounds() found last: a span is asked about as a whole and then vertex by vertex. It makes an
+  // object one thread's.
+  struct {
+    double from = 0, to = 0;
+    std::vector<std::size_t> parts;
+    JointBounds bounds;
+  } mutable last_;
 };
 
 }  // namespace cscd::scenes
