@@ -141,7 +141,8 @@ def page():
     newest = newest_records()
     lines = ["# What was done to find faults", "",
              "Made by `scripts/pages` from the records beside it; `scripts/lib/trust.py` says what a record holds. The table lists",
-             "every record. Below it, the newest record of each kind is shown in full.", ""]
+             "every record. Below it, the newest record of each kind is shown in full. Older records name scripts that are kinds of",
+             "`scripts/find-faults` by now.", ""]
     lines += table(["date", "what", "result", "record"],
                    [[record["date"], record["title"], record["headline"], f"[{path.name}]({path.name})"]
                     for path, record in reversed(records)], 4)
