@@ -1,15 +1,15 @@
-#include "core/geometry/simd_halves.h"
-
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
 #include "core/geometry/simd_doubles.h"
+#include "core/geometry/simd_halves.h"
 #include "core/geometry/simd_shorts.h"
 
 // Compares Halves, and the vector type that this machine uses, with single numbers.
 namespace cscd {
+
 namespace {
 
 template <class Vector>
@@ -258,5 +258,23 @@ TEST(Lanes16, ArithmeticIsThatOfOneNumber) {
   }
 }
 
+// The numbers of a pair stand side by side, the first one first, with their signs. Mutations: one of the two
+// is lost; they are exchanged; the sign of the first one runs over into the second.
+TEST(Shorts32, RoundedPairsHoldBothNumbers) {
+  Float16 a{}, b{};
+  for (std::size_t l = 0; l < kLanes16; ++l) {
+    a[l] = 1000.3F * static_cast<float>(l) - 8000;
+    b[l] = 7000 - 900.3F * static_cast<float>(l);
+  }
+  for (const float scale : {1.0F, 0.25F, 4.0F}) {
+    const Short32 pairs = rounded_pairs(a, b, scale);
+    for (std::size_t l = 0; l < kLanes16; ++l) {
+      EXPECT_NEAR(static_cast<float>(pairs[2 * l]), scale * a[l], 0.51F) << l;
+      EXPECT_NEAR(static_cast<float>(pairs[2 * l + 1]), scale * b[l], 0.51F) << l;
+    }
+  }
+}
+
 }  // namespace
+
 }  // namespace cscd
