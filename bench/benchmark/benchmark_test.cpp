@@ -13,7 +13,7 @@
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "core/elementary/exact/exact.h"
-#include "core/elementary/exact/triangles_meet.h"
+#include "core/elementary/exact/static_contact.h"
 #include "scenes/hard/disturbance.h"
 
 namespace cscd::bench {

@@ -9,7 +9,6 @@
 #include "core/crossing/length_gradient.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/exact/static_contact.h"
-#include "core/elementary/exact/triangles_meet.h"
 #include "core/geometry/feature_distance.h"
 #include "core/mesh/adjacency.h"
 #include "core/mesh/test_shapes.h"

@@ -12,7 +12,7 @@
 #include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
-#include "core/elementary/exact/triangles_meet.h"
+#include "core/elementary/exact/static_contact.h"
 #include "core/elementary/question/relative_box.h"
 
 namespace cscd {

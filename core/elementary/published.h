@@ -7,7 +7,7 @@
 namespace cscd {
 
 // The paper's elementary test (section 7.1): the non-penetration filter, then interval Newton on the
-// coplanarity cubic. newton_search.h describes the method and the limits of its answers.
+// coplanarity cubic. newton.cpp describes the method and the limits of its answers.
 Answer newton_vertex_face(const MovingVertexFace& query);
 Answer newton_edge_edge(const MovingEdgeEdge& query);
 

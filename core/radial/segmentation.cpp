@@ -1,6 +1,7 @@
 #include "core/radial/segmentation.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -8,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/radial/distance_field.h"
 #include "core/radial/heat_weights.h"
-#include "core/radial/smoothing.h"
 #include "core/radial/visible_bones.h"
 
 // Each triangle goes to the bone that heats it most (Wong, Lin, Wang, Hung, Huang, "Dynamic Radial View Based
@@ -19,8 +19,28 @@
 //
 // The cost is that of distance_field.cpp, visible_bones.cpp and heat_weights.cpp. Memory does not grow with
 // vertices x bones.
-
 namespace cscd::radial {
+
+std::vector<Vec3> smoothed(const TriangleMesh& mesh, std::span<const Vec3> positions, int passes) {
+  std::vector<Vec3> current(positions.begin(), positions.end());
+  std::vector<int> neighbours(current.size(), 0);
+  for (const Edge& e : mesh.edges()) {
+    ++neighbours[+e[0]];
+    ++neighbours[+e[1]];
+  }
+  std::vector<Vec3> sum(current.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    std::fill(sum.begin(), sum.end(), Vec3::Zero());
+    for (const Edge& e : mesh.edges()) {
+      sum[+e[0]] += current[+e[1]];
+      sum[+e[1]] += current[+e[0]];
+    }
+    for (std::size_t v = 0; v < current.size(); ++v)
+      if (neighbours[v] > 0) current[v] = (current[v] + sum[v] / neighbours[v]) / 2;
+  }
+  return current;
+}
+
 namespace {
 
 // Sums of three weights that differ by less than this are equal. The number is some hundred times the

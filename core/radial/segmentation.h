@@ -10,11 +10,17 @@
 
 namespace cscd::radial {
 
+// Returns the positions, [vertices], after moving every vertex half-way to the mean of its neighbours,
+// `passes` times, all vertices at once (umbrella operator; Taubin, "A Signal Processing Approach to Fair
+// Surface Design", SIGGRAPH 1995, section 2). The step is half-way, because full steps make two-coloured
+// meshes flip back and forth. Convex parts shrink. Takes time linear in passes x edges.
+std::vector<Vec3> smoothed(const TriangleMesh& mesh, std::span<const Vec3> positions, int passes);
+
 // The resolution at which heat is diffused. The 2013 method works at full resolution. The 2014 paper smooths
 // the mesh and coarsens the distance field (section 4.1).
 struct HeatOptions {
   int grid_resolution;   // cells along the longest side of the mesh's box
-  int smoothing_passes;  // passes of the umbrella operator over the mesh (smoothing.h); 0 for none
+  int smoothing_passes;  // passes of the umbrella operator over the mesh (smoothed); 0 for none
 };
 
 // Returns for each triangle the bone that heats it most, [triangles]: the bone whose heat weight

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/detect/plain_culler.h"
-#include "core/elementary/exact/triangles_meet.h"
+#include "core/elementary/exact/static_contact.h"
 
 namespace cscd {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <iterator>
 
-#include "core/elementary/exact/triangles_meet.h"
+#include "core/elementary/exact/static_contact.h"
 
 namespace cscd {
 

@@ -1,10 +1,52 @@
 #pragma once
 
-#include "core/elementary/certified/integer_polynomial.h"
+#include <cstdint>
 
-// Roots of integer polynomials in [0, 1], and exact signs of other polynomials at these roots.
+#include "core/elementary/certified/wide.h"
+
+// Polynomials of degree at most 3 with integer coefficients and their signs on [0, 1]; their roots there, and
+// exact signs of other polynomials at these roots.
 // integer_roots.cpp explains how roots are found, and integer_signs.cpp explains how signs are found.
 namespace cscd::integer {
+
+struct Polynomial {
+  Wide c[4];        // by ascending power
+  int degree = -1;  // -1 for the zero polynomial
+
+  // Finds the degree from the coefficients.
+  void trim() {
+    degree = 3;
+    while (degree >= 0 && c[degree].sign() == 0) --degree;
+  }
+  bool is_zero() const { return degree < 0; }
+  int bits() const;  // the number of bits of the longest coefficient
+};
+
+// The double numerator / 2^places.
+struct Dyadic {
+  std::int64_t numerator;
+  int places;
+};
+Dyadic dyadic(double t);  // 0 <= t <= 1
+// The order of numerator / denominator and t: -1 if the fraction is below t, 0 if they are equal, 1 if the
+// fraction is above t. The denominator is positive.
+int compare(const Wide& numerator, const Wide& denominator, const Dyadic& t);
+
+// The polynomial 2^(places degree) p((numerator + width s) / 2^places) in s.
+Polynomial stretched_by(const Polynomial& p, const Wide& numerator, const Wide& width, int places);
+
+// What the Bernstein coefficients on [0, 1] say.
+struct Signs {
+  int variations = 0, first = 0;
+  bool zero_end = false;  // the polynomial is zero at 0 or at 1
+};
+Signs bernstein_signs(const Polynomial& p);
+
+// Returns the coefficients as doubles times a common power of two.
+struct Rounded {
+  double c[4] = {0, 0, 0, 0};
+};
+Rounded rounded(const Polynomial& p);
 
 // An exact root in [0, 1]. It is either a *fraction*, or an *isolated* root: the only root, of odd order, of
 // a polynomial between two bounds.

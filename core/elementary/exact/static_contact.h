@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
+
 #include "core/base/vec3.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace cscd {
 
@@ -19,5 +22,9 @@ bool segments_touch(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 // True if the segment pq and the triangle abc share a point.
 bool segment_touches_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
+
+// Whether two different triangles of a mesh meet in these positions, [vertices], except in the vertices and
+// edges they share. Exact.
+bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b);
 
 }  // namespace cscd

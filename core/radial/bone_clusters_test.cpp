@@ -1,4 +1,4 @@
-#include "core/radial/refinement.h"
+#include "core/radial/bone_clusters.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
