@@ -20,7 +20,7 @@
 #include "scenes/exchange/surface_file.h"
 #include "scenes/exchange/usd_file.h"
 #include "scenes/exchange/vtk_file.h"
-#include "scenes/export/baked_glb.h"
+#include "scenes/export/glb.h"
 #include "scenes/export/skinned_scene.h"
 
 namespace cscd::bench {

@@ -6,9 +6,15 @@
 #include <vector>
 
 #include "scenes/catalog/generate.h"
+#include "scenes/catalog/scene.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::scenes {
+
+// Returns the text of a scene file with `expected` replaced or added; all four values of `expected` must be
+// set. The rest of the text stays as it is written, white space included. `where` begins error texts.
+// Throws InputError if `text` is no JSON object.
+std::string with_expected(const std::string& text, const Expected& expected, const std::string& where);
 
 // Raise this number when an unchanged scene file gives other frames. Caches of other
 // versions are then ignored.

@@ -3,8 +3,7 @@
 #include <span>
 
 #include "core/base/error.h"
-#include "scenes/clip/hdf5_dataset.h"
-#include "scenes/clip/new_hdf5_file.h"
+#include "scenes/clip/hdf5_file.h"
 
 namespace cscd::scenes {
 namespace {

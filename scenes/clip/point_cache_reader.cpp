@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "scenes/clip/hdf5_dataset.h"
+#include "scenes/clip/hdf5_file.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/clip/up_axis.h"
 

@@ -11,7 +11,7 @@
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "scenes/clip/digest.h"
-#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/hdf5_file.h"
 #include "scenes/clip/test_clips.h"
 #include "scenes/clip/test_hdf5_leaks.h"
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "scenes/clip/new_hdf5_file.h"
+#include "scenes/clip/hdf5_file.h"
 #include "scenes/clip/point_cache.h"
 
 namespace cscd::scenes {

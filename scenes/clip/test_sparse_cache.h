@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mesh/test_shapes.h"
-#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/hdf5_file.h"
 
 namespace cscd::scenes {
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/mesh/triangle_mesh.h"
-#include "scenes/cloth/near_points.h"
-#include "scenes/cloth/near_surface.h"
+#include "scenes/cloth/nearness.h"
 
 namespace cscd::scenes {
 

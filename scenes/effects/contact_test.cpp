@@ -6,7 +6,6 @@
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/effects/contact_response.h"
-#include "scenes/effects/contact_step.h"
 #include "scenes/shape/circle.h"
 #include "scenes/shape/tube.h"
 

@@ -3,8 +3,13 @@
 #include <string>
 
 #include "scenes/character/character.h"
+#include "scenes/clip/clip.h"
 
 namespace cscd::scenes {
+
+// Returns a .glb file of a glTF document and the bytes of its one buffer, whose number is a multiple of four
+// (glTF 2.0, section 4.4). Throws InputError for 4 GiB or more.
+std::string glb_container(const std::string& json, const std::string& binary);
 
 // Returns the bytes of a binary glTF 2.0 file of a character. The file has a node for each node, with a
 // mesh of one primitive for each part, as many sets of four joints and weights as the part's vertices need,
@@ -16,5 +21,10 @@ namespace cscd::scenes {
 // lines, morph targets, vertices without a joint in a part with joints, sheared nodes, parts without
 // triangles, clips that move nothing, and files of 4 GiB or more.
 std::string to_glb(const Character& character);
+
+// Returns a .glb file of any clip, without bones: each frame but the first is a morph target, and an
+// animation leads from one to the next in straight lines, as intervals do. Numbers are rounded to single
+// precision. Throws InputError where the file would have 4 GiB or more.
+std::string baked_glb(ClipSource& clip, const std::string& name, double fps);
 
 }  // namespace cscd::scenes

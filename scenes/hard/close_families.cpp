@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/elementary/exact/closeness.h"
-#include "scenes/hard/close_family.h"
 #include "scenes/hard/disturbance.h"
+#include "scenes/hard/family.h"
 
 namespace cscd::scenes::hard {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/closeness.h"
 #include "core/geometry/nearest_points.h"
-#include "scenes/hard/close_family.h"
+#include "scenes/hard/family.h"
 
 namespace cscd::scenes::hard {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/character/pose.h"
-#include "scenes/clip/hdf5_handle.h"
+#include "scenes/clip/hdf5_file.h"
 #include "scenes/import/read_model.h"
 
 // Compares model files with one unusual feature each against positions that an independent program computed

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/shape/body_form.h"
-#include "scenes/shape/box_grid.h"
+#include "scenes/shape/box.h"
 #include "scenes/shape/limb_form.h"
 #include "scenes/shape/shape.h"
 #include "scenes/shape/surface_details.h"

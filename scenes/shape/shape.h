@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +53,8 @@ struct ShapeRow {
 
 // count * factor, rounded and at least `least`: a count of cells at another resolution, as a parameter's
 // value.
-double scaled_count(int count, double factor, int least);
+inline double scaled_count(int count, double factor, int least) {
+  return std::max(static_cast<double>(least), std::round(count * factor));
+}
 
 }  // namespace cscd::scenes

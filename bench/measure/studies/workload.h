@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/hard/close_family.h"
+#include "scenes/hard/family.h"
 #include "scenes/queries/query_file.h"
 
 // The queries of the accuracy study. They come block by block, as there may be millions of them.

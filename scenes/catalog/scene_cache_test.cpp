@@ -1,4 +1,4 @@
-#include "scenes/catalog/expected_text.h"
+#include "scenes/catalog/scene_cache.h"
 
 #include <gtest/gtest.h>
 
