@@ -1,6 +1,6 @@
 // glTF files, text and binary.
 #include "core/base/error.h"
-#include "fuzz/input_file.h"
+#include "fuzz/target.h"
 #include "scenes/import/gltf/read_gltf.h"
 
 namespace cscd::fuzz {

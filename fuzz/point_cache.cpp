@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/mesh/triangle_mesh.h"
-#include "fuzz/input_file.h"
+#include "fuzz/target.h"
 #include "scenes/clip/test_hdf5_leaks.h"
 
 namespace cscd::fuzz {

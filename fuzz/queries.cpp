@@ -1,6 +1,6 @@
 // Files of elementary queries in the public format. What is read is written and read again as it was.
 #include "core/base/error.h"
-#include "fuzz/input_file.h"
+#include "fuzz/target.h"
 #include "scenes/queries/query_file.h"
 
 namespace cscd::fuzz {

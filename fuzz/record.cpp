@@ -2,7 +2,7 @@
 #include "bench/measure/record/record.h"
 
 #include "core/base/error.h"
-#include "fuzz/input_file.h"
+#include "fuzz/target.h"
 
 namespace cscd::fuzz {
 

@@ -17,10 +17,9 @@
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
 #include "core/session/vertex_bounds.h"
+#include "library/arguments.h"
 #include "library/crossings.h"
-#include "library/exclusions.h"
 #include "library/held.h"
-#include "library/obstacle_mesh.h"
 #include "library/paths.h"
 
 #include "cscd/cscd.h"
