@@ -12,7 +12,6 @@
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/command_line/standard_streams.h"
 #include "bench/cli/command_line/usage.h"
-#include "bench/cli/command_line/version.h"
 #include "bench/cli/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"

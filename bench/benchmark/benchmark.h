@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/benchmark/pair_name.h"
+#include "bench/benchmark/benchmark_answers.h"
 #include "bench/benchmark/subject.h"
 #include "core/detect/detector.h"
 #include "core/elementary/exact/time_enclosure.h"

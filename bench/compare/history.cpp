@@ -9,8 +9,8 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
-#include "bench/compare/stage_samples.h"
 #include "bench/compare/statistics/statistics.h"
+#include "bench/compare/times.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
 

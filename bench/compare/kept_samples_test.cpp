@@ -12,7 +12,7 @@
 
 #include "bench/cli/output/gzip.h"
 #include "bench/compare/comparison.h"
-#include "bench/compare/stage_samples.h"
+#include "bench/compare/times.h"
 #include "scenes/catalog/scene.h"
 
 // What the comparison finds on kept samples (kept_samples.json.gz): 162 processes of one program in six

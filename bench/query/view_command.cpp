@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/command_line/version.h"
+#include "bench/cli/command_line/usage.h"
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/progress.h"
 #include "bench/measure/strategies/catalogue.h"

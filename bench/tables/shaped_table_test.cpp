@@ -1,13 +1,58 @@
 #include "bench/tables/shaped_table.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+#include <vector>
 
+#include "bench/measure/record/record.h"
 #include "bench/tables/tables_text.h"
-#include "bench/tables/wide_records.h"
+#include "core/base/test_folder.h"
 
 namespace cscd::bench {
 namespace {
+
+// Records in which every table has long figures with long intervals.
+Record wide_record(const std::string& scene, Pipeline pipeline) {
+  Record record;
+  record.environment = {{"cpu", "AMD EPYC"},       {"cores", 2},       {"compiler", "GNU 12"},
+                        {"build_type", "Release"}, {"commit", "0123"}, {"date", "2026-11-25T22:40:26Z"}};
+  record.scene.name = scene;
+  record.scene.vertices = 24222, record.scene.triangles = 48440, record.scene.bones = 100;
+  record.pipeline = pipeline;
+  record.timed_intervals = {0};
+  record.counted_intervals = {0};
+  double ms = pipeline == Pipeline::vectorised ? 0.1234 : 1.2345;
+  for (const char* name : {"base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast",
+                           "drvbc_fast_complete", "drvbc_fast_swept_bounds"}) {
+    StrategyRecord row;
+    row.name = name;
+    row.guarantee = row.name.starts_with("drvbc") || row.name == "rvbc" ? "first_contact" : "complete";
+    row.counts = {{"bvot", {1458321}},           {"pctp", {480123}},  {"negative", {1051}},
+                  {"uncertain", {607}},          {"clusters", {176}}, {"feature_pairs", {6123456}},
+                  {"elementary_tests", {123456}}};
+    row.preparation.atomic_clusters = 199;
+    row.preparation.distance_and_heat_ms = row.preparation.decomposition_ms = {1234.5, 2345.6};
+    for (const char* stage : {"refit", "rv_update", "traversal", "elementary", "streaming"})
+      row.ms[stage] = {{ms * 9.87}, {ms * 123.4}, {ms * 98.76}, {ms * 111.1}};
+    ms *= 1.37;
+    record.strategies.push_back(row);
+  }
+  return record;
+}
+
+// The given scenes in both pipelines.
+std::vector<Record> wide_records(const std::vector<std::string>& scenes) {
+  std::vector<Record> records;
+  for (const std::string& scene : scenes)
+    for (const Pipeline pipeline : {Pipeline::vectorised, Pipeline::published})
+      records.push_back(wide_record(scene, pipeline));
+  return records;
+}
 
 std::vector<ShapedTable> shaped_of(const std::vector<Record>& records, bool intervals = false) {
   return shaped_tables(filled_tables(records), records, intervals);
@@ -158,5 +203,57 @@ TEST(TablesMarkdown, OfAFullRecordIsShort) {
     EXPECT_NE(page.find(part), std::string::npos) << part << page;
 }
 
+namespace fs = std::filesystem;
+
+std::vector<ShapedTable> tables_of(const std::vector<Record>& records, bool intervals) {
+  std::vector<ShapedTable> tables = shaped_tables(filled_tables(records), records, intervals);
+  tables.push_back(times_of_strategies(records, intervals));
+  return tables;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) ++found;
+  return found;
+}
+
+TEST(LatexTables, HaveThePapersShape) {
+  const std::string text = latex_table(tables_of(wide_records({"rope"}), false)[1]);
+  EXPECT_NE(text.find("BVOT, DRVBC /} & \\multicolumn{2}{c}{PCTP, DRVBC /}"), std::string::npos) << text;
+  EXPECT_NE(text.find("\\quad published & 0.07 & 0.16 & 0.03 & 0.22 & 28.4 & 18.9 & 6 "), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("ours"), std::string::npos);
+  EXPECT_EQ(count(text, "\\begin{table*}"), 1u);
+}
+
+// In an article of one column and of two, with intervals and without. Mutation: no \resizebox.
+TEST(LatexTables, CompileAndFitArticles) {
+  if (std::system("kpsewhich booktabs.sty graphicx.sty article.cls >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "no LaTeX here; install texlive-latex-recommended";
+  const test::Folder scratch;
+  std::vector<Record> records = wide_records({"rope", "hand", "octopus", "man", "box", "urchin"});
+  records.push_back(wide_record("octopus_contact", Pipeline::vectorised));
+  for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
+  for (const char* columns : {"onecolumn", "twocolumn"}) {
+    std::ofstream article(scratch.path / "article.tex");
+    article << "\\documentclass[" << columns
+            << ",a4paper]{article}\n\\usepackage{booktabs,graphicx}\n\\begin{document}\nText.\n";
+    for (const bool intervals : {false, true})
+      for (const ShapedTable& table : tables_of(records, intervals))
+        article << latex_table(table) << "\\clearpage\n";
+    article << "\\end{document}\n";
+    article.close();
+    const std::string command =
+        "cd '" + scratch.path.string() +
+        "' && pdflatex -interaction=nonstopmode -halt-on-error article.tex >out.txt 2>&1";
+    const int status = std::system(command.c_str());
+    const std::string log = test::read(scratch / "article.log");
+    ASSERT_EQ(status, 0) << log;
+    for (const char* complaint : {"Overfull", "Float too large", "LaTeX Error"})
+      EXPECT_EQ(count(log, complaint), 0u) << log.substr(std::min(log.find(complaint), log.size()), 300);
+  }
+}
+
 }  // namespace
+
 }  // namespace cscd::bench

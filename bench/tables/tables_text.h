@@ -21,4 +21,9 @@ std::string tables_text(std::span<const ShapedTable> tables, std::span<const Cla
 std::string tables_markdown(std::span<const ShapedTable> tables, const ShapedTable& strategies,
                             std::span<const ClaimResult> claims, std::span<const Record> records);
 
+// One float of a paper for \input{}: a table* as wide as both columns of an article, or as the text of an
+// article of one column. It is set in \footnotesize, and shrunk only where that is too wide. Needs booktabs
+// and graphicx.
+std::string latex_table(const ShapedTable& table);
+
 }  // namespace cscd::bench

@@ -6,6 +6,13 @@
 
 namespace cscd::bench {
 
+// The version that CMakeLists.txt gives the project, such as "1.2.3".
+std::string version_number();
+
+// Returns what this program was built from and with, one line each: version, commit, compiler, instruction
+// set, libraries.
+std::string version_text();
+
 // As CLI11's own, but a command's help begins with the first paragraph of its description and the usage; the
 // rest of the description follows. The list of commands has the first paragraphs alone.
 class HelpFormat : public CLI::Formatter {

@@ -1,11 +1,15 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/cli/command_line/command.h"
@@ -19,7 +23,6 @@
 #include "bench/tables/claims.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/record_inputs.h"
-#include "bench/tables/report/report_figures.h"
 #include "bench/tables/run_times.h"
 #include "bench/tables/shaped_table.h"
 #include "bench/tables/tables_json.h"
@@ -29,6 +32,80 @@ namespace cscd::bench {
 namespace {
 
 using nlohmann::json;
+
+struct Sum {
+  std::uint64_t queries = 0, lost = 0, invented = 0, undecided = 0, timed = 0;
+  double ns = 0;  // of all timed queries, each as long as the median of its class
+};
+
+// Accuracy against time, from a record of `cscd accuracy`: for each group of workloads and each elementary
+// test the numbers of queries, of contacts that it lost, of contacts that it invented, of those that it left
+// undecided, and the mean time of a query in nanoseconds (null where nothing was timed).
+json accuracy_points(const json& record) {
+  std::map<std::string, bool> is_sweep;
+  for (const json& row : record.at("rows")) is_sweep[row.at("name")] = row.at("sweep");
+  std::map<std::pair<std::string, std::string>, Sum> sums;  // by group and test
+  for (const json& workload : record.at("workloads"))
+    for (const json& row : workload.at("rows")) {
+      if (row.at("queries") == 0) continue;
+      Sum& sum = sums[{workload.at("group"), row.at("row")}];
+      const auto add = [&](std::uint64_t& to, const char* key) { to += row.at(key).get<std::uint64_t>(); };
+      add(sum.queries, "queries");
+      add(sum.lost, "false_negatives");
+      add(sum.invented, "false_positives");
+      add(sum.undecided, "undecided_contacts");
+      add(sum.undecided, "undecided_apart");
+      for (const json& part : row.value("ns", json::object())) {
+        const auto queries = part.at("queries").get<std::uint64_t>();
+        sum.timed += queries;
+        sum.ns += static_cast<double>(queries) * part.at("median").get<double>();
+      }
+    }
+  json points = json::array();
+  for (const auto& [place, sum] : sums)
+    points.push_back({{"group", place.first},
+                      {"row", place.second},
+                      {"sweep", is_sweep[place.second]},
+                      {"queries", sum.queries},
+                      {"lost", sum.lost},
+                      {"invented", sum.invented},
+                      {"undecided", sum.undecided},
+                      {"ns", sum.timed > 0 ? json(sum.ns / static_cast<double>(sum.timed)) : json()}});
+  return points;
+}
+
+// How cost grows, from a record of `cscd scale`: for each study, scene and strategy the milliseconds of a
+// query at each size, and the exponent of the power law through them where one was fitted. A size is a number
+// of triangles, of bones or of threads, or a length of step.
+json growth_points(const json& record) {
+  json points = json::array();
+  for (const json& subject : record.at("subjects")) {
+    const std::string study = subject.at("study");
+    if (study == "contacts") continue;  // ratios of two scenes, at one size
+    for (const json& step : subject.at("steps"))
+      for (const json& strategy : step.at("strategies")) {
+        if (!strategy.contains("ms")) continue;  // its answers were not verified
+        const json& size = study == "step"        ? step.at("step")
+                           : study == "bones"     ? subject.at("bones")
+                           : study == "threads"   ? subject.at("threads")
+                           : study == "thickness" ? step.at("thickness")
+                                                  : subject.at("triangles");
+        points.push_back({{"study", study},
+                          {"scene", subject.at("scene")},
+                          {"strategy", strategy.at("name")},
+                          {"size", size},
+                          {"ms", strategy.at("ms").at("total")}});
+      }
+  }
+  json fits = json::array();
+  for (const json& fit : record.at("fits"))
+    if (fit.at("quantity") == "total" && !fit.at("exponent").is_null())
+      fits.push_back({{"study", fit.at("study")},
+                      {"scene", fit.at("scene")},
+                      {"strategy", fit.at("strategy")},
+                      {"exponent", fit.at("exponent")}});
+  return {{"points", std::move(points)}, {"fits", std::move(fits)}};
+}
 
 struct ReportOptions {
   std::vector<std::string> records;

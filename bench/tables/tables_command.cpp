@@ -12,7 +12,6 @@
 #include "bench/tables/record_inputs.h"
 #include "bench/tables/shaped_table.h"
 #include "bench/tables/tables_json.h"
-#include "bench/tables/tables_latex.h"
 #include "bench/tables/tables_text.h"
 
 namespace cscd::bench {
