@@ -89,6 +89,93 @@ void compare_step(const Character& character, int samples, Tally& tally) {
   }
 }
 
+// A spindle along x whose tip is 2 from the axis z, and a plate above it. A bone turns the spindle about z by
+// `turn` in a second and moves it along z; a second bone, halfway to the tip, turns by `more`.
+struct Spindle {
+  static constexpr double kHeight = 0.75;  // of the plate
+  double turn, more;
+  test::Shape shape = test::together(test::octahedron(0.5), test::box({-5, kHeight, -4}, {5, 2, 5}));
+
+  Character character() const {
+    Character out;
+    out.nodes = {{"root", -1, Transform()}, {"first", 0, Transform()}, {"second", 1, Transform()}};
+    out.nodes[2].local.origin = Vec3(1, 0, 0);
+    Part part;
+    part.node = 0;
+    part.joints = {{0, Transform()}, {2, Transform()}};
+    for (const Vec3& x : shape.positions) {
+      const bool is_spindle = part.positions.size() < 6;
+      part.first.push_back(part.influences.size());
+      part.influences.push_back({is_spindle ? 1 : 0, 1});
+      // The spindle's points are those that its bone sees, half of it on either side of the middle.
+      part.positions.push_back(is_spindle ? Vec3(x.x() + 0.5, x.y() / 20, x.z() / 20) : x);
+    }
+    part.first.push_back(part.influences.size());
+    for (const Triangle& t : shape.triangles)
+      part.triangles.push_back({static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+                                static_cast<std::int32_t>(t[2])});
+    Animation clip{"clip", 0, 1, 0, {}};
+    const auto turned = [](double angle) {
+      return std::vector<Key<Quaternion>>{{0, {}}, {1, {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}}};
+    };
+    clip.channels = {{1, {{0, Vec3::Zero()}, {1, Vec3(0, 0, 0.3)}}, turned(turn), {}},
+                     {2, {}, turned(more), {}}};
+    out.parts = {part};
+    out.animations = {clip};
+    out.format = "test";
+    return out;
+  }
+  double tip_height(double time) const { return std::sin(turn * time) + std::sin((turn + more) * time); }
+  // When the tip reaches the plate. It rises all the time.
+  double contact() const {
+    double low = 0, high = 1;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = (low + high) / 2;
+      (tip_height(middle) < kHeight ? low : high) = middle;
+    }
+    return high;
+  }
+};
+
+// Mutation: a bound that is too large by a thousandth.
+TEST(TrueMotion, OfRigidBodiesClosesInOnTheirScrew) {
+  const CharacterMotion motion(whole_surface(Spindle{0.5, 0}.character()));
+  const std::vector<VertexId> tip{VertexId{0}};
+  double last = 1;
+  for (double h = 0.1; h > 1e-4; h /= 2) {
+    double bound = 0;
+    motion.deviations(0.3, 0.3 + h, tip, {&bound, 1});
+    // An arc of radius 2 leaves the middle of its chord by this much.
+    const double off = 4 * std::pow(std::sin(0.5 * h / 4), 2);
+    EXPECT_GE(bound, off * (1 - 1e-6)) << h;
+    const double more = bound / off - 1;
+    EXPECT_LT(more, 0.6 * last) << h;
+    last = more;
+  }
+  EXPECT_LT(last, 1e-3);
+}
+
+// A screw, and two bones of which one turns the other. Mutation: places a thousandth of a second late.
+TEST(TrueMotion, OfRigidAndArticulatedBodiesClosesInOnTheTimeOfContact) {
+  for (const Spindle& spindle : {Spindle{0.5, 0}, Spindle{0.5, 0.7}}) {
+    const Character character = spindle.character();
+    const TriangleMesh mesh = mesh_of(character);
+    const CharacterMotion motion(whole_surface(character));
+    const std::vector<Vec3> start = posed(character, 0);
+    const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
+    const double contact = spindle.contact();
+    for (const double share : {0x1p-4, 0x1p-8, 0x1p-12, 0x1p-16, 0x1p-20}) {
+      TrueMotion asked(motion, setup, kDrvbcFastComplete,
+                       {.resolution = share / 4, .coarse = 0.05, .narrow = share});
+      const TrueAnswer answer = asked.answer(0, 1);
+      ASSERT_EQ(answer.verdict, TrueVerdict::touches) << share;
+      EXPECT_LE(answer.from, contact) << share;
+      EXPECT_GE(answer.to, contact) << share;
+      EXPECT_LE(answer.to - answer.from, share);
+    }
+  }
+}
+
 template <class Make>
 void compare_steps(const Make& rig, int steps, int samples, unsigned seed, Tally& tally) {
   for (int step = 0; step < steps; ++step) {
