@@ -192,10 +192,10 @@ TEST(TrueMotion, VerdictsOnRandomTubesAndHandsAreTrue) {
   for (const auto& [name, kinds] : std::vector<std::pair<std::string, test_rigs::Kinds>>{
            {"linear", {}}, {"cubic", {.cubic = true}}, {"dual quaternions", {.dual = true}}}) {
     SCOPED_TRACE(name);
-    const auto tube = [&](test_rigs::RigMaker& make, int step) {
+    const auto tube = [&, &kinds = kinds](test_rigs::RigMaker& make, int step) {
       return make.bending_tube(kinds, kHalfTurn, 2 + step % 4);
     };
-    const auto hand = [&](test_rigs::RigMaker& make, int step) {
+    const auto hand = [&, &kinds = kinds](test_rigs::RigMaker& make, int step) {
       return make.bending_hand(kinds, step % 4 == 0 ? kHalfTurn : kHalfTurn / 4);
     };
     compare_steps(tube, steps / 6, samples, 17, all);
