@@ -30,9 +30,11 @@ def counted(verdicts, kinds):
 
 
 def row_of(answer, fps):
-    """What one answer comes to. Of intervals that start crossed the true motion is not asked, and no time of theirs counts."""
+    """What one answer comes to. Of intervals that start crossed the true motion is not asked, and their times count in `whole` alone: what
+    all is about straight lines, from the preparation of the surface to the depth of what crosses."""
     intervals = [(clip, interval) for clip in answer.get("clips", [answer]) for interval in clip["intervals"]]
     asked = [interval for _, interval in intervals if interval["true_motion"]["parts"] > 0]
+    summaries = [clip["summary"]["ms"] for clip in answer.get("clips", [answer])]
     return {
         "fps": fps, "intervals": len(intervals), "asked": len(asked),
         "straight": counted([i["verdict"] for _, i in intervals], STRAIGHT),
@@ -40,7 +42,8 @@ def row_of(answer, fps):
         "differ": [{"clip": clip_name(clip), "frame": interval["frame"], "from": interval["true_motion"]["from"],
                     "straight": interval["verdict"], "true": interval["true_motion"]["verdict"]}
                    for clip, interval in intervals if interval["true_motion"]["differs"]],
-        "ms": {"straight": sum(i["ms"]["wall"] for i in asked), "true": sum(i["true_motion"]["ms"] for i in asked)}}
+        "ms": {"straight": sum(i["ms"]["wall"] for i in asked), "true": sum(i["true_motion"]["ms"] for i in asked),
+               "whole": sum(ms[part] for ms in summaries for part in ("preparation", "load", "wall", "overlap"))}}
 
 
 def clip_name(clip):
@@ -55,7 +58,7 @@ def subject_of(cscd, model, name, is_scene, rates):
         words = [str(cscd), "query", str(model), "--clip", "all", "--true-motion", "--fps", str(fps), "--json", "-"]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode != 0:
-            return None, {"model": name, "why": said(done)}
+            return None, {"model": name, "why": said(done, model)}
         answer = json.loads(done.stdout)
         rows.append(row_of(answer, fps))
         print(f"{name}, {fps} frames a second: {rows[-1]['asked']} of {rows[-1]['intervals']} intervals asked, "
@@ -63,10 +66,10 @@ def subject_of(cscd, model, name, is_scene, rates):
     return {"model": name, "scene": is_scene, "triangles": answer["import"]["chosen_triangles"], "rates": rows}, None
 
 
-def said(done):
-    """The last line of a command's errors, without the name of a folder of this machine."""
-    line = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-    return " ".join(pathlib.PurePath(word).name if word.startswith("/") else word for word in line.split())
+def said(done, model):
+    """What a command refuses, without the name of a folder."""
+    lines = [line.removeprefix("cscd: ") for line in done.stderr.splitlines() if line.startswith("cscd: ")]
+    return (lines or [f"exit status {done.returncode}"])[0].replace(str(model), pathlib.PurePath(model).name)
 
 
 def differing(record):
@@ -112,7 +115,7 @@ def measured(cscd, models, scenes, rates, smoke):
             model = pathlib.Path(folder) / f"{scene}.glb"
             done = subprocess.run([str(cscd), "export", scene, str(model)], capture_output=True, text=True)
             if done.returncode != 0:
-                record["left_out"].append({"model": scene, "why": said(done)})
+                record["left_out"].append({"model": scene, "why": said(done, scene)})
             else:
                 add(model, scene, True)
     if not any(row["asked"] for subject in record["subjects"] for row in subject["rates"]):
