@@ -4,7 +4,7 @@
 #include <limits>
 #include <memory>
 
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/environment.h"
 #include "bench/measure/strategies/strategy_row.h"
 #include "core/base/error.h"

@@ -9,7 +9,7 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/compare/times.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"

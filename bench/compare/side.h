@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,8 @@ struct Side {
 };
 
 // Reads what the user named: a record, a folder of records, or several of both with commas between. In a
-// folder, other JSON files are passed over. A file of Google Benchmark counts as a record without truth
-// (google_benchmark.h). Throws InputError where nothing is there to read, and where the records are of
-// several commits.
+// folder, other JSON files are passed over. A file of Google Benchmark counts as a record without truth.
+// Throws InputError where nothing is there to read, and where the records are of several commits.
 Side read_side(const std::string& named);
 
 // The same of records that are there.
@@ -53,5 +53,15 @@ inline std::vector<SharedInterval> shared_intervals(std::span<const std::size_t>
   }
   return shared;
 }
+
+// Google Benchmark's files are read as records are.
+//
+// Whether a document is what Google Benchmark writes with --benchmark_format=json.
+bool is_google_benchmark(const nlohmann::ordered_json& document);
+
+// Returns the measurements of such a document as a record: one row a benchmark with one stage, `traversal`,
+// and no counters, digests or verification. The scene is the executable's name. Aggregates are passed over,
+// as the comparison makes its own. Throws InputError, which `where` begins.
+Record record_from_google_benchmark(const nlohmann::ordered_json& document, const std::string& where);
 
 }  // namespace cscd::bench

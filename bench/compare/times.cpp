@@ -7,7 +7,7 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/compare/side.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {

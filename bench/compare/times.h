@@ -6,8 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/compare/statistics/process_ratio.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/compare/work.h"
 #include "bench/measure/record/record.h"
 

@@ -5,7 +5,7 @@
 
 #include "bench/cli/output/data.h"
 #include "bench/compare/side.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 
 namespace cscd::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/progress.h"
 #include "bench/cli/output/schema.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/environment.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/studies/tally.h"

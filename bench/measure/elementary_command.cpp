@@ -5,7 +5,7 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "scenes/queries/query_file.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/record.h"
 #include "bench/measure/record/shortfall.h"
 

@@ -16,7 +16,7 @@
 #include "bench/cli/output/output.h"
 #include "bench/cli/output/schema.h"
 #include "bench/compare/history.h"
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/record.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"

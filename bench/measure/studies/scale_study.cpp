@@ -7,7 +7,7 @@
 #include <numeric>
 #include <optional>
 
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/record/record.h"
 #include "bench/measure/replay/footprint.h"
 #include "bench/measure/replay/timing.h"

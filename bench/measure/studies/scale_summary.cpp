@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/compare/statistics/statistics.h"
+#include "bench/compare/statistics.h"
 #include "bench/measure/studies/scaling.h"
 
 namespace cscd::bench {

@@ -1,4 +1,4 @@
-#include "bench/compare/google_benchmark.h"
+#include "bench/compare/side.h"
 
 #include <gtest/gtest.h>
 
