@@ -20,7 +20,7 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
       {"--verson", "unknown option --verson; did you mean --version?"},
       {"scene acept x.json", "unknown command acept; did you mean accept?; see cscd scene --help"},
       {"export small a.h5 b.h5", "one argument too many: b.h5; see cscd export --help"},
-      {"query smal --json -", "unknown scene smal; did you mean small?; known are: small"},
+      {"query smal --json -", "unknown scene smal; did you mean small?; "},
       {"query small --json - --strategy drvbc-fast",
        "strategy 'drvbc-fast' is not known; did you mean drvbc_fast?"},
       {"query small --json - --elementary newtom@1", "did you mean newton?"},
@@ -48,6 +48,14 @@ TEST_F(CommandLine, NamesWhatIsMisspeltBeforeWhatIsMissing) {
     EXPECT_EQ(ran.out, "") << one.words;
   }
   EXPECT_EQ(files(), "");
+}
+
+// Any folder called scenes above may be found, and may hold files without end.
+TEST_F(CommandLine, RefusesAnUnknownSceneInOneLine) {
+  const Ran ran = run(R"sh(for i in $(seq 300); do cp scenes/small.json scenes/other_$i.json; done
+cscd query nosuch)sh");
+  expect_refused(ran, "/scenes holds 301 scenes, which `cscd list` names");
+  EXPECT_LT(ran.errors.size(), 400u) << ran.errors;
 }
 
 TEST_F(CommandLine, RefusesWordsThatAreNoText) {

@@ -311,11 +311,10 @@ Scene load_scene(std::string_view name) {
     if (file.stem() == name) return parse_scene(name, read_text(file), file.string());
     names.push_back(file.stem().string());
   }
-  std::string known;
-  for (const std::string& one : names) known += (known.empty() ? "" : ", ") + one;
   const std::vector<std::string_view> views(names.begin(), names.end());
-  throw InputError("unknown scene " + std::string(name) + did_you_mean(name, views) +
-                   "; known are: " + known);
+  throw InputError("unknown scene " + std::string(name) + did_you_mean(name, views) + "; " +
+                   scenes_folder().string() + " holds " + std::to_string(names.size()) +
+                   (names.size() == 1 ? " scene" : " scenes") + ", which `cscd list` names");
 }
 
 std::vector<SceneSummary> list_scenes() {

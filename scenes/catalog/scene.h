@@ -73,8 +73,8 @@ std::vector<std::string> all_scene_names();
 bool is_scene_file(const std::filesystem::path& name_or_path);
 
 // Loads a scene by its name in the folder of scene files, or by the path of its file. Throws InputError for
-// an unknown scene, with a list of the known scenes, and for a file that is no scene, with the place of the
-// fault in the file.
+// an unknown scene, with the nearest name and the folder that was searched, and for a file that is no scene,
+// with the place of the fault in the file.
 Scene load_scene(std::string_view name_or_path);
 
 // Reads a scene from a text; `where` (a file) begins error texts. A base is looked for in `folder` first.

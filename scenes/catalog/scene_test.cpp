@@ -159,7 +159,8 @@ TEST_F(Catalogue, ListsItsScenesInOrder) {
   EXPECT_EQ(scenes[1].name, "small");
   EXPECT_EQ(scenes[1].story, "A chain falls. It is led by one end.");
   EXPECT_EQ(scenes[1].effects, (std::vector<std::string>{"chain_dynamics", "skinning_linear"}));
-  EXPECT_EQ(test::refusal([] { load_scene("nosuch"); }), "unknown scene nosuch; known are: another, small");
+  EXPECT_EQ(test::refusal([] { load_scene("nosuch"); }),
+            "unknown scene nosuch; " + scenes_folder().string() + " holds 2 scenes, which `cscd list` names");
   EXPECT_EQ(test::refusal([] { load_scene("../scenes/small"); }).substr(0, 13), "unknown scene");
 }
 
