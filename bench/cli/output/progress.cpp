@@ -9,14 +9,15 @@ namespace cscd::bench {
 namespace {
 
 constexpr Progress::Seconds kBetweenBars{0.1};
+constexpr int kWindows = 3;  // the rate is that of about so many times the time between lines
 constexpr char kClearLine[] = "\r\033[K";
 
 }  // namespace
 
-std::string time_left(std::size_t done, std::size_t total, double elapsed_seconds) {
-  if (done == 0 || done >= total) return "";
+std::string time_left(std::size_t done, std::size_t left, double seconds_taken) {
+  if (done == 0 || left == 0) return "";
   constexpr double kSecondsUpTo = 100, kMinutesUpTo = 100 * 60;
-  const double seconds = elapsed_seconds * static_cast<double>(total - done) / static_cast<double>(done);
+  const double seconds = seconds_taken * static_cast<double>(left) / static_cast<double>(done);
   char text[48];
   if (seconds < kSecondsUpTo)
     std::snprintf(text, sizeof text, ", about %.0f s left", std::ceil(seconds));
@@ -32,9 +33,9 @@ Progress::Progress(std::string title, std::size_t total, Seconds between_lines)
       total_(total),
       terminal_(isatty(STDERR_FILENO) == 1),
       between_lines_(between_lines),
-      begin_(std::chrono::steady_clock::now()),
-      drawn_(begin_) {
-  if (terminal_) draw(Seconds(0));
+      drawn_(Clock::now()),
+      recent_{{drawn_, 0}} {
+  if (terminal_) draw(recent_.front());
 }
 
 Progress::~Progress() {
@@ -43,18 +44,25 @@ Progress::~Progress() {
 
 void Progress::set(std::size_t done) {
   done_ = done;
-  const auto now = std::chrono::steady_clock::now();
+  const Clock::time_point now = Clock::now();
   if (terminal_ && done_ == total_) {  // what is printed next begins a line of its own
     std::fputs(kClearLine, stderr);
     return;
   }
   if (now - drawn_ < (terminal_ ? kBetweenBars : between_lines_)) return;
   drawn_ = now;
-  draw(now - begin_);
+  draw({now, done_});
+  recent_.push_back({now, done_});
+  // Keep one moment from before the window, so that the rate covers at least the whole window.
+  while (recent_.size() > 1 && now - recent_[1].time >= kWindows * between_lines_) recent_.pop_front();
 }
 
-void Progress::draw(Seconds elapsed) const {
-  const std::string left = time_left(done_, total_, elapsed.count());
+void Progress::draw(const Moment& now) const {
+  const Moment& then = recent_.front();
+  const std::string left =
+      now.done < then.done || now.done > total_
+          ? ""
+          : time_left(now.done - then.done, total_ - now.done, Seconds(now.time - then.time).count());
   if (!terminal_) {
     std::fprintf(stderr, "%s: %zu of %zu%s\n", title_.c_str(), done_, total_, left.c_str());
     return;

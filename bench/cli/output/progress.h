@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <string>
 
 namespace cscd::bench {
@@ -22,15 +23,23 @@ class Progress {
   void advance() { set(done_ + 1); }
 
  private:
-  void draw(Seconds elapsed) const;
+  using Clock = std::chrono::steady_clock;
+  struct Moment {
+    Clock::time_point time;
+    std::size_t done;
+  };
+  void draw(const Moment& now) const;
   std::string title_;
   std::size_t total_, done_ = 0;
   bool terminal_;
   Seconds between_lines_;
-  std::chrono::steady_clock::time_point begin_, drawn_;
+  Clock::time_point drawn_;
+  std::deque<Moment>
+      recent_;  // moments at which it was drawn, oldest first; the rate is taken since the first
 };
 
-// ", about 40 s left", from what the work done so far has taken; empty where that says nothing.
-std::string time_left(std::size_t done, std::size_t total, double elapsed_seconds);
+// Returns ", about 40 s left" for work of which `left` is left, if `done` of it took so many seconds. Returns
+// an empty string if nothing is done or nothing is left.
+std::string time_left(std::size_t done, std::size_t left, double seconds);
 
 }  // namespace cscd::bench
