@@ -45,6 +45,7 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
   EXPECT_EQ(verdicts(answer("exact.0007.ply")), expected);
   const Ran fps = run("cscd query exact.0000.obj --fps 60 --frames 0:1 -- 2>&1");
   EXPECT_NE(fps.out.find("60 frames a second, as asked"), std::string::npos) << fps.out;
+  EXPECT_NE(fps.out.find("files, exact.0000.obj to exact.00"), std::string::npos) << fps.out;
   // A cache says its rate, and the names of a sequence say the numbers of its frames.
   ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest --fps 24 film.mdd && "
                 "for f in exact.*.ply; do n=${f#exact.}; n=${n%.ply}; mv $f late.$((1000 + 10#$n)).ply; done")
@@ -88,7 +89,8 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
        "other faces than the first"},
       {"grep -v '^v ' a.0001.obj > b; mv b a.0001.obj", "a.0000.obj", "a.0001.obj: has no vertices"},
       {"printf 'v 0 0\\n' > a.0001.obj", "a.0000.obj", "a.0001.obj: line 1: '' is no coordinate"},
-      {"printf 'v 0 0 0\\nf 1 2 9\\n' > a.0000.obj", "a.0000.obj", "has a face of vertex"},
+      {"printf 'v 0 0 0\\nf 1 2 9\\n' > a.0000.obj", "a.0000.obj",
+       "a.0000.obj: line 2: a face names vertex 9"},
       {"head -c 500 c.pc2 > d.pc2; cp c.obj d.obj", "d.pc2", "which is not what its 500 bytes hold"},
       {"cp c.mdd e.mdd", "e.mdd", "has no faces; put the OBJ file"},
       {"cp c.obj n.obj; cp c.pc2 n.pc2; printf '\\0\\0\\300\\177' | dd of=n.pc2 bs=1 seek=44 conv=notrunc "

@@ -39,8 +39,14 @@ TEST(SurfaceFiles, ObjIsReadAsOthersWriteIt) {
             std::string::npos);
   EXPECT_NE(test::refusal([] { read_obj("v 0 0 x\n"); }).find("line 1: 'x' is no coordinate"),
             std::string::npos);
-  EXPECT_NE(test::refusal([] { read_obj("v 0 0 nan\n"); }).find("not finite"), std::string::npos);
-  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("names no vertex"),
+  EXPECT_NE(
+      test::refusal([] { read_obj("v 0 0 0\nv 0 0 nan\n"); }).find("line 2: a coordinate is not finite"),
+      std::string::npos);
+  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("line 2: '-2' names no vertex"),
+            std::string::npos);
+  EXPECT_NE(test::refusal([] {
+              read_obj("v 0 0 0\nf 1 1 1\nf 1 3 2\nv 1 0 0\n");
+            }).find("line 3: a face names vertex 3, and the file has 2 vertices"),
             std::string::npos);
   EXPECT_NE(test::refusal([] { read_obj(""); }).find("no vertices"), std::string::npos);
 }

@@ -79,6 +79,10 @@ class FileSequence final : public MeshSequence {
   std::string format() const override {
     return extension_of(files_[0]) == ".ply" ? "PLY sequence" : "OBJ sequence";
   }
+  std::string files() const override {
+    return "the frames are " + std::to_string(files_.size()) + " files, " +
+           files_.front().filename().string() + " to " + files_.back().filename().string();
+  }
   std::size_t frame_count() const override { return files_.size(); }
   double first_frame() const override { return std::stod(cut(files_[0]).number); }
   std::size_t vertex_count() const override { return first_.positions.size(); }

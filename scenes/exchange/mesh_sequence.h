@@ -28,6 +28,8 @@ class MeshSequence {
  public:
   virtual ~MeshSequence() = default;
   virtual std::string format() const = 0;
+  // Which files were taken: the first, the last and how many. Empty for a cache, which is one file.
+  virtual std::string files() const { return {}; }
   virtual std::size_t frame_count() const = 0;
   // The number of the first frame: that in the name of the first file, or what a cache says.
   virtual double first_frame() const = 0;

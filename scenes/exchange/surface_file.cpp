@@ -39,6 +39,7 @@ class Lines {
     return word;
   }
   std::size_t position() const { return std::min(at_, text_.size()); }
+  std::size_t line_number() const { return number_; }
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError("line " + std::to_string(number_) + ": " + what + "; export the file again");
   }
@@ -53,6 +54,7 @@ class Lines {
   Vec3 vector() {
     Vec3 x;
     for (int axis = 0; axis < 3; ++axis) x[axis] = number<double>(word(), "coordinate");
+    if (!x.allFinite()) fail("a coordinate is not finite");
     return x;
   }
 
@@ -68,7 +70,6 @@ void add_polygon(const std::vector<std::int64_t>& polygon, SurfaceFile& surface)
                                  static_cast<std::int32_t>(polygon[k])});
 }
 
-// Faces may come before the vertices that they name.
 void require_sound(const SurfaceFile& surface) {
   if (surface.positions.empty()) throw InputError("has no vertices; export it again");
   if (surface.positions.size() > kMost || surface.triangles.size() > kMost)
@@ -152,6 +153,8 @@ class PlyNumbers {
 SurfaceFile read_obj(std::string_view text) {
   SurfaceFile surface;
   std::vector<std::int64_t> polygon;
+  std::int64_t highest = -1;  // of all vertices that faces name
+  std::size_t line_of_highest = 0;
   Lines lines(text);
   while (lines.next()) {
     const std::string_view kind = lines.word();
@@ -165,12 +168,21 @@ SurfaceFile read_obj(std::string_view text) {
         polygon.push_back(index < 0 ? static_cast<std::int64_t>(surface.positions.size()) + index
                                     : index - 1);
         if (polygon.back() < 0 || polygon.back() >= static_cast<std::int64_t>(kMost))
-          lines.fail("names no vertex");
+          lines.fail("'" + std::string(word.substr(0, 40)) + "' names no vertex");
+        if (polygon.back() > highest) {
+          highest = polygon.back();
+          line_of_highest = lines.line_number();
+        }
       }
       if (polygon.size() < 3) lines.fail("a face has fewer than three corners");
       add_polygon(polygon, surface);
     }
   }
+  // Faces may come before the vertices that they name.
+  if (!surface.positions.empty() && highest >= static_cast<std::int64_t>(surface.positions.size()))
+    throw InputError("line " + std::to_string(line_of_highest) + ": a face names vertex " +
+                     std::to_string(highest + 1) + ", and the file has " +
+                     std::to_string(surface.positions.size()) + " vertices; export the file again");
   require_sound(surface);
   return surface;
 }
