@@ -189,7 +189,7 @@ bool run_each(const RunOptions& options, const std::vector<std::string>& inputs)
   bool ok = true;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     std::printf("%s%s\n", i > 0 ? "\n" : "", runs[i].scene.c_str());
-    ok = run_one(options, runs[i], outputs[i]) && ok;
+    name_input(runs[i].scene, [&] { ok = run_one(options, runs[i], outputs[i]) && ok; });
     std::printf("record: %s\n", records[i].c_str());
   }
   return ok;
@@ -232,7 +232,20 @@ void run(const RunOptions& options) {
 
 // The options that say what is measured. `request` must live as long as the command.
 void add_replay_options(CLI::App& command, ReplayRequest& request) {
-  command.add_option("--scene,--input", request.scene, kInputHelp)->capture_default_str();
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--scene,--input",
+          [&request](const std::vector<std::string>& inputs) {
+            if (inputs.size() > 1)
+              throw InputError("--scene and --input are two names of one option, and both " + inputs[0] +
+                               " and " + inputs[1] +
+                               " are given; give one, or a folder of point caches, or all");
+            request.scene = inputs[0];
+          },
+          kInputHelp)
+      ->allow_extra_args(false)
+      ->type_name("TEXT")
+      ->default_str(request.scene);
   command
       .add_option("--strategy", request.strategies,
                   "strategies or groups of them, with commas between; default all without a group. "

@@ -225,8 +225,11 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
     options.model.import.clip.clear();
     options.model.import.clip_number = clip;
     const bool is_open = seen.chosen_clip == static_cast<long>(clip);
-    Said one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model),
-                        with_json, seen.clips.size() > 1);
+    Said one;
+    name_input(options.input, [&] {
+      one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model),
+                     with_json, seen.clips.size() > 1);
+    });
     verdicts.add(seen.clips[clip].name, one.verdict, one.apart);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;
@@ -259,7 +262,9 @@ Said say_answers(const QueryOptions& options, bool with_json) {
   Input input = open_input(options.input, model);
   if (all || !input.clip_was_named) return say_all_clips(options, std::move(input), with_json);
   say_what_was_read(input, stdout);
-  return say_clip(options, std::move(input), with_json);
+  Said said;
+  name_input(options.input, [&] { said = say_clip(options, std::move(input), with_json); });
+  return said;
 }
 
 void query(QueryOptions options) {

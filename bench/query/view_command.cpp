@@ -198,7 +198,9 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
     }
     one.model.import.clip_number = c;
     sections.set_prefix("c" + std::to_string(header["clips"].size()) + ".");
-    json recorded = record_clip(one, open_input(options.input, one.model), sections);
+    json recorded;
+    name_input(options.input,
+               [&] { recorded = record_clip(one, open_input(options.input, one.model), sections); });
     recorded["title"] = clips[c].name.empty() ? "clip " + std::to_string(c) : clips[c].name;
     header["clips"].push_back(std::move(recorded));
   }
@@ -229,7 +231,7 @@ std::string view_page(const ViewRequest& options) {
   } else {
     Input input = open_input(options.input, options.model);
     say_what_was_read(input, stdout);
-    header.update(record_clip(options, std::move(input), sections));
+    name_input(options.input, [&] { header.update(record_clip(options, std::move(input), sections)); });
   }
   return viewer_with(header, sections);
 }

@@ -138,6 +138,16 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   return input;
 }
 
+void name_input(const std::string& name, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (what.find(name) != std::string::npos) throw;
+    throw InputError(name + ": " + what);
+  }
+}
+
 void say_what_was_read(const Input& input, std::FILE* to) {
   if (!input.import) return;
   std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,6 +81,9 @@ struct Input {
 // Throws InputError. Generates a scene whose cache is missing; imports a model file. Options are for model
 // files only.
 Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
+
+// Calls `work`, which is about an input, and lets its InputErrors begin with that input's name.
+void name_input(const std::string& name, const std::function<void()>& work);
 
 // Says what was made of a model file, a few lines, and which of its clips this is; nothing of other inputs.
 void say_what_was_read(const Input& input, std::FILE* to);
