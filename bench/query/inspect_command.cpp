@@ -153,13 +153,15 @@ std::string number(const json& value) {
 }
 
 std::string embedding_text(const json& embedding) {
+  constexpr std::size_t kMostNamed = 6;
   std::string not_embedded;
-  std::size_t good = 0;
+  std::size_t good = 0, bad = 0;
   for (const json& row : embedding) {
     good += row["embedded"].get<bool>();
-    if (!row["embedded"].get<bool>())
+    if (!row["embedded"].get<bool>() && ++bad <= kMostNamed)
       not_embedded += (not_embedded.empty() ? "; meets itself at " : ", ") + row["moment"].get<std::string>();
   }
+  if (bad > kMostNamed) not_embedded += " and " + std::to_string(bad - kMostNamed) + " more";
   return "embedded at " + std::to_string(good) + " of " + std::to_string(embedding.size()) +
          " moments (rest and starts of clips)" + not_embedded;
 }
@@ -210,13 +212,30 @@ void print_close(const json& close) {
   std::printf("\n");
 }
 
+// Whatever the file holds, this fits a screen: of many clips and components the first are named, and what
+// strategies can do is said of the component that is used, or else of all together.
 void print(const json& document) {
-  for (const json& clip : document["clips"])
+  constexpr std::size_t kMostClips = 8, kMostInFull = 2, kMostComponents = 8;
+  const json &clips = document["clips"], &components = document["components"];
+  for (std::size_t c = 0; c < std::min(kMostClips, clips.size()); ++c) {
+    const json& clip = clips[c];
     std::printf("  clip '%s': %s s, %s frames from frame %s, %s bones driven\n",
                 clip["name"].get<std::string>().c_str(), number(clip["seconds"]).c_str(),
                 number(clip["frames"]).c_str(), number(clip["first_frame"]).c_str(),
                 number(clip["bones_driven"]).c_str());
-  for (const json& c : document["components"]) {
+  }
+  if (clips.size() > kMostClips)
+    std::printf("  and %zu more clips; --json FILE lists all\n", clips.size() - kMostClips);
+  const bool one_is_used =
+      std::ranges::count_if(components, [](const json& c) { return c["chosen"].get<bool>(); }) == 1;
+  std::size_t passed_over = 0;
+  for (const json& c : components) {
+    const bool is_used = one_is_used && c["chosen"].get<bool>();
+    if (c["index"].get<std::size_t>() >= kMostComponents && !is_used) {
+      ++passed_over;
+      continue;
+    }
+    const bool in_full = components.size() <= kMostInFull || is_used;
     std::string shape = c["closed"].get<bool>() ? "closed" : "open";
     shape += c["manifold"].get<bool>() ? ", manifold" : ", not manifold";
     if (!c["consistently_oriented"].get<bool>()) shape += ", not consistently oriented";
@@ -229,8 +248,9 @@ void print(const json& document) {
                 c["triangles"].get<std::size_t>(), c["vertices"].get<std::size_t>());
     if (!c["bones"].is_null()) std::printf(", %zu bones", c["bones"].get<std::size_t>());
     std::printf("; %s\n      %s\n%s", shape.c_str(), embedding_text(c["embedding"]).c_str(),
-                strategies_text(c["strategies"]).c_str());
+                in_full ? strategies_text(c["strategies"]).c_str() : "");
   }
+  if (passed_over > 0) std::printf("  and %zu more components; --json FILE lists all\n", passed_over);
   if (document.contains("thickness")) print_close(document["thickness"]);
   if (document["components"].size() < 2) return;
   const json& all = document["together"];

@@ -376,5 +376,21 @@ TEST_F(Query, KeepsToTheSchemaWithBonesWithoutAndWhenUndecided) {
   EXPECT_NE(schema_violation(spoiled, kSchema), "");
 }
 
+TEST_F(Query, InspectFitsAScreenWhateverTheFileHolds) {
+  std::string tetrahedra;
+  for (int k = 0; k < 300; ++k) {
+    const std::string x = std::to_string(3 * k), beside = std::to_string(3 * k + 1);
+    tetrahedra += "v " + x + " 0 0\nv " + beside + " 0 0\nv " + x + " 1 0\nv " + x +
+                  " 0 1\nf -4 -2 -3\nf -4 -3 -1\nf -4 -1 -2\nf -3 -2 -1\n";
+  }
+  put("many.1.obj", tetrahedra);
+  put("many.2.obj", tetrahedra);
+  const Ran ran = run("cscd inspect many.1.obj --json many.json");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_LT(std::ranges::count(ran.out, '\n'), 40) << ran.out;
+  EXPECT_NE(ran.out.find("and 292 more components; --json FILE lists all"), std::string::npos) << ran.out;
+  EXPECT_EQ(json::parse(text("many.json"))["components"].size(), 300u);
+}
+
 }  // namespace
 }  // namespace cscd::bench

@@ -34,6 +34,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostStrategies = 6;  // side by side; more could not be told apart
+constexpr std::size_t kMostVerdicts = 12;   // of clips, printed
 
 struct ViewOptions : ViewRequest {
   std::string output;
@@ -88,8 +89,7 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   return out;
 }
 
-// Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it. Says on
-// standard output what was answered.
+// Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it.
 json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   input.threads = options.threads;
   ignore(input, options.ignored);
@@ -160,7 +160,6 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s)
     rows.push_back(contestants[s]->recording.write(sections, "s" + std::to_string(s) + "."));
-  std::printf("%s", rows[0]["text"].get<std::string>().c_str());
   json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
                  {"engine_colours", !options.strategies.empty()},
                  {"thickness", input.thickness.asked.thickness.text},
@@ -174,7 +173,13 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   return header;
 }
 
-// Adds every clip of a model file that is longer than one pose.
+// What was answered of a clip, in several lines, the verdict first.
+std::string text_of(const json& recorded) {
+  return recorded["strategies"][0]["text"].get<std::string>();
+}
+
+// Adds every clip of a model file that is longer than one pose. Says the verdicts of the first clips alone:
+// the page tells the rest, and what is printed has to fit a screen.
 void record_all_clips(const ViewRequest& options, json& header, Sections& sections) {
   if (!options.frames.empty())
     throw InputError("--frames " + options.frames + ": is for one clip; name one with --clip");
@@ -191,9 +196,13 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
                     options.input + ": a page of all " + std::to_string(clips.size()) + " clips,",
                     "by naming one clip with --clip");
   header["clips"] = json::array();
+  std::size_t said = 0;
+  const auto say = [&](const std::string& line) {
+    if (++said <= kMostVerdicts) std::printf("%s\n", line.c_str());
+  };
   for (std::size_t c = 0; c < clips.size(); ++c) {
     if (clips[c].frames < 2 && !one.model.import.from_bind_pose) {
-      std::printf("clip '%s' is one pose; passed over\n", clips[c].name.c_str());
+      say("clip '" + clips[c].name + "' is one pose; passed over");
       continue;
     }
     one.model.import.clip_number = c;
@@ -201,9 +210,14 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
     json recorded;
     name_input(options.input,
                [&] { recorded = record_clip(one, open_input(options.input, one.model), sections); });
+    const std::string text = text_of(recorded);
+    say(text.substr(0, text.find('\n')));
     recorded["title"] = clips[c].name.empty() ? "clip " + std::to_string(c) : clips[c].name;
     header["clips"].push_back(std::move(recorded));
   }
+  if (said > kMostVerdicts)
+    std::printf("and %zu more clips; the page has them, and cscd query says how each ends\n",
+                said - kMostVerdicts);
   if (header["clips"].empty())
     throw InputError(options.input + ": has no clip of more than one pose, so nothing moves");
 }
@@ -232,6 +246,7 @@ std::string view_page(const ViewRequest& options) {
     Input input = open_input(options.input, options.model);
     say_what_was_read(input, stdout);
     name_input(options.input, [&] { header.update(record_clip(options, std::move(input), sections)); });
+    std::printf("%s", text_of(header).c_str());
   }
   return viewer_with(header, sections);
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -196,7 +197,12 @@ TEST_F(View, HoldsOneClipOrAll) {
   const json one = header_of(text("one.html"))["strategies"][0];
   EXPECT_NE(one["details"].get<std::string>().find("the first clip that moves"), std::string::npos);
 
-  ASSERT_EQ(run("cscd view figure.glb --clip all -o all.html").status, 0);
+  const Ran all = run("cscd view figure.glb --clip all -o all.html");
+  ASSERT_EQ(all.status, 0);
+  // One line of each clip, however much of each the page says.
+  EXPECT_NE(all.out.find("clip 'hug' (2nd of 2 clips)"), std::string::npos) << all.out;
+  EXPECT_EQ(all.out.find(" to find contacts"), std::string::npos) << all.out;
+  EXPECT_LT(std::ranges::count(all.out, '\n'), 12) << all.out;
   const json header = header_of(text("all.html")),
              query = json::parse(run("cscd query figure.glb --json -").out);
   ASSERT_EQ(header["clips"].size(), 2u);

@@ -91,6 +91,10 @@ export class MomentList {
     const row = event || one || this.rowOf.get(chosen.interval);
     if (!row) return;
     row.setAttribute("aria-current", "true");
+    if (row === this.current) return;  // whoever scrolls away from it may stay there
+    const opens = this.current === undefined;
+    this.current = row;
+    if (opens) return;  // a page opens at the top of its list, which says what is worst
     const place = row.getBoundingClientRect(), frame = this.box.getBoundingClientRect();
     if (place.top < frame.top || place.bottom > frame.bottom) this.box.scrollTop += place.top - frame.top - 60;
   }
