@@ -46,6 +46,7 @@ try {
   const openedIn = Date.now() - opened;
   const said = await page.textContent("#verdict");
   if (option("--text")) require(said.includes(option("--text")), `the verdict does not say "${option("--text")}": ${said}`);
+  require((await page.evaluate(() => document.getElementById("list").scrollTop)) === 0, "the list does not open at its top");
   await picture("opening");
 
   // A page without contact shows the surface of every frame, and its camera stays.
