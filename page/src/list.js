@@ -95,7 +95,7 @@ export class MomentList {
     if (row === this.current) return;  // whoever scrolls away from it may stay there
     const opens = this.current === undefined;
     this.current = row;
-    if (opens && chosen.interval === this.first.interval) return;  // a page opens at the top of its list, which says what lies deepest
+    if (opens && chosen.interval === this.first?.interval) return;  // a page opens at the top of its list, which says what lies deepest
     const place = row.getBoundingClientRect(), frame = this.box.getBoundingClientRect();
     if (place.top < frame.top || place.bottom > frame.bottom) this.box.scrollTop += place.top - frame.top - 60;
   }
