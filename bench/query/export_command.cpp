@@ -22,7 +22,7 @@ constexpr std::string_view kFormats[] = {".h5",  ".hdf5", ".glb", ".pc2", ".mdd"
 
 struct ExportOptions {
   std::string input, output;
-  bool force = false, bake = false;
+  bool force = false, bake = false, events = false;
   ModelOptions model;
 };
 
@@ -66,6 +66,11 @@ void export_frames(const ExportOptions& options) {
   if (options.bake && format != ".glb")
     throw InputError("--bake: is for .glb files; " + format +
                      " holds positions in any case, so leave it out");
+  if (options.events && format != ".ply")
+    throw InputError("--events: is for .ply files; " +
+                     std::string(format == ".pvd" || format == ".usda"
+                                     ? format + " holds depths and curves in any case, so leave it out"
+                                     : "write .ply, or .pvd or .usda, which hold depths and curves anyway"));
   const bool sequence = format == ".obj" || format == ".ply";  // whose files have other names
   const OutputTarget target = find_output_target(options.output, options.force || sequence);
   if (target.is_stream)
@@ -85,7 +90,7 @@ void export_frames(const ExportOptions& options) {
           "note: intervals of %s end at a simulator's predictions, which .h5 alone keeps: what touches "
           "on the way there need not touch from frame to frame\n",
           options.input.c_str());
-    export_files(input, options.output, format, options.force);
+    export_files(input, options.output, format, options.force, options.events);
     return;
   }
   scenes::ClipHeader header = input.clip->header();
@@ -112,6 +117,8 @@ void add_export(CLI::App& app) {
                          "Maya (.mdd too) beside walk.obj\n"
                          "  cscd export rope frames/rope.ply    a file a frame (.obj too), "
                          "exactly: frames/rope.0000.ply ...\n"
+                         "  cscd export hand hand.ply --events   the same, coloured by what lies inside "
+                         "what, with its curves\n"
                          "  cscd export rope rope.pvd           for ParaView, with clusters, "
                          "orientation and contacts\n"
                          "  cscd export rope rope.usda          points over time, coloured by "
@@ -121,6 +128,9 @@ void add_export(CLI::App& app) {
   command->add_option("output", options->output, "the file to write; its extension names the format")
       ->required();
   command->add_flag("--bake", options->bake, "a .glb of positions alone, as morph targets, from any input");
+  command->add_flag("--events", options->events,
+                    "a .ply with how deep each vertex lies in another piece, as quality and colour, and "
+                    "NAME.curves.0000.obj with the curves in which the surface crosses itself");
   command->add_flag("--force", options->force, "replace the output if it exists");
   add_model_options(*command, options->model);
   command->callback([options] { export_frames(*options); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -113,6 +114,12 @@ std::vector<float> depth_of(const IntervalMarks& marks, const TriangleMesh& mesh
   return marks.depth.empty() ? std::vector<float>(mesh.vertex_count()) : marks.depth;
 }
 
+// White where nothing is deep, and from yellow to red up to the deepest vertex of the clip.
+scenes::Rgb colour_of_depth(float depth, float deepest) {
+  if (depth <= 0) return {255, 255, 255};
+  return {230, static_cast<std::uint8_t>(200.0F - 200.0F * std::min(depth / deepest, 1.0F)), 20};
+}
+
 // Answers the intervals of an input as cscd query does by default.
 class Marker {
  public:
@@ -200,6 +207,39 @@ class Marker {
   Prepared observer_;
 };
 
+// A surface with depths for each frame, and NAME.curves.0000.obj beside it with the curves.
+void export_events(Input& input, const fs::path& output, bool force) {
+  const std::size_t frames = input.clip->frame_count();
+  Files files(force);
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, ".ply"));
+  const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.obj");
+  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(curves, f, frames, ".obj"));
+
+  Marker marker(input);
+  Progress progress("export " + output.string(), frames);
+  std::vector<std::map<std::size_t, float>> deep(frames);  // few vertices lie inside another piece
+  float deepest = 0;
+  for (std::size_t f = 0; f < frames; ++f) {
+    const IntervalMarks marks = f + 1 == frames ? IntervalMarks{} : marker.mark(f);
+    for (std::size_t v = 0; v < marks.depth.size(); ++v)
+      if (marks.depth[v] > 0) deepest = std::max(deepest, deep[f][v] = marks.depth[v]);
+    files.write(frames + f, scenes::curves_to_obj(marks.curves, std::vector<std::size_t>(marks.event.begin(),
+                                                                                         marks.event.end())));
+    progress.advance();
+  }
+  // One scale of colours for all frames, so their deepest vertex has to be known before the first is written.
+  for (std::size_t f = 0; f < frames; ++f) {
+    const std::span<const Vec3> positions = input.clip->load_frame(f).positions;
+    std::vector<float> depth(positions.size());
+    for (const auto& [vertex, value] : deep[f]) depth[vertex] = value;
+    std::vector<scenes::Rgb> colours;
+    for (const float value : depth) colours.push_back(colour_of_depth(value, deepest));
+    files.write(f, scenes::to_ply(positions, input.mesh.triangles(), depth, colours));
+  }
+  std::printf("%s to %s with depths, curves in %s to %s", files.name(0).c_str(),
+              files.name(frames - 1).c_str(), files.name(frames).c_str(), files.name(2 * frames - 1).c_str());
+}
+
 void export_paraview(Input& input, const fs::path& output, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
@@ -279,8 +319,10 @@ void export_usd(Input& input, const fs::path& output, bool force) {
 
 }  // namespace
 
-void export_files(Input& input, const fs::path& output, const std::string& format, bool force) {
-  if (format == ".obj" || format == ".ply") {
+void export_files(Input& input, const fs::path& output, const std::string& format, bool force, bool events) {
+  if (events) {
+    export_events(input, output, force);
+  } else if (format == ".obj" || format == ".ply") {
     export_sequence(input, output, format, force);
   } else if (format == ".pc2" || format == ".mdd") {
     export_mesh_cache(input, output, format, force);

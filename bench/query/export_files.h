@@ -9,7 +9,8 @@ namespace cscd::bench {
 
 // Writes the frames of an input in the formats that other programs read, and prints what was written. Files
 // appear whole or not at all, and none is written if one of them exists (unless `force`). Throws InputError.
-//   .obj .ply   a file a frame, NAME.0000.obj and so on, bit for bit
+//   .obj .ply   a file a frame, NAME.0000.obj and so on, bit for bit; with `events`, for .ply alone, also how
+//               deep each vertex lies in another piece, and NAME.curves.0000.obj with the curves of crossings
 //   .pc2 .mdd   a mesh cache in single precision, beside NAME.obj with the faces
 //   .pvd        a list for ParaView, and beside it NAME.0000.vtp a frame with cluster, orientation, what
 //   touches
@@ -17,6 +18,7 @@ namespace cscd::bench {
 //               there
 //   .usda       points and colours over time, and the contacts as points
 //   .glb        morph targets, without bones
-void export_files(Input& input, const std::filesystem::path& output, const std::string& format, bool force);
+void export_files(Input& input, const std::filesystem::path& output, const std::string& format, bool force,
+                  bool events);
 
 }  // namespace cscd::bench

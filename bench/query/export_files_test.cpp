@@ -162,6 +162,68 @@ print(len(obj.points), len(ply.cells_dict["triangle"]), len(obj.cells_dict["tria
   EXPECT_EQ(out, "82 160 160\n");
 }
 
+TEST_F(ExportFiles, PlyHoldsDepthsAndObjHoldsCurves) {
+  const json query = answer("figure.glb --clip hug");
+  ASSERT_EQ(run("cscd export figure.glb --clip hug e.ply --events").status, 0);
+  ASSERT_EQ(run("cscd export figure.glb --clip hug plain.ply").status, 0);
+  EXPECT_EQ(verdicts(answer("e.0000.ply")), verdicts(answer("plain.0000.ply"))) << "other positions";
+  const std::string out = python("struct", R"(
+import glob, json, struct
+rows = []
+for ply, obj in zip(sorted(glob.glob("e.????.ply")), sorted(glob.glob("e.curves.????.obj"))):
+    data = open(ply, "rb").read()
+    head, body = data.split(b"end_header\n", 1)
+    assert b"property float quality\nproperty uchar red" in head, head
+    count = int(head.split(b"element vertex ")[1].split()[0])
+    vertices = [struct.unpack_from("<3df3B", body, 31 * i) for i in range(count)]
+    for v in vertices:
+        assert (v[3] > 0) == (v[4:] != (255, 255, 255)), v
+    points, lines, events = [], [], set()
+    for line in open(obj):
+        kind, *words = line.split()
+        if kind == "v": points.append(tuple(map(float, words)))
+        if kind == "o": events.add(words[0])
+        if kind == "l": lines.append([int(w) for w in words])
+    used = sorted(i for line in lines for i in set(line))
+    assert used == list(range(1, len(points) + 1)), "a point of no line, or of two"
+    rows.append([max(v[3] for v in vertices), len(lines), len(events)])
+print(json.dumps(rows)))");
+  ASSERT_NE(out, "skip");
+  const json rows = json::parse(out);
+  ASSERT_EQ(rows.size(), query["intervals"].size() + 1);
+  ASSERT_FALSE(query["summary"]["events"].empty());
+  for (const json& event : query["summary"]["events"]) {
+    const json& row = rows[event["deepest"]["interval"].get<std::size_t>()];
+    EXPECT_GE(row[0].get<double>(), event["depth"]["at_least"].get<double>() - 1e-6);
+    EXPECT_GE(row[1], event["curves"]);
+    EXPECT_GE(row[2], 1);
+  }
+  expect_refused(run("cscd export figure.glb x.obj --events"), "--events: is for .ply files");
+}
+
+TEST_F(ExportFiles, BlenderReadsDepthsAndCurves) {
+  if (run("command -v blender").status != 0) GTEST_SKIP() << "Debian's blender is not installed";
+  const json query = answer("figure.glb --clip hug");
+  ASSERT_FALSE(query["summary"]["events"].empty());
+  ASSERT_EQ(run("cscd export figure.glb --clip hug e.ply --events").status, 0);
+  const std::size_t deepest = query["summary"]["events"][0]["deepest"]["interval"];
+  put("read.py", R"(
+import bpy, json, sys
+frame = int(sys.argv[-1])
+bpy.ops.import_mesh.ply(filepath="e.%04d.ply" % frame)
+mesh = bpy.context.object.data
+bpy.ops.wm.obj_import(filepath="e.curves.%04d.obj" % frame)
+edges = sum(len(o.data.edges) for o in bpy.data.objects if o.name.startswith("event_"))
+print(json.dumps({"colours": len(mesh.color_attributes), "edges": edges}))
+)");
+  const Ran ran =
+      run("blender --background --python read.py -- " + std::to_string(deepest) + " 2>&1 | grep '^{'");
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const json made = json::parse(ran.out);
+  EXPECT_EQ(made["colours"], 1);
+  EXPECT_GT(made["edges"], 0);
+}
+
 TEST_F(ExportFiles, BlenderLoadsMeshCacheAndContacts) {
   if (run("command -v blender").status != 0) GTEST_SKIP() << "Debian's blender is not installed";
   ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest walk.pc2").status, 0);

@@ -261,13 +261,20 @@ SurfaceFile read_ply(std::string_view bytes) {
   return surface;
 }
 
+namespace {
+
+void append_obj_vertex(const Vec3& x, std::string& out) {
+  char line[128];
+  std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", x.x(), x.y(), x.z());
+  out += line;
+}
+
+}  // namespace
+
 std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   std::string out = "# written by cscd\n";
+  for (const Vec3& x : positions) append_obj_vertex(x, out);
   char line[128];
-  for (const Vec3& x : positions) {
-    std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", x.x(), x.y(), x.z());
-    out += line;
-  }
   for (const Triangle& c : triangles) {
     std::snprintf(line, sizeof line, "f %zu %zu %zu\n", +c[0] + 1, +c[1] + 1, +c[2] + 1);
     out += line;
@@ -276,16 +283,46 @@ std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> tr
 }
 
 std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+  return to_ply(positions, triangles, {}, {});
+}
+
+std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                   std::span<const float> quality, std::span<const Rgb> colours) {
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment written by cscd\nelement vertex " +
                     std::to_string(positions.size()) +
-                    "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                    std::to_string(triangles.size()) +
-                    "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const Vec3& x : positions)
-    for (int axis = 0; axis < 3; ++axis) append_bits(std::bit_cast<std::uint64_t>(x[axis]), 8, false, out);
+                    "\nproperty double x\nproperty double y\nproperty double z\n";
+  if (!quality.empty()) out += "property float quality\n";
+  if (!colours.empty()) out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  out += "element face " + std::to_string(triangles.size()) +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis)
+      append_bits(std::bit_cast<std::uint64_t>(positions[v][axis]), 8, false, out);
+    if (!quality.empty()) append_bits(std::bit_cast<std::uint32_t>(quality[v]), 4, false, out);
+    if (!colours.empty())
+      for (const std::uint8_t value : colours[v]) append_bits(value, 1, false, out);
+  }
   for (const Triangle& c : triangles) {
     out += '\3';
     for (const VertexId v : c) append_bits(+v, 4, false, out);
+  }
+  return out;
+}
+
+std::string curves_to_obj(std::span<const std::vector<Vec3>> curves, std::span<const std::size_t> events) {
+  std::string out = "# written by cscd\n";
+  std::size_t first = 1;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::vector<Vec3>& curve = curves[i];
+    const bool closed = curve.size() > 2 && curve.front() == curve.back();
+    const std::size_t points = curve.size() - closed;
+    if (i == 0 || events[i] != events[i - 1]) out += "o event_" + std::to_string(events[i]) + "\n";
+    for (std::size_t p = 0; p < points; ++p) append_obj_vertex(curve[p], out);
+    out += 'l';
+    for (std::size_t p = 0; p < points; ++p) out += ' ' + std::to_string(first + p);
+    if (closed) out += ' ' + std::to_string(first);
+    out += '\n';
+    first += points;
   }
   return out;
 }

@@ -29,4 +29,14 @@ SurfaceFile read_ply(std::string_view bytes);
 std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
+// Writes a surface likewise with a number and a colour for each vertex, as the properties `quality` and
+// `red`, `green`, `blue`, by which MeshLab and Blender know them.
+using Rgb = std::array<std::uint8_t, 3>;
+std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                   std::span<const float> quality, std::span<const Rgb> colours);
+
+// Writes curves as OBJ lines, each in an object called event_N after `events`. A curve whose last point is
+// its first is closed, and its line ends at the vertex where it begins.
+std::string curves_to_obj(std::span<const std::vector<Vec3>> curves, std::span<const std::size_t> events);
+
 }  // namespace cscd::scenes
