@@ -67,6 +67,19 @@ std::size_t most_start_pairs(const std::string& text) {
   return count;
 }
 
+// The engine knows what is wrong with a kept preparation, but not in which file that is.
+Answerer prepare(const QueryOptions& options, Input& input, const Strategy& strategy,
+                 const ElementaryTest& elementary) {
+  constexpr std::string_view kBegin = "preparation: ";
+  try {
+    return Answerer(input, strategy, elementary, options.answers);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (input.preparation.empty() || !what.starts_with(kBegin)) throw;
+    throw InputError("--preparation " + options.preparation + ": " + what.substr(kBegin.size()));
+  }
+}
+
 // Answers the chosen intervals of a clip, and keeps them if `keep_intervals` says so.
 ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceNames& names,
                        bool keep_intervals) {
@@ -77,7 +90,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
   const IntervalRange range = parse_frames(options.frames, input);
   Watchdog watchdog = watchdog_of(options, input);
   if (!options.preparation.empty()) input.preparation = read_preparation(options.preparation);
-  Answerer answerer(input, strategy, elementary, options.answers);
+  Answerer answerer = prepare(options, input, strategy, elementary);
   if (!options.preparation.empty() && input.preparation.empty())
     write_preparation(options.preparation, answerer.saved_preparation(), strategy);
   std::optional<TrueAnswerer> true_motion;

@@ -290,9 +290,10 @@ TEST_F(Query, KeepsAPreparation) {
   EXPECT_EQ(text("kept.preparation"), kept);
 
   expect_refused(run("cscd query figure.glb --clip hug --preparation kept.preparation"),
-                 "preparation: was made for another surface; prepare anew without it");
+                 "--preparation kept.preparation: was made for another surface; prepare anew without it");
   put("kept.preparation", kept.substr(0, kept.size() / 2));
-  expect_refused(run("cscd query small --preparation kept.preparation"), "preparation: is damaged");
+  expect_refused(run("cscd query small --preparation kept.preparation"),
+                 "--preparation kept.preparation: is damaged");
   put("kept.preparation", "");
   expect_refused(run("cscd query small --preparation kept.preparation"), "is empty; remove it");
   expect_refused(run("cscd query small --strategy base --preparation other.preparation"),
