@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -59,6 +60,10 @@ std::vector<Triangle> triangles_of(const Faces& faces) {
 
 std::vector<Vec3> copy_of(std::span<const Vec3> positions) {
   return {positions.begin(), positions.end()};
+}
+
+bool is_same(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 // Runs the call, and turns errors of the input into the library's.
@@ -159,6 +164,18 @@ class SelfCollision::Engine {
     if (first && earliest)
       for (std::vector<cscd::Contact>* contacts : {&answer_.found.contacts, &touched_.contacts})
         std::erase_if(*contacts, [&](const cscd::Contact& contact) { return contact.time > *earliest; });
+  }
+
+  // A solver that looks for a free step asks about one start many times. From a start that crosses itself
+  // none is free, which is known after the first.
+  bool is_free(const Motion& motion) {
+    if (is_same(motion.start(), crossing_start_)) {
+      check_finite(motion.end(), "end positions");
+      return false;
+    }
+    step(motion, true, true);
+    if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
+    return !crosses() && !time();
   }
 
   bool crosses() const { return answer_.start.total + crossed_.total > 0; }
@@ -401,6 +418,7 @@ class SelfCollision::Engine {
   cscd::Crossings crossed_;  // of the mesh and obstacles
   std::vector<FeaturePair> found_;
   std::optional<CrossingSearch> crossing_search_;
+  std::vector<Vec3> crossing_start_;  // the last one that is_free() met
 };
 
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
@@ -422,10 +440,7 @@ void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, 
 }
 
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
-  return ask(engine_, [&](Engine& engine) {
-    engine.step(engine.motion(start, end), true, true);
-    return !engine.crosses() && !engine.time();
-  });
+  return ask(engine_, [&](Engine& engine) { return engine.is_free(engine.motion(start, end)); });
 }
 
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {

@@ -32,6 +32,37 @@ TEST(SelfCollision, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {
   EXPECT_GT(crossing, intervals() / 20);
 }
 
+// Mutations: a start that differs in one bit is taken for the same; an end that is not finite is not refused.
+TEST(SelfCollision, IsFreeKnowsACrossingStartWhenAskedAgain) {
+  std::size_t crossing = 0;
+  for (std::uint64_t seed = 1; seed <= intervals(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const SceneStep step(seed);
+    SelfCollision body(step.faces, step.start);
+    const auto expect_as_new = [&](const Rows& start, const Rows& end) {
+      EXPECT_EQ(body.is_free(start, end), SelfCollision(step.faces, step.start).is_free(start, end));
+    };
+    for (int call = 0; call < 3; ++call) expect_as_new(step.start, step.end);
+    expect_as_new(step.start, step.start);
+    expect_as_new(step.end, step.start);
+    expect_as_new(step.start, step.end);
+    if (!body.first_contact(step.start, step.end).intersects_at_start()) continue;
+    ++crossing;
+    Rows broken = step.end;
+    broken(0, 1) = std::nan("");
+    EXPECT_THROW(body.is_free(step.start, broken), std::invalid_argument);
+    // Components that are pulled apart may start free.
+    Rows apart = step.start;
+    for (Eigen::Index v = 0; v < apart.rows(); ++v)
+      apart(v, 2) +=
+          1e3 * step.mesh.component(step.mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)})[0]);
+    expect_as_new(apart, apart);
+    EXPECT_FALSE(body.is_free(step.start, step.end));
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(crossing, intervals() / 20);
+}
+
 // Candidates are all pairs that come within the radius, and none whose boxes do not, found here from all
 // pairs. Mutations: a radius of 0 takes what touches last; the culler is not told the radius.
 TEST(SelfCollision, GivesAllCandidates) {
