@@ -275,6 +275,25 @@ TEST_F(Query, CountsFramesAsTheTimeLineOfTheFile) {
   EXPECT_EQ(asked["intervals"][0]["frame"], 1125);
 }
 
+// Two tetrahedra in one place, as a coat that was copied from a body.
+TEST_F(Query, GivesCopiesAtRestALineOfTheirOwn) {
+  for (int frame = 0; frame < 2; ++frame) {
+    std::string obj;
+    for (int copy = 0; copy < 2; ++copy)
+      for (const char* vertex : {"0 0 ", "1 0 ", "0 1 ", "0.2 0.2 1"})
+        obj += std::string("v ") + vertex + std::to_string(frame) + "\n";
+    put("copy." + std::to_string(frame) + ".obj",
+        obj + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n");
+  }
+  const Ran ran = run("cscd query copy.0.obj");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(has(ran.out, "\n  lies on itself at rest, as copies of one surface do: ")) << ran.out;
+  EXPECT_TRUE(has(ran.out, ": 4 triangles in one place, 16 pairs that meet; left out of 1 interval"))
+      << ran.out;
+  EXPECT_TRUE(has(ran.out, "(--keep-rest-crossings counts both)")) << ran.out;
+  EXPECT_FALSE(has(ran.out, "crosses at rest: ")) << ran.out;
+}
+
 // Mutations: the file is written and never read; a strategy without a preparation takes the option.
 TEST_F(Query, KeepsAPreparation) {
   const auto counted = [&](const std::string& words) {

@@ -1,6 +1,7 @@
 #include "bench/query/answer/answer_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
@@ -126,6 +127,40 @@ std::string distance_text(const Input& input, double length) {
   return unit > 0 ? short_text(unit * length) + " cm" : short_text(length);
 }
 
+// What crosses at rest, in two kinds: parts that cross, and copies of one surface that lie on each other.
+struct AtRest {
+  std::map<NamePair, std::size_t> crossing, coinciding;  // pairs of triangles
+  std::map<NamePair, std::size_t> same;                  // pairs of triangles with the same three corners
+};
+
+AtRest at_rest(const ClipAnswer& answer) {
+  const Input& input = answer.input;
+  const auto corners = [&](TriangleId t) {
+    std::array<std::array<double, 3>, 3> out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& x = input.rest()[static_cast<std::size_t>(+input.mesh.corners(t)[k])];
+      out[k] = {x[0], x[1], x[2]};
+    }
+    std::ranges::sort(out);
+    return out;
+  };
+  Crossings same;
+  for (const CrossingPair& pair : answer.rest.pairs)
+    if (corners(pair.first) == corners(pair.second)) same.pairs.push_back(pair);
+  AtRest out{pairs_by_part(answer.names, input.mesh, answer.rest),
+             {},
+             pairs_by_part(answer.names, input.mesh, same)};
+  // A triangle meets its copy and the copies of its neighbours, which are a dozen on most surfaces.
+  constexpr std::size_t kMostNeighbours = 32;
+  for (const auto& [both, count] : out.same)
+    if (kMostNeighbours * count >= out.crossing.at(both)) out.coinciding.insert(out.crossing.extract(both));
+  return out;
+}
+
+std::string with_itself_or_in(const NamePair& both, const char* in) {
+  return both.first + (both.first == both.second ? " with itself: " : in + both.second + ": ");
+}
+
 // The predicate of a verdict: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -165,7 +200,7 @@ std::string verdict_predicate(const ClipAnswer& answer) {
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
-  std::string counts, thickness, worst, met, ignored, rest, proven, rate, choice;
+  std::string counts, thickness, worst, met, ignored, rest, coinciding, proven, rate, choice;
 };
 
 Sentences sentences(const ClipAnswer& answer) {
@@ -190,17 +225,27 @@ Sentences sentences(const ClipAnswer& answer) {
   if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
   if (input.ignored) out.ignored = ignored_text(input, s);
   if (answer.rest.total > 0) {
-    out.rest = "crosses at rest: " +
-               listed(pairs_by_part(answer.names, input.mesh, answer.rest),
-                      [](const NamePair& both, std::size_t count) {
-                        return both.first +
-                               (both.first == both.second ? " with itself: " : " in " + both.second + ": ") +
-                               many(count, "pair");
-                      });
-    out.rest += answer.rest_left_out
-                    ? "; left out of " + many(s.with_left_out, "interval") + ", with " +
-                          many(s.left_out_contacts, "contact") + " (--keep-rest-crossings counts both)"
-                    : "; counted, as asked";
+    const AtRest rest = at_rest(answer);
+    const std::string counted = answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
+                                                           ", with " + many(s.left_out_contacts, "contact") +
+                                                           " (--keep-rest-crossings counts both)"
+                                                     : "; counted, as asked";
+    if (!rest.crossing.empty())
+      out.rest = "crosses at rest: " +
+                 listed(rest.crossing,
+                        [](const NamePair& both, std::size_t count) {
+                          return with_itself_or_in(both, " in ") + many(count, "pair");
+                        }) +
+                 counted;
+    if (!rest.coinciding.empty())
+      out.coinciding = "lies on itself at rest, as copies of one surface do: " +
+                       listed(rest.coinciding,
+                              [&](const NamePair& both, std::size_t count) {
+                                return with_itself_or_in(both, " on ") +
+                                       many(rest.same.at(both), "triangle") + " in one place, " +
+                                       many(count, "pair") + " that meet";
+                              }) +
+                       (out.rest.empty() || !answer.rest_left_out ? counted : "; left out with those");
   }
   std::string answered;
   for (const auto& [name, count] : s.strategies)
@@ -298,8 +343,8 @@ std::string clip_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   const Sentences said = sentences(answer);
   std::string out = verdict_sentence(answer) + "\n";
-  for (const std::string* line :
-       {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest, &said.proven})
+  for (const std::string* line : {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored,
+                                  &said.rest, &said.coinciding, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
   out += true_motion_text(answer.input, answer.true_motion);
@@ -314,7 +359,7 @@ std::string brief_clip_text(const ClipAnswer& answer) {
   std::string out = verdict_sentence(answer) + "\n" + not_measured_text(answer);
   const Sentences said = sentences(answer);
   if (answer.summary.proven < answer.summary.intervals()) out += "  " + said.proven + "\n";
-  for (const std::string* line : {&said.ignored, &said.rest})
+  for (const std::string* line : {&said.ignored, &said.rest, &said.coinciding})
     if (!line->empty()) out += "  " + *line + "\n";
   if (!answer.events.empty())
     out += "  lies in itself in " + many(answer.events.size(), "place") +
@@ -327,7 +372,7 @@ std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
   for (const std::string* sentence : {&said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest,
-                                      &said.proven, &said.rate, &said.choice}) {
+                                      &said.coinciding, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
