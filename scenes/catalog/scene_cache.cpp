@@ -243,6 +243,15 @@ std::vector<std::string> bone_names(const Scene& scene) {
   return make_shape(scene.shape, scene.shape_parameters).bone_names;
 }
 
+std::vector<std::string> cloth_names(const Scene& scene) {
+  if (!scene.shape_parameters.has("skirts")) return {};
+  const std::size_t count = scene.shape_parameters.objects("skirts").size();
+  if (count == 1) return {"skirt"};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back("skirt " + std::to_string(i));
+  return names;
+}
+
 Expected accept_scene(const fs::path& file, const Progress& progress) {
   Scene scene = load_scene(file.string());
   const OutputTarget target = find_output_target(file, true);

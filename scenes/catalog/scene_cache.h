@@ -38,6 +38,10 @@ std::unique_ptr<ClipSource> open_scene(const Scene& scene, const Progress& progr
 // building the shape for their sake can take longer than a query.
 std::vector<std::string> bone_names(const Scene& scene);
 
+// Returns the names of the scene's pieces of cloth that no bone carries. They are the last components of its
+// mesh, in this order.
+std::vector<std::string> cloth_names(const Scene& scene);
+
 // Generates the scene of a file, whatever the file expects, and returns the actual counts and digest. Writes
 // them into the file as its `expected`. The file is replaced as a whole, and its other text stays as it was.
 Expected accept_scene(const std::filesystem::path& file, const Progress& progress = {});

@@ -366,6 +366,16 @@ TEST_F(Catalogue, KeepsWhatEachEffectTook) {
   EXPECT_EQ(generated(scene), 6u) << "a cache that does not tell is none";
 }
 
+TEST_F(Catalogue, NamesClothWithoutBones) {
+  Scene scene = load_scene("small");
+  EXPECT_TRUE(cloth_names(scene).empty());
+  const Parameters skirt = scene.shape_parameters;
+  scene.shape_parameters = skirt.with("skirts", std::vector<Parameters>{skirt});
+  EXPECT_EQ(cloth_names(scene), std::vector<std::string>{"skirt"});
+  scene.shape_parameters = skirt.with("skirts", std::vector<Parameters>{skirt, skirt});
+  EXPECT_EQ(cloth_names(scene), (std::vector<std::string>{"skirt 0", "skirt 1"}));
+}
+
 // Mutation: a damaged file is taken for a scene without bones.
 TEST_F(Catalogue, KeepsTheNamesOfBones) {
   const Scene scene = load_scene("small");

@@ -32,6 +32,30 @@ const ElementaryTest& exact() {
   return elementary_test_named("filtered_exact");
 }
 
+// Cloth hangs near bones that do not carry it.
+TEST(SurfaceNames, NameClothAndNotTheBoneNearestToIt) {
+  test::Shape shape = test::octahedron();
+  const std::size_t vertices = shape.positions.size(), triangles = shape.triangles.size();
+  for (std::size_t v = 0; v < vertices; ++v) shape.positions.push_back(shape.positions[v] + Vec3(3, 0, 0));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    Triangle corners = shape.triangles[t];
+    for (VertexId& v : corners) v = VertexId{static_cast<std::int32_t>(+v + vertices)};
+    shape.triangles.push_back(corners);
+  }
+  Input input = input_of(shape, {shape.positions, shape.positions});
+  input.rig = Rig{{BoneId{-1}}, {{Vec3(0, 0, 0), Vec3(0, 0, 1)}}};
+  input.bone_names = {"thigh"};
+  const TriangleId body{0}, cloth{static_cast<std::int32_t>(triangles)};
+  EXPECT_EQ(SurfaceNames(input).place_of(cloth), "thigh");
+  input.cloth_names = {"skirt"};
+  const SurfaceNames names(input);
+  EXPECT_EQ(names.place_of(body), "thigh");
+  EXPECT_EQ(names.place_of(cloth), "skirt");
+  EXPECT_EQ(names.part_of(cloth), "skirt");
+  EXPECT_EQ(names.bone_of(VertexId{static_cast<std::int32_t>(vertices)}), "");
+  EXPECT_NE(names.place_number(body), names.place_number(cloth));
+}
+
 // Everything that is said of every interval, held against the reference and against a look at each start from
 // nothing. Mutations that die here: contacts taken for proof where the row reports the first alone; the end
 // of an interval taken for the start of the next where they differ; pairs left out that nothing explains.

@@ -59,6 +59,10 @@ SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
     const auto [known, added] = one_component.try_emplace(part(t), component);
     if (!added && known->second != component) known->second = -1;
   }
+  const auto cloth_of = [&](std::int32_t component) -> const std::string* {
+    const std::int32_t first = mesh.component_count() - static_cast<std::int32_t>(input.cloth_names.size());
+    return component < first ? nullptr : &input.cloth_names[static_cast<std::size_t>(component - first)];
+  };
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> known;  // part, component or -1
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const std::int32_t p = part(t), component = mesh.component(TriangleId{static_cast<std::int32_t>(t)});
@@ -67,6 +71,7 @@ SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
     if (added) {
       std::string name = p >= 0 ? parts[static_cast<std::size_t>(p)] : several ? "" : "the surface";
       if (several) name += (name.empty() ? "" : ", ") + std::string("component ") + std::to_string(component);
+      if (const std::string* const cloth = cloth_of(component)) name = *cloth;
       label_.push_back(std::move(name));
     }
     label_of_triangle_.push_back(label->second);
@@ -75,6 +80,12 @@ SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
     bone_ = input.sources->bone;
   else if (input.rig)
     bone_ = nearest_bones(*input.rig, input.reference);
+  if (input.cloth_names.empty() || bone_.empty()) return;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleId triangle{static_cast<std::int32_t>(t)};
+    if (cloth_of(mesh.component(triangle)) == nullptr) continue;
+    for (const VertexId corner : mesh.corners(triangle)) bone_[+corner] = -1;
+  }
 }
 
 std::string SurfaceNames::name_of_bone(std::int32_t bone) const {

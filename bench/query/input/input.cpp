@@ -102,7 +102,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   std::unique_ptr<scenes::ClipSource> clip;
   std::optional<scenes::ImportReport> import;
   std::optional<scenes::SourceMap> sources;
-  std::vector<std::string> bone_names;
+  std::vector<std::string> bone_names, cloth_names;
   std::shared_ptr<const VertexPaths> motion;
   Up up;
   if (model) {
@@ -121,6 +121,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
     const scenes::Scene scene = scenes::load_scene(name);
     clip = clip_of(scene, name);
     bone_names = scenes::bone_names(scene);
+    cloth_names = scenes::cloth_names(scene);
     up = up_of(scene);
   }
   const scenes::ClipHeader& header = clip->header();
@@ -131,6 +132,7 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   Input input{name,           std::move(clip),   std::move(mesh),   std::move(reference),
               std::move(rig), std::move(import), std::move(sources)};
   input.bone_names = std::move(bone_names);
+  input.cloth_names = std::move(cloth_names);
   input.motion = std::move(motion);
   const bool named = !options.import.clip.empty() || options.import.clip_number;
   input.clip_was_named = named || options.import.survey || !input.import || input.import->clips.size() < 2;

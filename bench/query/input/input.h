@@ -47,11 +47,12 @@ struct Input {
   std::optional<scenes::SourceMap> sources = std::nullopt;    // of a model file
   // How the vertices of a model file move between frames; null where that is not asked for.
   std::shared_ptr<const VertexPaths> motion = nullptr;
-  bool clip_was_named = true;                // else it is the first clip that moves
-  int threads = 1;                           // for whatever can use them
-  bool use_bones = true;                     // for strategies that can do without
-  std::vector<std::byte> preparation = {};   // of an earlier run; empty for none
-  std::vector<std::string> bone_names = {};  // [bones], of a scene or a model file that names them, or none
+  bool clip_was_named = true;                 // else it is the first clip that moves
+  int threads = 1;                            // for whatever can use them
+  bool use_bones = true;                      // for strategies that can do without
+  std::vector<std::byte> preparation = {};    // of an earlier run; empty for none
+  std::vector<std::string> bone_names = {};   // [bones], of a scene or a model file that names them, or none
+  std::vector<std::string> cloth_names = {};  // of the last components, which no bone carries
   Up up = {};
   std::shared_ptr<const Ignored> ignored = nullptr;     // null where nothing is
   std::shared_ptr<const OutsideTruth> truth = nullptr;  // null where none is to be held against
