@@ -23,12 +23,12 @@ part() {
   parts+=("$name")
 }
 part rows core/elementary/{additive,cubic,inclusion,newton,catalogue} scenes/queries/query_file
-part filtered core/elementary/certified/{close_doubles,filtered_exact,integer_polynomial,integer_roots,integer_signs,integer_contact}
+part filtered core/elementary/certified/{close_doubles,filtered_exact,integer_roots,integer_signs,integer_contact}
 part lanes core/elementary/certified/exact_lanes
 part single core/detect/single_filter
 part distance core/detect/distance_filter
 part exact core/elementary/exact/{exact,algebraic,closeness,polynomial,touch}
-part starts core/elementary/exact/{static_contact,triangles_meet}
+part starts core/elementary/exact/static_contact
 part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
   core/mesh/triangle_mesh core/geometry/feature_distance
 part team core/base/team
