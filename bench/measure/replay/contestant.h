@@ -49,8 +49,8 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
 // step to step.
 inline constexpr std::size_t kLead = 24;
 
-// Warms up strategies that adapt to the surface (StrategyKind::adaptive), and does nothing for the others. Load
-// the interval again afterwards, because the clip then holds another one.
+// Warms up strategies that adapt to the surface (StrategyKind::adaptive), and does nothing for the others.
+// Load the interval again afterwards, because the clip then holds another one.
 void lead_up(const Strategy& strategy, Detector& detector, Input& input, std::size_t interval);
 
 }  // namespace cscd::bench
