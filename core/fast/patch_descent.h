@@ -32,10 +32,11 @@ struct DescentInput {
   const PatchTree& tree;
   const LocalPositions& positions;
   const Certificates& certificates;
-  // Planes prove that nothing touches, and are not asked where bounds have a margin.
   const Stars* stars;  // null: without stars
   bool time_linear;
-  bool planes;  // whether planes of triangles are asked
+  // Whether planes of triangles are asked. They prove that nothing touches, so they are not asked where
+  // bounds have a margin.
+  bool planes;
 };
 
 // A cache of results per patch that are computed on demand, because an interval needs them for few patches.
