@@ -18,6 +18,11 @@ KnownStarts::KnownStarts(const TriangleMesh& mesh, std::span<const Vec3> referen
 
 bool KnownStarts::begin(const Motion& motion, bool& finite) {
   moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+  if (!moved_on_ && poses_.return_to(motion.start())) {
+    pose_bones_.swap(before_bones_);
+    end_follows_ = false;
+    moved_on_ = poses_.move_on(motion.start(), motion.end(), finite);
+  }
   if (!moved_on_ && end_follows_ && same_bits(end_, motion.start())) {
     poses_.follow(end_, end_touched_);
     free_of_close_pairs_ = false;
@@ -29,8 +34,8 @@ bool KnownStarts::begin(const Motion& motion, bool& finite) {
   return moved_on_;
 }
 
-void KnownStarts::abandon(const Motion& motion) {
-  if (moved_on_) poses_.go_back(motion.start());
+void KnownStarts::abandon() {
+  if (moved_on_) poses_.go_back();
   moved_on_ = false;
 }
 
@@ -71,6 +76,10 @@ bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bon
                   touched_);
   if (!touched_.contacts.empty()) return false;
   poses_.follow(pose, touched_);
+  if (bones != nullptr) {
+    before_bones_.swap(pose_bones_);
+    pose_bones_.assign(bones->start.begin(), bones->start.end());
+  }
   end_follows_ = false;
   free_of_close_pairs_ = true;
   return true;
@@ -80,12 +89,13 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
                             const ContactSet& found) {
   if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
   const bool nothing_touched = found.contacts.empty() && certainty.whether;
-  if (!nothing_touched) abandon(motion);
+  if (!nothing_touched) abandon();
   end_follows_ = !nothing_touched && certainty.all && found.contacts.size() <= kMostFollowed;
   if (nothing_touched) {
     if (!moved_on_) poses_.follow(motion.end(), found);
     free_of_close_pairs_ = true;
     end_.clear();
+    before_bones_.swap(pose_bones_);
     if (bones != nullptr) pose_bones_.assign(bones->end.begin(), bones->end.end());
     return;
   }

@@ -20,7 +20,8 @@ struct Certainty {
 // followed. Two triangles begin or cease to cross only where something touches, so a step that starts in the
 // known pose, and whose contacts are certain, tells what crosses at its end. Steps are therefore best asked
 // for in the order of the motion. Where something touches, the start stays the known pose until a step starts
-// at the end, because who looks for a step that is free asks about the same start again.
+// at the end, because who looks for a step that is free asks about the same start again. Where nothing
+// touches, the start stays known beside the end, for the same reason.
 //
 // With a thickness it knows also which poses are *clear*: nothing crosses, and no pair is close. A step
 // without a contact proves its start and its end clear. The pairs that touch are among the close ones, so
@@ -45,7 +46,7 @@ class KnownStarts {
   // or learn_end() have to follow.
   bool begin(const Motion& motion, bool& finite);
   // Ends a step of which nothing is learned: its start is the known pose again.
-  void abandon(const Motion& motion);
+  void abandon();
   // Returns whether a pose, or the start of the step that has begun, is known.
   bool knows(std::span<const Vec3> pose) const { return moved_on_ || poses_.knows(pose); }
 
@@ -75,14 +76,15 @@ class KnownStarts {
   Thickness thickness_;
   bool free_of_close_pairs_ = false;  // known of the known pose
   std::size_t searches_ = 0;
-  bool moved_on_ = false;         // poses_ holds the end of the step that has begun
-  std::vector<Bone> pose_bones_;  // the skeleton in the known pose
-  std::vector<Vec3> end_;         // of the last step in which something touched
-  bool end_follows_ = false;      // whether the known pose and end_touched_ tell what crosses there
-  ContactSet end_touched_;        // what touched on the way from the known pose
-  std::vector<Bone> end_bones_;   // the skeleton there
-  ContactSet touched_;            // on the way to a pose
-  Crossings seen_;                // at a start, by a detector
+  bool moved_on_ = false;           // poses_ holds the end of the step that has begun
+  std::vector<Bone> pose_bones_;    // the skeleton in the known pose
+  std::vector<Bone> before_bones_;  // and in the pose before it
+  std::vector<Vec3> end_;           // of the last step in which something touched
+  bool end_follows_ = false;        // whether the known pose and end_touched_ tell what crosses there
+  ContactSet end_touched_;          // what touched on the way from the known pose
+  std::vector<Bone> end_bones_;     // the skeleton there
+  ContactSet touched_;              // on the way to a pose
+  Crossings seen_;                  // at a start, by a detector
 };
 
 }  // namespace cscd

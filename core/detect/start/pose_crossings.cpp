@@ -18,40 +18,55 @@ bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> e
   if (start.size() != positions_.size() || positions_.empty()) return false;
   constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cache
   constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000, kLowest = 0x0010'0000'0000'0000;
+  room_.resize(positions_.size());
   const double *const from = start[0].data(), *const to = end[0].data();
-  double* const kept = positions_[0].data();
+  const double* const kept = positions_[0].data();
+  double* const next = room_[0].data();
   const std::size_t count = 3 * positions_.size();
   std::uint64_t all = 0;
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t last = std::min(first + kBlock, count);
-    if (std::memcmp(from + first, kept + first, (last - first) * sizeof(double)) != 0) {
-      std::copy(from, from + first, kept);  // what has been written over was the same
-      return false;
-    }
+    if (std::memcmp(from + first, kept + first, (last - first) * sizeof(double)) != 0) return false;
     for (std::size_t i = first; i < last; ++i) {
       // The sum reaches the sign where all bits of the exponent are set.
       all |= (std::bit_cast<std::uint64_t>(to[i]) & kExponent) + kLowest;
-      kept[i] = to[i];
+      next[i] = to[i];
     }
   }
   finite = all >> 63 == 0;
+  before_.swap(room_);
+  before_.swap(positions_);
+  return true;
+}
+
+void PoseCrossings::go_back() {
+  positions_.swap(before_);
+  before_.clear();
+}
+
+bool PoseCrossings::return_to(std::span<const Vec3> positions) {
+  if (before_.empty() || !same_bits(positions, before_)) return false;
+  positions_.swap(before_);
   return true;
 }
 
 const Crossings& PoseCrossings::find(std::span<const Vec3> positions) {
   crossings_ = test_.find_all(positions, most_);
+  before_.clear();
   positions_.assign(positions.begin(), positions.end());
   return crossings_;
 }
 
 void PoseCrossings::know(std::span<const Vec3> positions, const Crossings& crossings) {
   crossings_ = crossings;
+  before_.clear();
   positions_.assign(positions.begin(), positions.end());
 }
 
 const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const ContactSet& touched) {
   if (positions_.empty() || !crossings_.all_kept()) return find(positions);
   if (touched.contacts.empty()) {
+    before_.swap(positions_);
     positions_.assign(positions.begin(), positions.end());
     return crossings_;
   }
@@ -70,6 +85,7 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
   std::sort(crossing.begin(), crossing.end());
   crossings_.pairs = std::move(crossing);
   crossings_.total = crossings_.pairs.size();
+  before_.clear();
   positions_.assign(positions.begin(), positions.end());
   return crossings_;
 }

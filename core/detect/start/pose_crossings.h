@@ -35,7 +35,11 @@ class PoseCrossings {
   // caller has to go back.
   bool move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite);
   // Puts the start of the step in the place of its end again.
-  void go_back(std::span<const Vec3> start) { std::ranges::copy(start, positions_.begin()); }
+  void go_back();
+  // Where nothing touched on the way here, the same pairs cross in the pose before. Returns whether
+  // `positions` are that pose, bit for bit, and if so takes it for the one last asked for, and this one for
+  // the pose before. So a caller may ask about several steps from one start.
+  bool return_to(std::span<const Vec3> positions);
 
   // The positions last asked for, and the crossings in them.
   std::span<const Vec3> positions() const { return positions_; }
@@ -60,6 +64,8 @@ class PoseCrossings {
   EmbeddingTest test_;
   std::size_t most_;
   std::vector<Vec3> positions_;
+  std::vector<Vec3> before_;  // the pose before, in which the same pairs cross; empty where there is none
+  std::vector<Vec3> room_;    // for the next pose
   Crossings crossings_;
 };
 

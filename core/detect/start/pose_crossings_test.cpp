@@ -132,8 +132,8 @@ TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
   EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
 }
 
-// Mutations: a difference behind the first block is passed over; what was written over is not put back; only
-// the last number counts as not finite.
+// Mutations: a difference behind the first block is passed over; a pose is forgotten where a step is refused;
+// only the last number counts as not finite.
 TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
   const test::Shape shape = test::icosphere(3);
   const TriangleMesh mesh = shape.mesh();
@@ -154,7 +154,7 @@ TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
       nowhere[v].y() = wrong;
       EXPECT_TRUE(crossings.move_on(shape.positions, nowhere, finite));
       EXPECT_FALSE(finite) << v;
-      crossings.go_back(shape.positions);
+      crossings.go_back();
       EXPECT_TRUE(crossings.knows(shape.positions));
     }
   }
@@ -162,6 +162,12 @@ TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
   EXPECT_TRUE(crossings.move_on(shape.positions, end, finite));
   EXPECT_TRUE(finite);
   EXPECT_TRUE(crossings.knows(end));
+  EXPECT_FALSE(crossings.return_to(end)) << "that is no return";
+  EXPECT_TRUE(crossings.return_to(shape.positions));
+  EXPECT_TRUE(crossings.return_to(end)) << "and there again";
+  crossings.go_back();
+  EXPECT_TRUE(crossings.knows(shape.positions));
+  EXPECT_FALSE(crossings.return_to(end)) << "something may have touched on the way there";
 }
 
 }  // namespace
