@@ -1,5 +1,7 @@
 #include "library/crossings.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/crossing/length_gradient.h"
 
@@ -17,8 +19,11 @@ SelfCollision::Crossings::Curve written(const CrossingCurves& all, const Crossin
   return out;
 }
 
-SelfCollision::Crossings::Region written(const CrossingRegion& region) {
+SelfCollision::Crossings::Region written(const Overlap& overlap, const CrossingRegion& region) {
   SelfCollision::Crossings::Region out;
+  for (const std::int32_t image : region.images)
+    out.bounds.push_back(
+        {static_cast<int>(std::ranges::find(overlap.curves, image / 2) - overlap.curves.begin()), image % 2});
   for (const VertexId v : region.vertices) out.vertices.push_back(static_cast<int>(v));
   out.way = region.way;
   for (const Vec3& way : region.way) out.distance.push_back(way.norm());
@@ -71,7 +76,7 @@ SelfCollision::Crossings CrossingSearch::find(std::span<const Vec3> positions, c
     for (const std::int32_t curve : overlap.curves)
       one.curves.push_back(
           written(found.crossing, found.crossing.curves[static_cast<std::size_t>(curve)], positions));
-    for (const CrossingRegion& region : overlap.regions) one.regions.push_back(written(region));
+    for (const CrossingRegion& region : overlap.regions) one.regions.push_back(written(overlap, region));
     CurveLength length = length_gradient(mesh_, positions, found.crossing, overlap);
     one.length = length.length;
     for (const auto& [v, gradient] : length.gradient) {

@@ -121,47 +121,66 @@ TEST(SelfCollision, LeavesOutWhatIsExcludedOfObstacles) {
   }
 }
 
-// What lies within an overlap, by what crossings() says.
+// What lies within an overlap, by what crossings() says: faces on the two sheets of one curve.
 struct Within {
+  using Faces = std::set<int>;
   const FaceRows& rows;
-  std::vector<std::set<int>> faces;  // of each overlap
+  std::vector<std::array<Faces, 2>> sheets;  // of each curve
   Within(const SceneStep& step, const SelfCollision::Crossings& crossings) : rows(step.faces) {
     for (const SelfCollision::Crossings::Overlap& overlap : crossings.overlaps) {
-      std::set<int>& of_overlap = faces.emplace_back();
-      std::set<int> vertices;
-      for (const auto& curve : overlap.curves)
-        for (const auto& both : curve.faces) of_overlap.insert(both.begin(), both.end());
-      for (const auto& region : overlap.regions)
-        vertices.insert(region.vertices.begin(), region.vertices.end());
-      for (Eigen::Index f = 0; f < step.faces.rows(); ++f)
-        for (int k = 0; k < 3; ++k)
-          if (vertices.contains(rows(f, k))) of_overlap.insert(static_cast<int>(f));
+      const auto run_through = [&](const std::array<int, 2>& bound) {
+        Faces out;
+        for (const auto& both : overlap.curves[static_cast<std::size_t>(bound[0])].faces)
+          out.insert(both[static_cast<std::size_t>(bound[1])]);
+        return out;
+      };
+      const auto first = static_cast<std::ptrdiff_t>(sheets.size());
+      for (int c = 0; c < static_cast<int>(overlap.curves.size()); ++c)
+        sheets.push_back({run_through({c, 0}), run_through({c, 1})});
+      for (const auto& region : overlap.regions) {
+        Faces faces;
+        const std::set<int> vertices(region.vertices.begin(), region.vertices.end());
+        for (Eigen::Index f = 0; f < step.faces.rows(); ++f)
+          for (int k = 0; k < 3; ++k)
+            if (vertices.contains(rows(f, k))) faces.insert(static_cast<int>(f));
+        for (const auto& bound : region.bounds) faces.merge(run_through(bound));
+        for (const auto& bound : region.bounds)
+          sheets[static_cast<std::size_t>(first + bound[0])][static_cast<std::size_t>(bound[1])].insert(
+              faces.begin(), faces.end());
+      }
     }
   }
+  template <class OneOf>
+  bool face_each_other(const OneOf& a, const OneOf& b) const {
+    return std::ranges::any_of(
+        sheets, [&](const std::array<Faces, 2>& s) { return (a(s[0]) && b(s[1])) || (a(s[1]) && b(s[0])); });
+  }
   bool operator()(const CrossingPair& pair) const {
-    return std::ranges::any_of(faces, [&](const std::set<int>& of_overlap) {
-      return of_overlap.contains(static_cast<int>(pair.first)) &&
-             of_overlap.contains(static_cast<int>(pair.second));
-    });
+    const auto is = [](TriangleId t) {
+      return [t](const Faces& faces) { return faces.contains(static_cast<int>(t)); };
+    };
+    return face_each_other<std::function<bool(const Faces&)>>(is(pair.first), is(pair.second));
   }
   bool operator()(const Truth::value_type& contact) const {
     const bool edges = std::get<0>(contact.first);
     const std::array<int, 4>& v = std::get<1>(contact.first);
     const int face = std::get<2>(contact.first);
-    return std::ranges::any_of(faces, [&](const std::set<int>& of_overlap) {
-      const auto any_with = [&](std::initializer_list<int> corners) {
-        return std::ranges::any_of(of_overlap, [&](int f) {
+    const auto with = [&](std::vector<int> corners) {
+      return [this, corners](const Faces& faces) {
+        return std::ranges::any_of(faces, [&](int f) {
           return std::ranges::all_of(corners, [&](int c) { return (rows.row(f).array() == c).any(); });
         });
       };
-      return edges ? any_with({v[0], v[1]}) && any_with({v[2], v[3]})
-                   : any_with({v[0]}) && of_overlap.contains(face);
-    });
+    };
+    using OneOf = std::function<bool(const Faces&)>;
+    if (edges) return face_each_other<OneOf>(with({v[0], v[1]}), with({v[2], v[3]}));
+    return face_each_other<OneOf>(with({v[0]}), [face](const Faces& faces) { return faces.contains(face); });
   }
 };
 
-// Mutations: an overlap's pieces are the faces of its curves alone; pieces of different overlaps are one; the
-// first contact is looked for among those that a search for the first of all came by.
+// Mutations: an overlap's pieces are the faces of its curves alone; all pieces face each other; those that no
+// region bounds are left out; the first contact is looked for among those that a search for the first of all
+// came by.
 TEST(SelfCollision, LeavesOutWhatLiesInOverlapsOfTheStart) {
   std::size_t old = 0, later = 0, left_to_cross = 0;
   for (std::uint64_t seed = 1; seed <= 2 * intervals(); ++seed) {
@@ -201,6 +220,43 @@ TEST(SelfCollision, LeavesOutWhatLiesInOverlapsOfTheStart) {
   EXPECT_GT(old, intervals());
   EXPECT_GT(later, 0u);
   EXPECT_GT(left_to_cross, 0u);
+}
+
+// A hooked strip hangs in a box. Its end meets its own shaft there, which is new although both are in the
+// box.
+TEST(SelfCollision, LeavesInWhatTouchesWithinOnePieceOfAnOverlap) {
+  Rows start(18, 3);
+  start << 0, -0.3, 2, 0, 0.3, 2, 0, -0.3, 0, 0, 0.3, 0, 0, -0.3, -0.5, 0, 0.3, -0.5, 0.6, -0.3, -0.5, 0.6,
+      0.3, -0.5, 0.6, -0.1, 0.3, 0.6, 0.1, 0.35, -1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1,
+      1, -1, 1, 1, 1, 1, 1;
+  FaceRows faces(20, 3);
+  faces << 0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4, 4, 5, 7, 4, 7, 6, 6, 7, 9, 6, 9, 8,  // the strip, and the box
+      10, 12, 13, 10, 13, 11, 14, 15, 17, 14, 17, 16, 10, 11, 15, 10, 15, 14, 12, 16, 17, 12, 17, 13, 10, 14,
+      16, 10, 16, 12, 11, 13, 17, 11, 17, 15;
+  start.col(1).head(10).array() += 0.05;  // so that no edge of the strip meets one of the box
+  Rows end = start;
+  end.row(8).x() = end.row(9).x() = -0.2;
+  SelfCollision::Options options;
+  const auto of_strip = [](const SelfCollision::Contact& c) {
+    return std::ranges::all_of(c.vertices, [](int v) { return v < 10; });
+  };
+  SelfCollision plain(faces, start);
+  const auto overlaps = plain.crossings(start).overlaps;
+  ASSERT_EQ(overlaps.size(), 1u);
+  ASSERT_FALSE(overlaps[0].regions.empty());
+  options.exclude.ongoing = true;
+  SelfCollision body(faces, start, options);
+  EXPECT_TRUE(body.is_free(start, start));
+  for (const bool slides : {false, true}) {  // the shaft slides out of the box, which is old
+    if (slides) end.row(2).z() = end.row(3).z() = 1.2;
+    const SelfCollision::Answer all = body.all_contacts(start, end), every = plain.all_contacts(start, end);
+    EXPECT_FALSE(all.intersects_at_start());
+    EXPECT_GT(all.contacts.size(), 0u);
+    EXPECT_TRUE(std::ranges::all_of(all.contacts, of_strip));
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(all.contacts.size()),
+              std::ranges::count_if(every.contacts, of_strip));
+    EXPECT_EQ(every.contacts.size() > all.contacts.size(), slides);
+  }
 }
 
 TEST(SelfCollision, LeavesNothingOutThatItIsNotToLookFor) {

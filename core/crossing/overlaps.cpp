@@ -77,7 +77,6 @@ class PoseOverlaps {
     std::size_t group;
     CrossingRegion region;
     std::vector<Seed> seeds;
-    std::vector<std::int32_t> images;  // that bound it; sorted
   };
 
   const CrossingCurves& crossing() const { return out_.crossing; }
@@ -183,18 +182,19 @@ class PoseOverlaps {
             side == Side::behind || (side == Side::smaller && is_smaller(groups_[g], behind, before));
         const auto image = static_cast<std::int32_t>(2 * c + node.edge_sheet);
         const auto [at, added] = known.try_emplace({g, is_behind ? behind : before}, regions_.size());
-        if (added) regions_.push_back({g, {}, {}, {}});
+        if (added) regions_.push_back({g, {}, {}});
         Found& found = regions_[at->second];
         found.region.own = groups_[g].own;
         found.region.other = groups_[g].other;
         found.region.side = side;
         found.seeds.push_back({is_behind ? p.behind : p.before, image});
-        found.images.push_back(image);
+        found.region.images.push_back(image);
         region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);
       }
     for (Found& found : regions_) {
-      std::ranges::sort(found.images);
-      found.images.erase(std::unique(found.images.begin(), found.images.end()), found.images.end());
+      std::ranges::sort(found.region.images);
+      found.region.images.erase(std::unique(found.region.images.begin(), found.region.images.end()),
+                                found.region.images.end());
     }
   }
 
@@ -310,7 +310,7 @@ class PoseOverlaps {
       const std::int32_t component = mesh_.component(out.front());
       if (component != mesh_.component(sheet_[index(image)].front())) return component_triangles(component);
     } else if (other != kNone && other != own) {
-      for (const std::int32_t also : regions_[index(other)].images) add(also);
+      for (const std::int32_t also : regions_[index(other)].region.images) add(also);
     }
     return out;
   }
@@ -335,7 +335,7 @@ class PoseOverlaps {
   void measure(std::size_t r) {
     CrossingRegion& region = regions_[r].region;
     if (each_way_) region.way.assign(region.vertices.size(), Vec3::Zero());
-    for (const std::int32_t image : regions_[r].images) {
+    for (const std::int32_t image : regions_[r].region.images) {
       const std::vector<TriangleId> other =
           other_sheet(image, static_cast<std::int32_t>(r), region.other_is_open);
       const SheetDistance to(mesh_, positions_, other);
@@ -350,7 +350,7 @@ class PoseOverlaps {
       }
     }
     point_out(region.depth);
-    region.depth.upper = region.depth.lower + reach_of(regions_[r].images, region.vertices);
+    region.depth.upper = region.depth.lower + reach_of(regions_[r].region.images, region.vertices);
     if (region.other_is_open && region.own == region.other) region.depth.lower = 0;
   }
 
@@ -403,7 +403,8 @@ class PoseOverlaps {
   void group() {
     std::vector<std::int32_t> parent(crossing().curves.size(), -1);
     for (const Found& found : regions_)
-      for (const std::int32_t image : found.images) unite(parent, found.images.front() / 2, image / 2);
+      for (const std::int32_t image : found.region.images)
+        unite(parent, found.region.images.front() / 2, image / 2);
     std::map<std::int32_t, std::size_t> number;
     for (std::size_t c = 0; c < parent.size(); ++c) {
       const auto curve = static_cast<std::int32_t>(c);
@@ -415,7 +416,7 @@ class PoseOverlaps {
         if (region_of_image_[index(image)] == kNone) deepest_of(overlap.depth, depth_of_edges(image));
     }
     for (Found& found : regions_)
-      out_.overlaps[number.at(root_of(parent, found.images.front() / 2))].regions.push_back(
+      out_.overlaps[number.at(root_of(parent, found.region.images.front() / 2))].regions.push_back(
           std::move(found.region));
     for (Overlap& overlap : out_.overlaps) {
       std::ranges::stable_sort(overlap.regions, std::ranges::greater{},

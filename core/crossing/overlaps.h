@@ -40,8 +40,9 @@ struct CrossingRegion {
   // beyond. The distance is then that to the other component, or within one component to the curves'
   // triangles alone; there the depth is an upper bound, and `lower` is 0.
   bool other_is_open = false;
-  std::vector<VertexId> vertices;   // from the curves inwards
-  std::vector<std::int32_t> image;  // [vertices]
+  std::vector<std::int32_t> images;  // that bound it; sorted
+  std::vector<VertexId> vertices;    // from the curves inwards
+  std::vector<std::int32_t> image;   // [vertices]
   std::vector<Vec3> way;  // [vertices], from each to the nearest point of the other sheet; if asked for
   double area = 0;        // a third of each triangle for each of its corners here
   CrossingDepth depth;

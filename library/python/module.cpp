@@ -175,6 +175,10 @@ PYBIND11_MODULE(_cscd, module) {
           "[segments, 3] float, or one more row where the curve is not closed: the ends of the segments.");
   py::class_<Crossings::Region>(module, "Region", "What curves cut off one sheet.")
       .def_property_readonly(
+          "bounds", [](const Crossings::Region& r) { return table_of(r.bounds); },
+          "[bounds, 2] int: a curve of the overlap that bounds it, and the column of that curve's faces on "
+          "whose sheet it lies.")
+      .def_property_readonly(
           "vertices", [](const Crossings::Region& r) { return array_of(r.vertices); },
           "[vertices] int, from the curves inwards.")
       .def_property_readonly(

@@ -96,11 +96,13 @@ class CSCD_EXPORT SelfCollision {
     int rings = 0;             // vertices joined by at most so many edges do not collide
     double rest_distance = 0;  // nor do vertices that are nearer than this in the reference positions; finite
     // Whether a step leaves out what lies within an overlap of its start (crossings()): crossings and
-    // contacts between two faces that both belong to the overlap, because a curve runs through the face or a
-    // region has a vertex of the face. What is left is new. Contacts with obstacles always count. Candidates,
-    // bounds of vertices and true_motion() keep no account of this. Needs Options::check_start. From a start
-    // with overlaps, a step takes the time of crossings() on top, and where the first contact is old, that of
-    // all_contacts().
+    // contacts between two faces on the two sheets of one of its curves. A face is on a sheet of a curve
+    // because the curve runs through it there, or because it belongs to a region which that curve bounds
+    // there: it has a vertex in the region, or is run through by a curve that bounds it. What is left is new:
+    // what touches between two fingers that are both in a thigh, too. Contacts with obstacles always count.
+    // Candidates, bounds of vertices and true_motion() keep no account of this. Needs Options::check_start.
+    // From a start with overlaps, a step takes the time of crossings() on top, and where the first contact is
+    // old, that of all_contacts().
     bool ongoing = false;
   };
 
@@ -189,6 +191,9 @@ class CSCD_EXPORT SelfCollision {
     };
     // What curves cut off one sheet.
     struct Region {
+      // The curves of the overlap that bound it, and 0 or 1: on its sheet lies the first or the second face
+      // of each pair of the curve's `faces`.
+      std::vector<std::array<int, 2>> bounds;
       std::vector<int> vertices;  // from the curves inwards
       // Of each vertex, the way to the nearest point of what the same curves cut off the other sheet, and how
       // long it is. A repair moves vertices along their ways.

@@ -48,9 +48,11 @@ class Exclusions(_cscd.Exclusions):
     rings: vertices that are joined by at most so many edges do not collide.
     rest_distance: nor do vertices nearer than this in the reference positions.
     ongoing: whether a step leaves out what lies within an overlap of its start (crossings()): crossings and contacts
-        between two faces that both belong to the overlap, because a curve runs through the face or a region has a vertex
-        of the face. What is left is new. Contacts with obstacles always count. candidates(), vertex_bounds() and
-        true_motion() keep no account of this. Needs check_start.
+        between two faces on the two sheets of one of its curves. A face is on a sheet of a curve because the curve runs
+        through it there, or because it belongs to a region which that curve bounds there: it has a vertex in the region,
+        or is run through by a curve that bounds it. What is left is new: what touches between two fingers that are both
+        in a thigh, too. Contacts with obstacles always count. candidates(), vertex_bounds() and true_motion() keep no
+        account of this. Needs check_start.
     """
 
     def __init__(self, *, rigid=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,

@@ -79,6 +79,10 @@ class SelfCollision(unittest.TestCase):
         self.assertGreaterEqual(found[0].depth_bound, found[0].depth)
         region = found[0].regions[0]
         self.assertEqual(region.distances.max(), region.depth)
+        (number, column), = region.bounds
+        self.assertEqual(number, 0)
+        through = curve.faces[:, column]
+        self.assertTrue(np.isin(region.vertices, self.faces[through]).any())
         np.testing.assert_allclose(np.linalg.norm(region.ways, axis=1), region.distances)
         self.assertEqual(found[0].gradient.shape, (len(found[0].vertices), 3))
         np.testing.assert_allclose(found[0].length,
