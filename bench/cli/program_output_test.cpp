@@ -164,6 +164,7 @@ TEST_F(ProgramOutput, IsRefusedBeforeTheWorkAndLeavesNothing) {
   expect_refused(run("cscd export long no/such.h5"), "cannot be created");
   expect_refused(run("touch here.h5; cscd export long here.h5"), "exists");
   expect_refused(run("cscd run --scene all --json -"), "several records");
+  expect_refused(run("cscd run --scene small --input few --json x.json"), "both small and few are given");
   EXPECT_EQ(files(), "here.h5 here.json");
 }
 

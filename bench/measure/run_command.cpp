@@ -244,8 +244,7 @@ void add_replay_options(CLI::App& command, ReplayRequest& request) {
           },
           kInputHelp)
       ->allow_extra_args(false)
-      ->type_name("TEXT")
-      ->default_str(request.scene);
+      ->option_text("TEXT=" + request.scene);
   command
       .add_option("--strategy", request.strategies,
                   "strategies or groups of them, with commas between; default all without a group. "

@@ -1,0 +1,30 @@
+#include "bench/query/input/input.h"
+
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <string>
+
+#include "core/base/error.h"
+
+namespace cscd::bench {
+namespace {
+
+// The message with which work about the input walk.fbx fails.
+std::string said(const std::string& what) {
+  try {
+    name_input("walk.fbx", [&] { throw InputError(what); });
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Mutations: the name is put before every message; other faults are taken for faults of the input.
+TEST(NameInput, LetsFaultsOfAnInputBeginWithItsName) {
+  EXPECT_EQ(said("no frame moves it"), "walk.fbx: no frame moves it");
+  EXPECT_EQ(said("cannot read walk.fbx"), "cannot read walk.fbx");
+  EXPECT_THROW(name_input("walk.fbx", [] { throw std::logic_error("a fault of ours"); }), std::logic_error);
+}
+
+}  // namespace
+}  // namespace cscd::bench
