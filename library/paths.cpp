@@ -79,7 +79,7 @@ SelfCollision::PathsAnswer answer_paths(const SelfCollision::Paths& paths, doubl
   TrueMotionOptions options = true_motion_options(mean_edge(setup.mesh, setup.reference));
   if (resolution > 0) options.resolution = resolution;
   TrueMotion motion(callers, setup, kDrvbcFastComplete, options);
-  if (!motion.embedded_at(from))
+  if (motion.crossing_at(from))
     return {SelfCollision::PathsAnswer::Verdict::intersects_at_start, from, from, 0, {-1, -1}};
   return written(motion.answer(from, to));
 }

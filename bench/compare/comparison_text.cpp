@@ -62,19 +62,15 @@ std::string tally(const std::vector<Finding>& findings) {
   return out;
 }
 
-std::string counted(std::size_t count, const std::string& one) {
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 std::size_t losses(const Comparison& c) {
   return static_cast<std::size_t>(std::ranges::count_if(c.truth, &TruthFinding::is_lost));
 }
 
 std::string truth_line(const Comparison& c) {
-  const std::string of = " in " + counted(c.compared_answers, "answer");
+  const std::string of = " in " + many(c.compared_answers, "answer");
   if (losses(c) > 0) return std::to_string(losses(c)) + (losses(c) == 1 ? " loss" : " losses") + of;
   if (c.compared_answers == 0) return "not compared";
-  return c.truth.empty() ? "the same" + of : "nothing lost" + of + "; " + counted(c.truth.size(), "change");
+  return c.truth.empty() ? "the same" + of : "nothing lost" + of + "; " + many(c.truth.size(), "change");
 }
 
 std::string counters_line(const Comparison& c) {
@@ -126,7 +122,7 @@ std::string verdict_line(const Comparison& c) {
     case ComparisonVerdict::worse: {
       std::string what;
       const auto add = [&](std::size_t count, const std::string& one) {
-        if (count > 0) what += (what.empty() ? ": " : ", ") + counted(count, one);
+        if (count > 0) what += (what.empty() ? ": " : ", ") + many(count, one);
       };
       add(worse(c.counters), "counter");
       add(worse(c.footprint), "footprint");

@@ -13,6 +13,7 @@
 #include "bench/query/options/answer_options.h"
 #include "bench/query/options/model_options.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "core/detect/start/embedding.h"
 #include "scenes/character/pieces.h"
 
@@ -246,7 +247,7 @@ void print(const json& document) {
     std::printf("  component %zu%s: %zu triangles, %zu vertices", c["index"].get<std::size_t>(),
                 c["chosen"].get<bool>() ? " (used unless another is named)" : "",
                 c["triangles"].get<std::size_t>(), c["vertices"].get<std::size_t>());
-    if (!c["bones"].is_null()) std::printf(", %zu bones", c["bones"].get<std::size_t>());
+    if (!c["bones"].is_null()) std::printf(", %s", many(c["bones"].get<std::size_t>(), "bone").c_str());
     std::printf("; %s\n      %s\n%s", shape.c_str(), embedding_text(c["embedding"]).c_str(),
                 in_full ? strategies_text(c["strategies"]).c_str() : "");
   }
@@ -276,8 +277,8 @@ void inspect(InspectOptions options) {
     document["import"] = import_json(*input.import);
     document["clips"] = document["import"]["clips"];
   } else {
-    std::printf("%s: %zu frames, %zu bones\n", options.input.c_str(), input.clip->frame_count(),
-                input.clip->header().bone_parent.size());
+    std::printf("%s: %s, %s\n", options.input.c_str(), many(input.clip->frame_count(), "frame").c_str(),
+                many(input.clip->header().bone_parent.size(), "bone").c_str());
   }
   document["components"] = json::array();
   for (std::size_t p = 0; p < pieces.size(); ++p) {

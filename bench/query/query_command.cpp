@@ -24,6 +24,7 @@
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -190,8 +191,8 @@ class AllVerdicts {
     const std::size_t count = answered() + still_.size();
     if (!apart_.empty()) text += "; all of this apart from ";
     for (const std::string& each : apart_) text += (each == *apart_.begin() ? "" : " and ") + each;
-    return std::filesystem::path(input).filename().string() + ", " + std::to_string(count) +
-           (count == 1 ? " clip in all:" : " clips in all:") + text + ".";
+    return std::filesystem::path(input).filename().string() + ", " + many(count, "clip") + " in all:" + text +
+           ".";
   }
   // The clips that are close are counted where there is a thickness.
   json as_json(const std::string& input, bool is_thick) const {
@@ -223,8 +224,8 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
                      std::to_string(seen.clips.size()) + "; name one with --clip (cscd inspect lists them)");
   if (!options.preparation.empty())
     throw InputError("--preparation: is for one clip; name one with --clip (cscd inspect lists them)");
-  std::printf("%s (%s)\n  %zu clips, %s\n%s", options.input.c_str(), seen.format.c_str(), seen.clips.size(),
-              rate_text(seen).c_str(), surface_text(seen).c_str());
+  std::printf("%s (%s)\n  %s, %s\n%s", options.input.c_str(), seen.format.c_str(),
+              many(seen.clips.size(), "clip").c_str(), rate_text(seen).c_str(), surface_text(seen).c_str());
   Said all;
   all.document = {{"schema", kSchema}, {"input", options.input}, {"clips", json::array()}};
   all.document["import"] = import_json(seen);

@@ -15,6 +15,7 @@ class TrueMotionOption : public QueryProgram {};
 json of_lines(json document) {
   document["summary"].erase("ms");
   document["summary"].erase("true_motion");
+  document["summary"].erase("sentence");
   for (json& interval : document["intervals"]) {
     interval.erase("ms");
     interval.erase("true_motion");
@@ -87,6 +88,33 @@ TEST_F(TrueMotionOption, SaysNothingOfWhatItDoesNotAsk) {
   EXPECT_EQ(summary["not_asked"], crossed["intervals"].size()) << summary;
   EXPECT_TRUE(summary["deviation"].is_null());
   EXPECT_TRUE(crossed["intervals"][0]["true_motion"]["deviation"].is_null());
+}
+
+// Between two frames of one pose the figure jumps into a hug and out again. Mutations: the first sentence is
+// about straight lines; a crossing after a jump has no pair.
+TEST_F(TrueMotionOption, SaysFirstWhatTheTrueMotionDoes) {
+  scenes::Character figure = scenes::walking_figure();
+  scenes::Animation& hug = figure.animations[1];
+  for (scenes::Channel& channel : hug.channels) {
+    const auto open = channel.rotations.front().value,
+               closed = channel.rotations[channel.rotations.size() / 2].value;
+    channel.rotations = {{0, open}, {0.25, closed}, {0.5, open}, {1, open}};
+  }
+  hug.start = 0, hug.seconds = 1;
+  json gltf = json::parse(scenes::to_gltf(figure));
+  for (json& sampler : gltf["animations"][1]["samplers"]) sampler["interpolation"] = "STEP";
+  put("jump.gltf", gltf.dump());
+  const std::string command = "jump.gltf --clip hug --fps 1 --true-motion";
+  const json found = answer(command);
+  EXPECT_EQ(found["summary"]["verdict"], "clear");
+  EXPECT_EQ(found["summary"]["true_motion"]["first"]["from"], 0.25);
+  EXPECT_TRUE(found["intervals"][0]["true_motion"]["pair"].is_array());
+  const Ran ran = run("cscd query " + command + " --fail-on-contact");
+  EXPECT_EQ(ran.status, 3);
+  for (const char* said :
+       {"crosses itself in 1 of 1 intervals of its true motion", "first at frame 0.250 (0.25 s)"})
+    EXPECT_NE(ran.out.find(said), std::string::npos) << ran.out;
+  EXPECT_EQ(found["summary"]["sentence"].get<std::string>().find("does not"), std::string::npos);
 }
 
 // A frame lies between two keys that are a millionth of a second apart, and one of them stands for it.

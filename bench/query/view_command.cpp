@@ -76,12 +76,16 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   out["interval"] = answer.index - first;
   out["at"] = out[own.parts_again ? "from" : "to"];
   std::string text = "true motion: ";
+  const bool crosses = own.verdict == TrueVerdict::intersects_at_start;
   if (own.pair) {
     const NamePair met{names.place_of(own.pair->first), names.place_of(own.pair->second)};
-    text += met.first + (own.verdict == TrueVerdict::touches ? " touches " : " comes close to ") +
+    text += met.first +
+            (crosses                               ? " crosses "
+             : own.verdict == TrueVerdict::touches ? " touches "
+                                                   : " comes close to ") +
             (met.first == met.second ? "itself" : met.second);
   } else {
-    text += to_string(own.verdict);
+    text += crosses ? "crosses at its start" : std::string(to_string(own.verdict));
   }
   const bool lines = answer.verdict != IntervalVerdict::clear;
   if (differs(answer)) text += lines ? ", where straight lines touch" : ", where straight lines do not";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstddef>
 #include <cstdio>
 #include <string>
 
@@ -18,6 +19,12 @@ inline std::string short_text(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", number);
   return text;
+}
+
+// "1 frame", "2 frames", "3 vertices".
+inline std::string many(std::size_t count, const std::string& one) {
+  if (one == "vertex" && count != 1) return std::to_string(count) + " vertices";
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
 }
 
 }  // namespace cscd

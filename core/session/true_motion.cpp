@@ -128,7 +128,7 @@ bool TrueMotion::is_out(const FeaturePair& pair) const {
          (options_.left_out != nullptr && options_.left_out->explains(pair));
 }
 
-bool TrueMotion::embedded_at(double time) {
+std::optional<CrossingPair> TrueMotion::crossing_at(double time) {
   Places here;
   place_all(time, here);
   Crossings crossings;
@@ -136,8 +136,9 @@ bool TrueMotion::embedded_at(double time) {
                      .crossings = &crossings,
                      .most_crossings = std::numeric_limits<std::size_t>::max()},
                     found_);
-  return std::ranges::all_of(crossings.pairs,
-                             [&](const CrossingPair& pair) { return is_out(triangles_of(pair)); });
+  const auto first = std::ranges::find_if(
+      crossings.pairs, [&](const CrossingPair& pair) { return !is_out(triangles_of(pair)); });
+  return first == crossings.pairs.end() ? std::nullopt : std::optional(*first);
 }
 
 TrueAnswer TrueMotion::answer(double from, double to) {
@@ -165,9 +166,10 @@ TrueAnswer TrueMotion::answer(double from, double to) {
     place_all(begin, after);
     if (more && !all_finite(after.error)) {
       more = give_up(begin, begin);
-    } else if (more && !embedded_at(begin)) {
+    } else if (const auto pair = more ? crossing_at(begin) : std::nullopt) {
       answer_.verdict = TrueVerdict::intersects_at_start;
       answer_.from = answer_.to = begin;
+      answer_.pair = pair;
       more = false;
     }
     more = more && begin < to;

@@ -34,7 +34,7 @@ struct TrueAnswer {
   // Of `close`: no more than this far apart at some time of the span; of all spans the largest such distance.
   double within = 0;
   // Two triangles that come together there; of `touches`, an edge of one of them pierces the other at `to`,
-  // or at `from` where `parts_again`, and not at the other end.
+  // or at `from` where `parts_again`, and not at the other end; after a jump, two that cross there.
   std::optional<CrossingPair> pair = {};
   bool parts_again = false;
   double deviation = 0;    // the largest bound of any vertex between two jumps; may be infinity
@@ -73,9 +73,9 @@ class TrueMotion {
 
   // Answers a span at whose start nothing crosses but what is left out.
   TrueAnswer answer(double from, double to);
-  // Whether nothing crosses at a time but what is left out. Where places are not known, whatever it says, an
+  // Two triangles that cross at a time and are not left out. Where places are not known, whatever it says, an
   // answer about a span that starts or ends there is undecided.
-  bool embedded_at(double time);
+  std::optional<CrossingPair> crossing_at(double time);
   // The positions of all vertices at a time that was asked about.
   std::span<const Vec3> positions_at(double time);
 

@@ -96,7 +96,7 @@ TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
     options.left_out = &left_out;
     TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
                       kWatched, options);
-    ASSERT_TRUE(motion.embedded_at(0));
+    ASSERT_FALSE(motion.crossing_at(0));
     told_embedded = 0;
     const TrueAnswer answer = motion.answer(0, 1);
     EXPECT_EQ(answer.verdict, TrueVerdict::clear);

@@ -3,7 +3,7 @@ import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
 import { coverOf } from "./painter.js";
 import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
-import { CLOSE, contactWord, isBad, many, markOf, VERDICTS } from "./words.js";
+import { CLOSE, contactWord, isBad, isOpen, many, markOf, VERDICTS } from "./words.js";
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
@@ -11,7 +11,7 @@ export class Captions {
   // The sentences are made where the answers are (bench/query/answer/answer_text.h).
   sayVerdict({ summary, details }) {
     const verdict = byId("verdict");
-    verdict.className = isBad(summary) ? "bad" : summary.undecided > 0 ? "" : "good";
+    verdict.className = isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(summary.sentence));
     byId("details").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;

@@ -32,7 +32,8 @@ export class MomentList {
     this.rowOf = new Map();  // by interval
     const moments = momentsOf(strategy);
     const what = strategy.close ? "close pairs" : "contact";
-    this.title.textContent = moments.length ? `${many(moments.length, "moment")} with ${what}` : `No ${what}`;
+    const lines = this.recording.truths ? " along straight lines" : "";
+    this.title.textContent = (moments.length ? `${many(moments.length, "moment")} with ${what}` : `No ${what}`) + lines;
     const rows = moments.slice(0, MOST_ROWS).map((moment) => {
       const { interval } = moment, row = element("button"), counts = [];
       row.moment = moment;
@@ -45,7 +46,7 @@ export class MomentList {
       return row;
     });
     if (moments.length > MOST_ROWS) rows.push(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
-    if (moments.length === 0) rows.push(element("p", strategy.close ? "Nothing comes close." : "Nothing touches."));
+    if (moments.length === 0) rows.push(element("p", (strategy.close ? "Nothing comes close" : "Nothing touches") + lines + "."));
     const events = this.recording.events.slice(0, MOST_EVENTS).map((event) => {
       const row = element("button", undefined, "event");
       row.moment = { interval: event.deepest, event };

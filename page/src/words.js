@@ -5,11 +5,16 @@ export const CLOSE = 4;
 // What a contact is called: with a thickness, it is a pair that comes close.
 export const contactWord = (strategy) => (strategy.close ? "close pair" : "contact");
 // What the features of a contact do.
-export const contactVerb = (strategy, contact) => (contact === undefined || !strategy.close || strategy.contact_touches[contact] ? "touches" : "comes close to");
+export const contactVerb = (strategy, contact) => {
+  if (contact === undefined || !strategy.close) return "touches";
+  return strategy.contact_touches[contact] ? "comes close to and touches" : "comes close to";
+};
 
-// Before a verdict, by the summary of its answers.
-export const isBad = (summary) => summary.touches + summary.intersects_at_start + (summary.close || 0) > 0;
-export const markOf = (summary) => (isBad(summary) ? "\u2716" : summary.undecided > 0 ? "?" : "\u2714");
+// Before a verdict, by the summary of its answers: of the true motion where that was asked for. That is close where nobody can
+// tell whether it touches.
+export const isBad = ({ true_motion: own, ...lines }) => (own ? own.touches + own.intersects_at_start : lines.touches + lines.intersects_at_start + (lines.close || 0)) > 0;
+export const isOpen = ({ true_motion: own, undecided }) => (own ? own.undecided + own.close : undecided) > 0;
+export const markOf = (summary) => (isBad(summary) ? "\u2716" : isOpen(summary) ? "?" : "\u2714");
 
 const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
 export const many = (count, one) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;

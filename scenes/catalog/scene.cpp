@@ -254,7 +254,9 @@ fs::path scenes_folder() {
     if (const auto found = nearest_scenes(program.parent_path())) return *found;
   if (const auto found = installed_scenes()) return *found;
   throw InputError(
-      "no folder scenes/ here or above; run inside the repository or let CSCD_SCENES name the folder");
+      "scenes are looked for in a folder scenes/, and there is none here or above; run inside the "
+      "repository, "
+      "let CSCD_SCENES name the folder, or give a file");
 }
 
 Scene parse_scene(std::string_view name, const std::string& text, const std::string& where,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::scenes {
 namespace {
@@ -90,8 +91,9 @@ std::size_t choose_clip(const Character& character, const std::vector<bool>& use
     if (moves_surface(character, all[i], used, diagonal, fps)) return i;
   if (options.from_bind_pose) return 0;
   throw InputError(
-      "none of its clips moves the surface: " + listed_clips(character) +
-      "; pass --from-bind-pose to move from the bind pose to one of them, or name one with --clip");
+      "none of its clips moves the surface: " + listed_clips(character) + ", at " + exact_text(fps) +
+      " a second; give more frames with --fps, pass --from-bind-pose to move from the bind pose to "
+      "one of them, or name one with --clip");
 }
 
 Frames survey(const Character& character, const Pose& bound) {

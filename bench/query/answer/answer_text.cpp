@@ -24,11 +24,6 @@ std::string frame_text(double value) {
   return digits;
 }
 
-std::string many(std::size_t count, const std::string& one) {
-  if (one == "vertex" && count != 1) return std::to_string(count) + " vertices";
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 std::string moment_text(const Input& input, const ClipMoment& moment) {
   const std::optional<double> seconds = second_of(input, moment);
   std::string text = "frame " + frame_text(frame_of(input, moment));
@@ -161,7 +156,20 @@ std::string with_itself_or_in(const NamePair& both, const char* in) {
   return both.first + (both.first == both.second ? " with itself: " : in + both.second + ": ");
 }
 
-// The predicate of a verdict: one class a line.
+std::string apart_text(const AnswerSummary& s) {
+  std::string out;
+  for (const std::string& each : verdict_exceptions(s))
+    out += (out.empty() ? ", apart from " : " and ") + each;
+  return out;
+}
+
+std::string frames_text(const ClipAnswer& answer) {
+  const AnswerSummary& s = answer.summary;
+  return " in frames " + frame_text(frame_of(answer.input, {s.first_index, 0})) + " to " +
+         frame_text(frame_of(answer.input, {s.last_index, 1}));
+}
+
+// The predicate of a verdict about straight lines: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
   const AnswerSummary& s = answer.summary;
@@ -169,12 +177,9 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
                     cross = s.count(IntervalVerdict::intersects_at_start),
                     undecided = s.count(IntervalVerdict::undecided);
-  std::string apart;
-  for (const std::string& each : verdict_exceptions(s))
-    apart += (apart.empty() ? ", apart from " : " and ") + each;
+  const std::string apart = apart_text(s);
   if (!collides(s.verdict())) {
-    const std::string frames = " in frames " + frame_text(frame_of(input, {s.first_index, 0})) + " to " +
-                               frame_text(frame_of(input, {s.last_index, 1}));
+    const std::string frames = frames_text(answer);
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
@@ -200,13 +205,15 @@ std::string verdict_predicate(const ClipAnswer& answer) {
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
-  std::string counts, thickness, worst, met, ignored, rest, coinciding, proven, rate, choice;
+  std::string lines, counts, thickness, worst, met, ignored, rest, coinciding, proven, rate, choice;
 };
 
 Sentences sentences(const ClipAnswer& answer) {
   const Input& input = answer.input;
   const AnswerSummary& s = answer.summary;
   Sentences out;
+  if (input.motion)
+    out.lines = "straight lines between frames, of which the rest speaks: it " + verdict_predicate(answer);
   out.thickness = thickness_text(answer);
   out.counts =
       many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) + " clear, " +
@@ -280,7 +287,7 @@ std::string event_text(const Input& input, const OverlapEvent& event) {
   constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
   out += event.depth.lower > kRounding * event.depth.upper
              ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
-             : most + " deep";
+             : most + " deep, depth not known";
   if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
   const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
   if (event.first == event.last) return out + ", frame " + frame(event.first);
@@ -297,7 +304,7 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   for (const OverlapEvent& event : answer.events)
     lower = std::max(lower, event.depth.lower), upper = std::max(upper, event.depth.upper);
   if (lower > length)
-    return {true, limit + "fails, because something lies " + distance_text(answer.input, lower) + " deep"};
+    return {true, limit + "fails, because something lies deeper: " + distance_text(answer.input, lower)};
   std::string text = limit + "passes: nothing is known to lie deeper";
   if (upper > length) text += ", and something may lie up to " + distance_text(answer.input, upper) + " deep";
   text += "; the clip's last pose was not looked at";
@@ -306,7 +313,11 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
 }
 
 std::string verdict_sentence(const ClipAnswer& answer) {
-  return subject_of(answer.input) + " " + verdict_predicate(answer) + ".";
+  const std::string predicate =
+      answer.input.motion
+          ? true_predicate(answer.input, answer.true_motion, frames_text(answer), apart_text(answer.summary))
+          : verdict_predicate(answer);
+  return subject_of(answer.input) + " " + predicate + ".";
 }
 
 namespace {
@@ -342,12 +353,11 @@ std::string events_text(const ClipAnswer& answer) {
 std::string clip_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   const Sentences said = sentences(answer);
-  std::string out = verdict_sentence(answer) + "\n";
-  for (const std::string* line : {&said.counts, &said.thickness, &said.worst, &said.met, &said.ignored,
-                                  &said.rest, &said.coinciding, &said.proven})
+  std::string out = verdict_sentence(answer) + "\n" + true_motion_text(answer.input, answer.true_motion);
+  for (const std::string* line : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met,
+                                  &said.ignored, &said.rest, &said.coinciding, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
-  out += true_motion_text(answer.input, answer.true_motion);
   return out + "  took " + short_text(s.wall_ms) + " ms: " + short_text(s.query_ms) + " to find contacts, " +
          short_text(s.embedding_ms) + " to know what crosses at the starts; " +
          (s.overlap_ms > 0 ? short_text(s.overlap_ms) + " ms to measure what lies in what, " : "") +
@@ -371,8 +381,8 @@ std::string brief_clip_text(const ClipAnswer& answer) {
 std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
-  for (const std::string* sentence : {&said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest,
-                                      &said.coinciding, &said.proven, &said.rate, &said.choice}) {
+  for (const std::string* sentence : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.ignored,
+                                      &said.rest, &said.coinciding, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

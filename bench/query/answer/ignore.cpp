@@ -41,7 +41,7 @@ std::set<std::string> names_of(const Input& input, const SurfaceNames& names, Tr
     constexpr std::size_t kListed = 12;
     hint = "; there are ";
     for (std::size_t i = 0; i < std::min(kListed, views.size()); ++i)
-      hint += (i > 0 ? ", " : "") + std::string(views[i]);
+      hint += (i > 0 ? ", '" : "'") + std::string(views[i]) + "'";
     if (views.size() > kListed) hint += " and " + std::to_string(views.size() - kListed) + " more";
   }
   throw InputError("--ignore " + text + ": no bone, part or mesh is called '" + unknown + "'" + hint);

@@ -61,8 +61,8 @@ bool meets(TrueVerdict verdict) {
 }
 
 // Of a span that starts crossed no more is asked, and nothing is known of how far it leaves straight lines.
-TrueAnswer crossing_at(double time) {
-  TrueAnswer out{.verdict = TrueVerdict::intersects_at_start, .from = time, .to = time};
+TrueAnswer crossing_at(double time, std::optional<CrossingPair> pair = {}) {
+  TrueAnswer out{.verdict = TrueVerdict::intersects_at_start, .from = time, .to = time, .pair = pair};
   out.deviation = std::numeric_limits<double>::infinity();
   return out;
 }
@@ -78,8 +78,9 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
     return std::string(digits);
   };
   const TrueAnswer& answer = first.answer;
-  return "at frame " + frame(answer.from) + " to " + frame(answer.to) + " (" + short_text(answer.to) +
-         " s): " + first.names.first + " touches " +
+  const bool crosses = answer.verdict == TrueVerdict::intersects_at_start;
+  return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
+         " (" + short_text(answer.to) + " s): " + first.names.first + (crosses ? " crosses " : " touches ") +
          (first.names.first == first.names.second ? "itself" : first.names.second);
 }
 
@@ -112,8 +113,8 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   } else {
     // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
     // because that of the frame is another by rounding.
-    const bool starts_embedded = clear_until_ == from || motion_.embedded_at(from);
-    answer.motion = starts_embedded ? motion_.answer(from, to) : crossing_at(from);
+    const auto pair = clear_until_ == from ? std::nullopt : motion_.crossing_at(from);
+    answer.motion = pair ? crossing_at(from, pair) : motion_.answer(from, to);
   }
   clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
   answer.motion_ms = asking.milliseconds();
@@ -155,10 +156,39 @@ void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
   else
     ++without_bound;
   if (differs(answer)) ++(meets(own.verdict) ? only_true : only_straight);
-  if (own.verdict != TrueVerdict::touches || !own.pair) return;
-  const Meeting here{answer.index, own, {names.place_of(own.pair->first), names.place_of(own.pair->second)}};
+  std::optional<CrossingPair> pair = own.pair;
+  if (!pair && !answer.start.pairs.empty()) pair = answer.start.pairs.front();
+  if (!meets(own.verdict) || !pair) return;
+  const Meeting here{answer.index, own, {names.place_of(pair->first), names.place_of(pair->second)}};
   if (!first) first = here;
   if (!first_missed && differs(answer)) first_missed = here;
+}
+
+std::string true_predicate(const Input& input, const TrueSummary& s, const std::string& frames,
+                           const std::string& apart) {
+  const auto in = [&](TrueVerdict verdict) {
+    return " in " + std::to_string(s.count(verdict)) + " of " + std::to_string(s.intervals) +
+           " intervals of its true motion";
+  };
+  const std::size_t touch = s.count(TrueVerdict::touches);
+  std::string text;
+  switch (s.verdict()) {
+    case IntervalVerdict::intersects_at_start:
+      text = "crosses itself" + in(TrueVerdict::intersects_at_start) +
+             (touch > 0 ? " and touches itself in " + std::to_string(touch) + " more" : "");
+      break;
+    case IntervalVerdict::touches:
+      text = "touches itself" + in(TrueVerdict::touches);
+      break;
+    case IntervalVerdict::close:
+      return "comes too close to itself to tell whether it touches" + in(TrueVerdict::close) + apart;
+    case IntervalVerdict::undecided:
+      return "may touch itself, which is undecided" + in(TrueVerdict::undecided) + apart;
+    case IntervalVerdict::clear:
+      return "does not touch itself in its true motion" + frames + apart;
+  }
+  text += apart;
+  return s.first ? text + ", first " + first_text(input, *s.first) : text;
 }
 
 std::string true_motion_text(const Input& input, const TrueSummary& s) {
@@ -173,22 +203,23 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
   std::string out = "  true motion: " + part(TrueVerdict::clear, "clear") +
                     part(TrueVerdict::touches, "touch") + part(TrueVerdict::close, "too close to tell") +
                     part(TrueVerdict::undecided, "undecided") +
-                    part(TrueVerdict::intersects_at_start, "cross at their start");
+                    part(TrueVerdict::intersects_at_start, "cross at their start or after a jump");
   out.resize(out.size() - 2);
-  if (s.first) out += "; first contact " + first_text(input, *s.first);
-  out += "\n  straight lines, by which everything above is answered, ";
-  if (s.only_true + s.only_straight == 0)
-    out += "touch in the same intervals";
-  else
-    out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals, and have some in " +
+  out += "\n  straight lines between frames ";
+  if (s.only_true > 0) out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals";
+  if (s.first_missed && s.first_missed->interval != s.first->interval)
+    out += ", first " + first_text(input, *s.first_missed);
+  if (s.only_straight > 0)
+    out += (s.only_true > 0 ? "; they have contacts in " : "have contacts in ") +
            std::to_string(s.only_straight) + " in which the true motion has none";
-  if (s.first_missed) out += "; the first that is missed is " + first_text(input, *s.first_missed);
+  if (s.only_true + s.only_straight == 0) out += "agree in every interval in which it is decided";
   if (s.not_asked == s.intervals) {
     out += "\n  every interval starts crossed, and no more is asked of such";
   } else if (s.bounded() == 0) {
     out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
   } else {
-    out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation);
+    out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation) +
+           (s.jumps > 0 ? " between jumps" : "");
     if (input.thickness.edge > 0)
       out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
     if (s.without_bound > 0)
@@ -196,7 +227,8 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
     if (s.not_asked > 0) out += ", apart from " + std::to_string(s.not_asked) + " that start crossed";
   }
   if (s.jumps > 0)
-    out += "; it jumps " + std::to_string(s.jumps) + " times, and nothing is asked of the way across a jump";
+    out += "; it jumps " + std::string(s.jumps == 1 ? "once" : std::to_string(s.jumps) + " times") +
+           ", and nothing is asked of the way across a jump";
   return out + "; this took " + short_text(s.ms) + " ms more\n";
 }
 

@@ -46,7 +46,7 @@ struct TrueSummary {
   double deviation = 0, ms = 0;   // deviation: the largest bound that is finite
   std::size_t without_bound = 0;  // intervals of which a vertex has none as a whole
   std::size_t not_asked = 0;      // intervals that start crossed
-  // The first contact that straight lines do not have, and the first of all.
+  // The first contact or crossing of all, and the first that straight lines do not have.
   struct Meeting {
     std::size_t interval = 0;
     TrueAnswer answer;
@@ -60,6 +60,10 @@ struct TrueSummary {
   void add(const IntervalAnswer& answer, const SurfaceNames& names);
 };
 
+// What the clip does in its true motion, as the predicate of a sentence. `frames` are those that were asked
+// about, and `apart` what is left out, behind a comma.
+std::string true_predicate(const Input& input, const TrueSummary& summary, const std::string& frames,
+                           const std::string& apart);
 // Lines for people, of two blanks and a sentence each; empty where no true motion was asked for and none is
 // known.
 std::string true_motion_text(const Input& input, const TrueSummary& summary);

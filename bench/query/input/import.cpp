@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "scenes/base/temporaries.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
@@ -189,7 +190,8 @@ double second_of_frame(const ImportReport& report, std::size_t frame, std::size_
 }
 
 std::string rate_text(const ImportReport& report) {
-  const std::string rate = number(report.fps) + " frames a second, ";
+  const std::string rate =
+      number(report.fps) + (report.fps == 1 ? " frame a second, " : " frames a second, ");
   if (report.fps_from == scenes::kAsked) return rate + "as asked (--fps)";
   if (report.fps_from == scenes::kStated) return rate + "as the file says";
   if (report.fps_from == scenes::kSpaced) return rate + "as the keys of the file are spaced";
@@ -207,7 +209,7 @@ std::string clip_title(const ImportReport& r) {
   const std::string name = clip->name.empty() ? "clip" : "clip '" + clip->name + "'";
   if (r.clips.size() == 1) return clip->name.empty() ? "its only clip" : name + " (the only one)";
   return name + " (" + ordinal(static_cast<std::size_t>(r.chosen_clip) + 1) + " of " +
-         std::to_string(r.clips.size()) + " clips)";
+         many(r.clips.size(), "clip") + ")";
 }
 
 std::string clip_text(const ImportReport& r) {
@@ -216,16 +218,18 @@ std::string clip_text(const ImportReport& r) {
   if (const ImportReport::Clip* clip = chosen_clip(r)) {
     const std::string title = clip_title(r);
     std::string text = (title.empty() ? "" : title + ": ") + number(clip->seconds) + " s as " +
-                       std::to_string(clip->frames) + " frames, from frame " + number(clip->first_frame) +
-                       " to " + number(frame_at(r, clip->seconds)) + ", " + rate_text(r);
+                       many(static_cast<std::size_t>(clip->frames), "frame") + ", from frame " +
+                       number(clip->first_frame) + " to " + number(frame_at(r, clip->seconds)) + ", " +
+                       rate_text(r);
     if (r.joints > 0)
-      text += "; drives " + std::to_string(clip->driven) + " of " + std::to_string(r.joints) + " bones";
+      text += "; drives " + std::to_string(clip->driven) + " of " +
+              many(static_cast<std::size_t>(r.joints), "bone");
     if (clip->ticks_per_second == 0 && r.joints > 0 && r.format != "glTF 2")
       text += "; the file gives no ticks a second, 25 assumed";
     line(text);
   }
   if (chosen_clip(r) == nullptr && !r.clips.empty())  // a survey
-    line(std::to_string(r.clips.size()) + (r.clips.size() == 1 ? " clip, " : " clips, ") + rate_text(r));
+    line(many(r.clips.size(), "clip") + ", " + rate_text(r));
   if (r.lead_in > 0)
     line("begins with " + std::to_string(r.lead_in) + " frames (" +
          number(static_cast<double>(r.lead_in) / r.fps) +

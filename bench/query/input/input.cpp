@@ -118,7 +118,8 @@ Input open_input(const std::string& name, const ModelOptions& options) {
     clip = std::make_unique<scenes::PointCacheReader>(name);
     up = up_of(clip->header());
   } else {
-    const scenes::Scene scene = scenes::load_scene(name);
+    scenes::Scene scene;
+    name_input(name, [&] { scene = scenes::load_scene(name); });
     clip = clip_of(scene, name);
     bone_names = scenes::bone_names(scene);
     cloth_names = scenes::cloth_names(scene);
