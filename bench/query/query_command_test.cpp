@@ -291,7 +291,7 @@ TEST_F(Query, GivesCopiesAtRestALineOfTheirOwn) {
   EXPECT_TRUE(has(ran.out, ": 4 triangles in one place, 16 pairs that meet; left out of 1 interval"))
       << ran.out;
   EXPECT_TRUE(has(ran.out, "(--keep-rest-crossings counts both)")) << ran.out;
-  EXPECT_FALSE(has(ran.out, "crosses at rest: ")) << ran.out;
+  EXPECT_FALSE(has(ran.out, "\n  crosses at rest")) << ran.out;
 }
 
 // Mutations: the file is written and never read; a strategy without a preparation takes the option.

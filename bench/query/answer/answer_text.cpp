@@ -237,8 +237,12 @@ Sentences sentences(const ClipAnswer& answer) {
                                                            ", with " + many(s.left_out_contacts, "contact") +
                                                            " (--keep-rest-crossings counts both)"
                                                      : "; counted, as asked";
+    // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
+    // for.
+    const bool is_first_frame = input.clip->header().rest.empty();
     if (!rest.crossing.empty())
-      out.rest = "crosses at rest: " +
+      out.rest = std::string("crosses at rest") +
+                 (is_first_frame ? " (the first frame, as the input names no pose at rest): " : ": ") +
                  listed(rest.crossing,
                         [](const NamePair& both, std::size_t count) {
                           return with_itself_or_in(both, " in ") + many(count, "pair");
