@@ -10,7 +10,7 @@ class BruteCuller : public Culler {
  public:
   explicit BruteCuller(std::int32_t triangles) : triangles_(triangles) {}
 
-  bool knows_distance() const override { return true; }
+  bool knows_distance(const Thickness& /*thickness*/) const override { return true; }
   bool keeps_all() const override { return true; }
   void refit(const Step&) override {}
   CullCounts cull(TrianglePairSink& sink) override {

@@ -33,7 +33,7 @@ class RvbcCuller : public Culler {
     std::iota(unmerged_.begin(), unmerged_.end(), 0);
   }
 
-  bool knows_distance() const override { return true; }
+  bool knows_distance(const Thickness& thickness) const override { return thickness.is_uniform(); }
   void refit(const Step& step) override { hierarchy_.refit(step.motion, step.thickness.largest()); }
 
   bool classify(const Step& step) override {

@@ -349,10 +349,12 @@ class ComposedDetector : public Detector {
 
   Report detect(const Step& step, ContactSet& out) override {
     out.clear();
-    if (!step.thickness.is_zero() && !culler_->knows_distance())
-      throw InputError(
-          "this strategy has no proof for a thickness above 0; take base, drvbc, drvbc_fast, drvbc_fast_all "
-          "or drvbc_fast_complete");
+    if (!step.thickness.is_zero() && !culler_->knows_distance(step.thickness))
+      throw InputError(step.thickness.is_uniform()
+                           ? "this strategy has no proof for a thickness above 0; take base, drvbc, "
+                             "drvbc_fast, drvbc_fast_all or drvbc_fast_complete"
+                           : "this strategy has no proof for pairs of different thickness; take base or "
+                             "drvbc_fast_complete");
     Step known = step;
     // A start that is to be looked at is not taken for granted. The first contact may be an excluded one, and
     // then says nothing of the others.

@@ -78,7 +78,7 @@ class Culler {
 
   // Whether its proofs hold for a thickness above 0. Where they do, "apart" means farther than the thickness
   // in every comment below.
-  virtual bool knows_distance() const { return false; }
+  virtual bool knows_distance(const Thickness& /*thickness*/) const { return false; }
   // Computes the bounds of this interval. Stage `refit`.
   virtual void refit(const Step& step) = 0;
   // Does what refit() does, where only pairs that may touch until a time are needed, which is at most 1.

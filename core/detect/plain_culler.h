@@ -20,7 +20,7 @@ class PlainCuller : public Culler {
               Pipeline pipeline = Pipeline::vectorised)
       : mesh_(mesh), tree_(build_tree(mesh_, reference)), bounds_(mesh_, tree_, pipeline) {}
 
-  bool knows_distance() const override { return true; }
+  bool knows_distance(const Thickness& /*thickness*/) const override { return true; }
   bool keeps_all() const override { return kAdjacent; }
   void refit(const Step& step) override { bounds_.refit(step.motion, step.thickness.largest() / 2); }
 

@@ -19,12 +19,17 @@ class Thickness {
   // vertices have 0, and must outlive the object.
   explicit Thickness(double all, std::span<const double> of_vertex = {}) : all_(all), of_vertex_(of_vertex) {
     largest_ = all;
-    if (!of_vertex.empty()) largest_ += 2 * std::max(0.0, *std::ranges::max_element(of_vertex));
+    if (of_vertex.empty()) return;
+    const auto [least, most] = std::ranges::minmax_element(of_vertex);
+    largest_ += 2 * std::max(0.0, *most);
+    is_uniform_ = *least == *most;
   }
 
   bool is_zero() const { return largest_ == 0; }
   // The largest thickness that any pair may have.
   double largest() const { return largest_; }
+  // Whether all pairs have the same.
+  bool is_uniform() const { return is_uniform_; }
   // The thickness of one pair.
   double of(const TriangleMesh& mesh, const FeaturePair& pair) const {
     if (of_vertex_.empty()) return all_;
@@ -42,6 +47,7 @@ class Thickness {
   }
 
   double all_ = 0, largest_ = 0;
+  bool is_uniform_ = true;
   std::span<const double> of_vertex_;
 };
 

@@ -35,7 +35,7 @@ class DrvbcCuller : public Culler {
         table_(setup.mesh, hierarchy_.groups(), options.segment_test, setup.pipeline),
         mega_(clusters_, *setup.rig, std::move(kinds), options.gamma, options.cache) {}
 
-  bool knows_distance() const override { return true; }
+  bool knows_distance(const Thickness& thickness) const override { return thickness.is_uniform(); }
   void refit(const Step& step) override { hierarchy_.refit(step.motion, step.thickness.largest()); }
 
   bool classify(const Step& step) override {

@@ -62,8 +62,8 @@ void FastCuller::refit_beginning(const Step& step, double until) {
 }
 
 bool FastCuller::classify(const Step& step) {
-  by_signs_ =
-      step.starts_embedded && signs_suffice_ && (local_thickness_ == 0 || near_ <= kMostNear * patch_count());
+  by_signs_ = step.starts_embedded && signs_suffice_ && thickness_.is_uniform() &&
+              (local_thickness_ == 0 || near_ <= kMostNear * patch_count());
   look_at_positions();
   return true;
 }

@@ -45,7 +45,10 @@ class FastCuller : public Culler {
     certificates_.use_covers(count);
   }
 
-  bool knows_distance() const override { return true; }
+  // Signs speak of one thickness for all pairs.
+  bool knows_distance(const Thickness& thickness) const override {
+    return options_.complete || thickness.is_uniform();
+  }
   void refit(const Step& step) override;
   void refit_beginning(const Step& step, double until) override;
   // Looks at every patch from every cover, and makes the bounds of all nodes too, because a patch is loaded

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/base/error.h"
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/catalogue.h"
@@ -111,6 +113,72 @@ TEST(Thickness, OfVerticesIsThatOfTheirPairs) {
     EXPECT_EQ(ask_close(*find_elementary_test("exact"), tube.mesh, tube.motion(), contact.pair, r).time,
               contact.time);
   }
+}
+
+// A sheet in a notch: above a floor face lies a ceiling that hinges on one of the face's edges, and above
+// that a vertex sinks. It comes within the thickness of the floor face, whose third corner alone has one, and
+// of nothing else: the ceiling in between shares a vertex with the face, and lies no way near the sinking
+// vertex by its own thickness. So signs, which speak of one thickness for all pairs, lose the only close
+// pair.
+struct Notch {
+  static constexpr std::array<double, 6> kRows = {-60, -15, -5, 5, 15, 60};
+  static constexpr std::array<double, 9> kFlat = {-50, -30, -20, -13, -8, -4, 4, 20, 50};
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> start, end;
+  std::vector<double> of_vertex;
+
+  static int at(std::size_t column, std::size_t row) { return static_cast<int>(column * kRows.size() + row); }
+  void add(int a, int b, int c) { triangles.push_back({VertexId{a}, VertexId{b}, VertexId{c}}); }
+  static std::vector<Vec3> sheet(const std::array<std::array<double, 2>, 9>& columns) {
+    std::vector<Vec3> out;
+    for (std::size_t u = 0; u < kFlat.size(); ++u)
+      for (std::size_t v = 0; v < kRows.size(); ++v) {
+        const bool border = v == 0 || v + 1 == kRows.size();
+        out.push_back(border ? Vec3(kFlat[u], kRows[v], 0) : Vec3(columns[u][0], kRows[v], columns[u][1]));
+      }
+    out.emplace_back(0, 0, -60);
+    return out;
+  }
+  Notch() {
+    const std::size_t columns = kFlat.size(), rows = kRows.size();
+    for (std::size_t u = 0; u + 1 < columns; ++u)
+      for (std::size_t v = 0; v + 1 < rows; ++v) {
+        add(at(u, v), at(u + 1, v), at(u, v + 1));
+        add(at(u + 1, v), at(u + 1, v + 1), at(u, v + 1));
+      }
+    std::vector<int> border;  // counterclockwise from above
+    for (std::size_t u = 0; u < columns; ++u) border.push_back(at(u, 0));
+    for (std::size_t v = 1; v < rows; ++v) border.push_back(at(columns - 1, v));
+    for (std::size_t u = columns - 1; u-- > 0;) border.push_back(at(u, rows - 1));
+    for (std::size_t v = rows - 1; v-- > 1;) border.push_back(at(0, v));
+    for (std::size_t i = 0; i < border.size(); ++i)
+      add(border[(i + 1) % border.size()], border[i], static_cast<int>(columns * rows));
+    start =
+        sheet({{{-50, 2}, {-30, 2}, {-6, 2}, {0.4, 2.2}, {1.8, 4}, {3.5, 4.5}, {0, 0}, {20, 0}, {50, 0}}});
+    end = start;
+    const auto sinking = static_cast<std::size_t>(at(3, 2));
+    start[sinking] = Vec3(0.4, 0, 1.3);
+    end[sinking] = Vec3(0.4, 0, 0.9);
+    of_vertex.assign(start.size(), 0);
+    of_vertex[static_cast<std::size_t>(at(7, 2))] = 1;
+  }
+};
+
+// Mutations: signs are asked where pairs have thicknesses of their own; a row of signs alone answers there.
+TEST(Thickness, SignsAreNotAskedWherePairsHaveTheirOwn) {
+  const Notch notch;
+  const TriangleMesh mesh(notch.triangles, notch.start.size());
+  ASSERT_TRUE(mesh.closed_and_oriented());
+  const StrategyInput setup{mesh, notch.start, nullptr, *find_elementary_test("filtered_exact")};
+  const Step step{.motion = Motion(notch.start, notch.end),
+                  .starts_embedded = true,
+                  .thickness = Thickness(0, notch.of_vertex)};
+  const ContactSet all = answer_of(*compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup), step);
+  ASSERT_EQ(all.contacts.size(), 1u);
+  EXPECT_DOUBLE_EQ(all.contacts[0].time, 0.75);
+  const DrvbcFastOptions complete{.name = "complete", .complete = true};
+  EXPECT_EQ(digest(answer_of(*make_drvbc_fast(setup, complete).detector, step)), digest(all));
+  EXPECT_THROW(answer_of(*make_drvbc_fast(setup).detector, step), InputError);
 }
 
 // Where signs leave many pairs near on the surface, the next steps are looked at by caps alone, until another

@@ -75,22 +75,22 @@ bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bon
                    .any_contact = true},
                   touched_);
   if (!touched_.contacts.empty()) return false;
+  end_follows_ = false;
   poses_.follow(pose, touched_);
   if (bones != nullptr) {
     before_bones_.swap(pose_bones_);
     pose_bones_.assign(bones->start.begin(), bones->start.end());
   }
-  end_follows_ = false;
   free_of_close_pairs_ = true;
   return true;
 }
 
 void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, const Certainty& certainty,
                             const ContactSet& found) {
+  end_follows_ = false;  // until all that tells what crosses there is kept: memory may run out on the way
   if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
   const bool nothing_touched = found.contacts.empty() && certainty.whether;
   if (!nothing_touched) abandon();
-  end_follows_ = !nothing_touched && certainty.all && found.contacts.size() <= kMostFollowed;
   if (nothing_touched) {
     if (!moved_on_) poses_.follow(motion.end(), found);
     free_of_close_pairs_ = true;
@@ -100,9 +100,10 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
     return;
   }
   end_.assign(motion.end().begin(), motion.end().end());
-  if (!end_follows_) return;
+  if (!certainty.all || found.contacts.size() > kMostFollowed) return;
   end_touched_ = found;
   if (bones != nullptr) end_bones_.assign(bones->end.begin(), bones->end.end());
+  end_follows_ = true;
 }
 
 }  // namespace cscd

@@ -84,7 +84,7 @@ class Obstacles::ObstaclePairs {
   class View : public Culler {
    public:
     View(ObstaclePairs& between, std::size_t own_vertices) : pairs_(between), own_vertices_(own_vertices) {}
-    bool knows_distance() const override { return true; }
+    bool knows_distance(const Thickness& /*thickness*/) const override { return true; }
     void refit(const Step& step) override {
       const Motion& motion = step.motion;
       pairs_.refit_own({motion.start().first(own_vertices_), motion.end().first(own_vertices_)},

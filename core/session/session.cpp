@@ -19,11 +19,15 @@ bool has_contact_at_start(const ContactSet& found) {
 }
 
 void require_proof_for_distance(const std::string& name, const StrategyInput& setup, const Strategy& strategy,
-                                const Strategy& fallback) {
-  for (const Strategy* asked : {&strategy, &fallback})
+                                const Strategy& fallback, const Thickness& thickness) {
+  for (const Strategy* asked : {&strategy, &fallback}) {
     if (!asked->knows_distance)
       throw InputError(name + ": strategy " + std::string(asked->name) +
                        " has no proof for a thickness above 0; take drvbc_fast or drvbc_fast_complete");
+    if (!thickness.is_uniform() && asked->guarantee == Guarantee::first_contact)
+      throw InputError(name + ": strategy " + std::string(asked->name) +
+                       " has no proof for pairs of different thickness; take drvbc_fast_complete");
+  }
   if (!setup.elementary.knows_distance())
     throw InputError(name + ": test " + std::string(setup.elementary.name) +
                      " knows no thickness above 0; take filtered_exact");
@@ -42,7 +46,7 @@ Session::Session(const std::string& name, const StrategyInput& setup, const Stra
       fallback_strategy_(fallback),
       options_(options),
       starts_(setup.mesh, setup.reference, setup.rig != nullptr, options.thickness) {
-  if (is_thick()) require_proof_for_distance(name, setup, strategy, fallback);
+  if (is_thick()) require_proof_for_distance(name, setup, strategy, fallback, options.thickness);
   if (!strategy.sees_start) find_rest_crossings(name, rest);
   const Stopwatch preparing;
   main_ = make(strategy);

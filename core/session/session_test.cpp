@@ -165,6 +165,11 @@ TEST_F(SessionTest, RefusesAThicknessThatNoProofCovers) {
   EXPECT_THROW(Session("test", cubic, kPlain, kDrvbcFastComplete, reference_, {.thickness = Thickness(0.1)}),
                InputError);
   EXPECT_NO_THROW(session(blind));
+  std::vector<double> of_vertex(mesh_.vertex_count(), 0.1);
+  of_vertex[0] = 0.2;
+  const SessionOptions uneven{.thickness = Thickness(0, of_vertex)};
+  EXPECT_THROW(session(kDrvbcFast, uneven), InputError) << "signs speak of one thickness";
+  EXPECT_NO_THROW(session(kDrvbcFastComplete, uneven));
 }
 
 TEST_F(SessionTest, LeavesOutWhatCrossesAtRest) {

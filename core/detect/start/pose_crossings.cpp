@@ -34,9 +34,13 @@ bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> e
     }
   }
   finite = all >> 63 == 0;
+  take_room();
+  return true;
+}
+
+void PoseCrossings::take_room() {
   before_.swap(room_);
   before_.swap(positions_);
-  return true;
 }
 
 void PoseCrossings::go_back() {
@@ -66,8 +70,8 @@ void PoseCrossings::know(std::span<const Vec3> positions, const Crossings& cross
 const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const ContactSet& touched) {
   if (positions_.empty() || !crossings_.all_kept()) return find(positions);
   if (touched.contacts.empty()) {
-    before_.swap(positions_);
-    positions_.assign(positions.begin(), positions.end());
+    room_.assign(positions.begin(), positions.end());  // for which memory may lack
+    take_room();
     return crossings_;
   }
 

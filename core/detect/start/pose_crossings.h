@@ -61,6 +61,9 @@ class PoseCrossings {
   const Crossings& follow(std::span<const Vec3> positions, const ContactSet& touched);
 
  private:
+  // Makes the pose in room_ the one last asked for, and that one the pose before.
+  void take_room();
+
   EmbeddingTest test_;
   std::size_t most_;
   std::vector<Vec3> positions_;
