@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/feature_motion.h"
+#include "core/geometry/unit_scale.h"
+
 namespace cscd {
 namespace {
 
@@ -142,11 +145,25 @@ std::array<VertexId, 4> vertices_of(const TriangleMesh& mesh, const FeaturePair&
   return {first[0], first[1], second[0], second[1]};
 }
 
+// The formulas multiply up to four lengths, so they are applied in the scale in which coordinates are
+// about 1.
 ContactGeometry contact_geometry(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair,
                                  double time, bool at_distance) {
-  if (pair.kind == FeaturePair::Kind::vertex_face)
-    return of(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}), time, at_distance);
-  return of(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}), time, at_distance);
+  const std::array<VertexId, 4> vertices = vertices_of(mesh, pair);
+  double largest = 0;
+  for (const VertexId v : vertices)
+    largest = std::max({largest, motion[v].start.cwiseAbs().maxCoeff(), motion[v].end.cwiseAbs().maxCoeff()});
+  const double scale = unit_scale(largest);
+  std::array<MovingPoint, 4> p;
+  for (std::size_t i = 0; i < 4; ++i)
+    p[i] = {scale * motion[vertices[i]].start, scale * motion[vertices[i]].end};
+  ContactGeometry out =
+      pair.kind == FeaturePair::Kind::vertex_face
+          ? of(MovingVertexFace{.vertex = p[0], .corner = {p[1], p[2], p[3]}}, time, at_distance)
+          : of(MovingEdgeEdge{.first = {p[0], p[1]}, .second = {p[2], p[3]}}, time, at_distance);
+  out.point /= scale;
+  if (out.relative_speed) *out.relative_speed /= scale;
+  return out;
 }
 
 }  // namespace cscd

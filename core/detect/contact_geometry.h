@@ -10,7 +10,9 @@
 namespace cscd {
 
 // How a feature pair touches, computed in doubles for people and for contact response. Whether and when it
-// touches is decided elsewhere, exactly.
+// touches is decided elsewhere, exactly. The geometry does not depend on the unit of length: where all
+// coordinates are multiplied by a power of two, lengths are multiplied by the same power, and directions and
+// weights stay the same to the last digit, as long as nothing overflows or becomes subnormal.
 //
 // A contact has two sides. The first is the vertex, or the edge `a` of the pair; the second is the face, or
 // the edge `b`.

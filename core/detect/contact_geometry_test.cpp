@@ -1,5 +1,6 @@
 #include "core/detect/contact_geometry.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -98,6 +99,34 @@ TEST(ContactGeometry, OfWhatIsDegenerateStaysFinite) {
                     s == 0 || s == 1 ? (pair.kind == FeaturePair::Kind::vertex_face ? 1 : -1) : 0, 1e-9);
       }
     }
+  }
+}
+
+// Mutation: contact_geometry() computes in the scale of the mesh, where fourth powers of lengths overflow or
+// vanish.
+TEST(ContactGeometry, DoesNotDependOnTheUnitOfLength) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> some(-1, 1);
+  for (int i = 0; i < 20; ++i) {
+    std::vector<Vec3> start(6), end(6);
+    for (std::vector<Vec3>* x : {&start, &end})
+      for (Vec3& p : *x) p = Vec3(some(random), some(random), some(random));
+    for (const FeaturePair& pair : {kVertexFace, edges(0, 1, 3, 4)})
+      for (const bool at_distance : {false, true}) {
+        const ContactGeometry expected =
+            contact_geometry(mesh(), Motion(start, end), pair, 0.375, at_distance);
+        for (int exponent = -900; exponent <= 900; exponent += 25) {
+          const double unit = std::ldexp(1.0, exponent);
+          std::vector<Vec3> a = start, b = end;
+          for (std::vector<Vec3>* x : {&a, &b})
+            for (Vec3& p : *x) p *= unit;
+          const ContactGeometry g = contact_geometry(mesh(), Motion(a, b), pair, 0.375, at_distance);
+          EXPECT_EQ(g.weights, expected.weights) << exponent;
+          EXPECT_EQ(*g.normal, *expected.normal) << exponent;
+          EXPECT_EQ(g.point, unit * expected.point) << exponent;
+          EXPECT_EQ(*g.relative_speed, unit * *expected.relative_speed) << exponent;
+        }
+      }
   }
 }
 
