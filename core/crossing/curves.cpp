@@ -31,8 +31,8 @@ Vec3 piercing_point(std::span<const Vec3> x, const Edge& edge, const Triangle& f
 
 class CurveFinder {
  public:
-  CurveFinder(const TriangleMesh& mesh, std::span<const Vec3> positions)
-      : mesh_(mesh), positions_(positions), sides_(positions) {}
+  CurveFinder(const TriangleMesh& mesh, std::span<const Vec3> positions, std::span<const Vec3> scaled)
+      : mesh_(mesh), scaled_(scaled), sides_(positions) {}
 
   CrossingCurves find(std::span<const CrossingPair> pairs) {
     segments_.reserve(pairs.size());
@@ -122,7 +122,7 @@ class CurveFinder {
       const Edge& both = mesh_.ends(edge);
       const VertexId before = both[behind == both[0] ? 1 : 0];
       out_.piercings.push_back(
-          {edge, face, behind, before, piercing_point(positions_, both, mesh_.corners(face))});
+          {edge, face, behind, before, piercing_point(scaled_, both, mesh_.corners(face))});
       first_.push_back(i);
       for (const auto key = ends_[i].key(); i < ends_.size() && ends_[i].key() == key; ++i)
         segments_[static_cast<std::size_t>(ends_[i].segment)].piercing[ends_[i].end] = number;
@@ -185,7 +185,7 @@ class CurveFinder {
   }
 
   const TriangleMesh& mesh_;
-  std::span<const Vec3> positions_;
+  std::span<const Vec3> scaled_;
   GenericSides sides_;
   std::vector<Segment> segments_;
   std::vector<SegmentEnd> ends_;    // sorted by piercing, once these are numbered
@@ -198,9 +198,9 @@ class CurveFinder {
 }  // namespace
 
 CrossingCurves find_curves(const TriangleMesh& mesh, std::span<const Vec3> positions,
-                           std::span<const CrossingPair> pairs) {
+                           std::span<const CrossingPair> pairs, std::span<const Vec3> scaled) {
   if (pairs.empty()) return {};
-  return CurveFinder(mesh, positions).find(pairs);
+  return CurveFinder(mesh, positions, scaled).find(pairs);
 }
 
 }  // namespace cscd

@@ -59,8 +59,10 @@ struct CrossingCurves {
 };
 
 // Joins the pairs of triangles that cross in a pose to curves. `pairs` are all of them, sorted. Which pair
-// follows which is exact; coordinates are rounded.
+// follows which is exact. Points are rounded, and are computed from `scaled`: the positions in a scale in
+// which products of four lengths neither overflow nor vanish (OverlapFinder::find). The points are in that
+// scale, too.
 CrossingCurves find_curves(const TriangleMesh& mesh, std::span<const Vec3> positions,
-                           std::span<const CrossingPair> pairs);
+                           std::span<const CrossingPair> pairs, std::span<const Vec3> scaled);
 
 }  // namespace cscd

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -10,14 +11,41 @@
 #include "core/crossing/reach.h"
 #include "core/crossing/self_winding.h"
 #include "core/crossing/sheet_distance.h"
+#include "core/geometry/unit_scale.h"
 
 namespace cscd {
 namespace {
 
 constexpr std::int32_t kNone = -1;
+// The largest coordinates of poses that are measured as they are: products of four lengths of a pose, or of
+// its smallest triangles, neither overflow nor vanish.
+constexpr double kSmallestPose = 0x1p-60, kLargestPose = 0x1p60;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
+}
+
+void scale_back(CrossingDepth& depth, double scale) {
+  const double upper = depth.upper;
+  depth.lower /= scale;
+  depth.upper /= scale;
+  if (depth.upper * scale < upper)
+    depth.upper = std::nextafter(depth.upper, std::numeric_limits<double>::infinity());
+  depth.point /= scale;
+  depth.out /= scale;
+}
+
+// Gives the lengths in a pose from those in the same pose times `scale`, a power of two.
+void scale_back(Overlaps& all, double scale) {
+  for (Piercing& piercing : all.crossing.piercings) piercing.point /= scale;
+  for (Overlap& overlap : all.overlaps) {
+    scale_back(overlap.depth, scale);
+    for (CrossingRegion& region : overlap.regions) {
+      scale_back(region.depth, scale);
+      for (Vec3& way : region.way) way /= scale;
+      region.area = region.area / scale / scale;
+    }
+  }
 }
 
 }  // namespace
@@ -37,14 +65,16 @@ OverlapFinder::OverlapFinder(const TriangleMesh& mesh)
   }
 }
 
-// The search of one pose.
+// The search of one pose. What is decided exactly is decided for `exact`, the positions as they are given.
+// Lengths are computed from `positions` and are in their scale: the same positions times a power of two.
 class PoseOverlaps {
  public:
-  PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> positions, bool each_way)
-      : finder_(finder), mesh_(finder.mesh_), positions_(positions), each_way_(each_way) {}
+  PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> exact, std::span<const Vec3> positions,
+               bool each_way)
+      : finder_(finder), mesh_(finder.mesh_), exact_(exact), positions_(positions), each_way_(each_way) {}
 
   Overlaps find(std::span<const CrossingPair> pairs) {
-    out_.crossing = find_curves(mesh_, positions_, pairs);
+    out_.crossing = find_curves(mesh_, exact_, pairs, positions_);
     if (crossing().curves.empty()) return std::move(out_);
     cut();
     join_fragments();
@@ -229,7 +259,7 @@ class PoseOverlaps {
       steps.push_back({fragment(edge.before), fragment(edge.behind), edge.faces});
     }
     const std::optional<OutermostVertex> known =
-        find_outermost_vertex(mesh_, positions_, own, [&](VertexId v) { return is_on_curve(v); });
+        find_outermost_vertex(mesh_, exact_, own, [&](VertexId v) { return is_on_curve(v); });
     if (!known) return std::vector<std::optional<int>>(roots_.size());
     return spread_winding(roots_.size(), steps, fragment(known->vertex), known->winding);
   }
@@ -446,7 +476,7 @@ class PoseOverlaps {
 
   OverlapFinder& finder_;
   const TriangleMesh& mesh_;
-  std::span<const Vec3> positions_;
+  std::span<const Vec3> exact_, positions_;
   bool each_way_;
   Overlaps out_;
   std::vector<std::int32_t> roots_;                                   // of the fragments at piercings; sorted
@@ -461,7 +491,16 @@ class PoseOverlaps {
 Overlaps OverlapFinder::find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
                              bool each_way) {
   if (pairs.empty()) return {};
-  return PoseOverlaps(*this, positions, each_way).find(pairs);
+  double largest = 0;
+  for (const Vec3& x : positions) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  if (largest >= kSmallestPose && largest <= kLargestPose)
+    return PoseOverlaps(*this, positions, positions, each_way).find(pairs);
+  const double scale = unit_scale(largest);
+  std::vector<Vec3> scaled(positions.begin(), positions.end());
+  for (Vec3& x : scaled) x *= scale;
+  Overlaps found = PoseOverlaps(*this, positions, scaled, each_way).find(pairs);
+  scale_back(found, scale);
+  return found;
 }
 
 }  // namespace cscd

@@ -75,7 +75,9 @@ class OverlapFinder {
   explicit OverlapFinder(const TriangleMesh& mesh);  // `mesh` must outlive the object
 
   // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_way` every vertex of every
-  // region gets its way out.
+  // region gets its way out. The answer does not depend on the unit of length: where all coordinates are
+  // multiplied by a power of two, lengths are multiplied by the same power to the last digit. Where they
+  // become subnormal they are rounded, and CrossingDepth::upper is rounded up.
   Overlaps find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs, bool each_way = false);
 
  private:

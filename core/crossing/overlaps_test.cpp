@@ -261,6 +261,82 @@ TEST(Overlaps, SayHowCurvesGrow) {
   EXPECT_GT(compared, count() / 2);
 }
 
+void expect_scaled(const CrossingDepth& found, const CrossingDepth& expected, double unit) {
+  EXPECT_EQ(found.lower, unit * expected.lower);
+  EXPECT_EQ(found.upper, unit * expected.upper);
+  EXPECT_EQ(found.point, unit * expected.point);
+  EXPECT_EQ(found.out, unit * expected.out);
+  EXPECT_EQ(found.vertex, expected.vertex);
+}
+
+// Mutations: OverlapFinder::find() or length_gradient() computes in the scale of the pose, where fourth
+// powers of lengths overflow or vanish.
+TEST(Overlaps, DoNotDependOnTheUnitOfLength) {
+  std::size_t regions = 0;
+  for (unsigned n = 0; n < 30; ++n)
+    for (const int exponent : {-900, -500, -330, -61, 61, 260, 500, 900}) {
+      SCOPED_TRACE(std::to_string(n) + " at 2^" + std::to_string(exponent));
+      const Pushed pushed(n);
+      const TriangleMesh mesh = pushed.shapes.mesh();
+      std::vector<Vec3> x = pushed.shapes.positions;
+      const std::vector<CrossingPair> pairs = all_pairs(mesh, x);
+      OverlapFinder finder(mesh);
+      const Overlaps expected = finder.find(x, pairs, true);
+      std::vector<CurveLength> lengths;
+      for (const Overlap& overlap : expected.overlaps)
+        lengths.push_back(length_gradient(mesh, x, expected.crossing, overlap));
+      const double unit = std::ldexp(1.0, exponent);
+      for (Vec3& p : x) p *= unit;
+      const Overlaps found = finder.find(x, pairs, true);
+      ASSERT_EQ(found.overlaps.size(), expected.overlaps.size());
+      for (std::size_t p = 0; p < found.crossing.piercings.size(); ++p)
+        EXPECT_EQ(found.crossing.piercings[p].point, unit * expected.crossing.piercings[p].point);
+      for (std::size_t i = 0; i < found.overlaps.size(); ++i) {
+        const Overlap &one = found.overlaps[i], &other = expected.overlaps[i];
+        expect_scaled(one.depth, other.depth, unit);
+        const CurveLength length = length_gradient(mesh, x, found.crossing, one);
+        EXPECT_EQ(length.length, unit * lengths[i].length);
+        EXPECT_EQ(length.gradient, lengths[i].gradient);
+        ASSERT_EQ(one.regions.size(), other.regions.size());
+        for (std::size_t r = 0; r < one.regions.size(); ++r, ++regions) {
+          expect_scaled(one.regions[r].depth, other.regions[r].depth, unit);
+          EXPECT_EQ(one.regions[r].vertices, other.regions[r].vertices);
+          EXPECT_EQ(one.regions[r].side, other.regions[r].side);
+          EXPECT_EQ(one.regions[r].area, unit * (unit * other.regions[r].area));
+          for (std::size_t v = 0; v < one.regions[r].way.size(); ++v)
+            EXPECT_EQ(one.regions[r].way[v], unit * other.regions[r].way[v]);
+        }
+      }
+      if (HasFailure()) return;
+    }
+  EXPECT_GT(regions, 100U);
+}
+
+// Mutation: the bound of a depth is rounded to the nearest subnormal number.
+TEST(Overlaps, HaveBoundsThatHoldWhereLengthsAreSubnormal) {
+  int deep = 0;
+  for (unsigned n = 0; n < 100; ++n) {
+    SCOPED_TRACE(n);
+    const Pushed pushed(n);
+    const TriangleMesh mesh = pushed.shapes.mesh();
+    std::vector<Vec3> tiny = pushed.shapes.positions, same = tiny;
+    for (std::size_t v = 0; v < tiny.size(); ++v) {
+      tiny[v] *= 0x1p-1066;
+      same[v] = tiny[v] * 0x1p1000 * 0x1p66;
+    }
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, same);
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(tiny, pairs), expected = finder.find(same, pairs);
+    ASSERT_EQ(found.overlaps.size(), expected.overlaps.size());
+    for (std::size_t i = 0; i < found.overlaps.size(); ++i, ++deep) {
+      const double bound = found.overlaps[i].depth.upper * 0x1p1000 * 0x1p66;
+      EXPECT_GE(bound, expected.overlaps[i].depth.upper);
+      EXPECT_LE(bound, expected.overlaps[i].depth.upper + 0x1p-8);
+    }
+  }
+  EXPECT_GT(deep, 50);
+}
+
 // On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane.
 TEST(Overlaps, HaveWholeCurvesWhereSurfacesTouchExactly) {
   std::size_t degenerate = 0, touching = 0;
