@@ -244,7 +244,9 @@ class PoseOverlaps {
     }
     // What winds 0 times behind an edge and -1 times before it is turned inside out, unless all faces look
     // inward: then the surface winds -1 times around its own inside.
-    if (!inward_.contains(group.other)) inward_[group.other] = faces_inward(mesh_, positions_, group.other);
+    if (!inward_.contains(group.other))
+      inward_[group.other] =
+          faces_inward(mesh_, positions_, group.other, [&](VertexId v) { return is_on_curve(v); });
     return inward_[group.other] == (group.own == group.other) ? Side::behind : Side::before;
   }
 

@@ -6,7 +6,9 @@
 #include <set>
 #include <string>
 
+#include "core/crossing/generic_side.h"
 #include "core/crossing/length_gradient.h"
+#include "core/crossing/self_winding.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/exact/static_contact.h"
 #include "core/geometry/feature_distance.h"
@@ -375,6 +377,30 @@ test::Shape crossing_ball(int number, std::mt19937& random) {
   if (number % 2 != 0)
     for (Triangle& t : ball.triangles) std::swap(t[1], t[2]);
   return ball;
+}
+
+// Flat tetrahedra, whose volume is no more than the roundings of its terms.
+// Mutation: faces_inward() takes the sign of the rounded volume in all cases.
+TEST(Overlaps, KnowWhereFacesOfNearlyEmptyBodiesLook) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> some(-1, 1);
+  const auto v = [](int i) { return VertexId{i}; };
+  const TriangleMesh mesh({{v(0), v(1), v(2)}, {v(0), v(3), v(1)}, {v(1), v(3), v(2)}, {v(2), v(3), v(0)}},
+                          4);
+  int wrong = 0;
+  std::array<int, 2> seen{};
+  for (int n = 0; n < count(); ++n) {
+    std::vector<Vec3> x(4);
+    for (std::size_t i = 0; i < 3; ++i) x[i] = {some(random), some(random), some(random)};
+    x[3] = x[0] + some(random) * (x[1] - x[0]) + some(random) * (x[2] - x[0]);
+    GenericSides sides(x);
+    const bool inward = sides.side(v(0), v(1), v(2), v(3)) < 0;
+    ++seen[inward];
+    wrong += inward != faces_inward(mesh, x, 0, [](VertexId) { return false; });
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(seen[0], count() / 4);
+  EXPECT_GT(seen[1], count() / 4);
 }
 
 // A needle that goes into the ring where the ring's ends lie in each other: its edges pass two faces of the

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/rounding.h"
 #include "core/crossing/generic_side.h"
 #include "core/mesh/adjacency.h"
 
@@ -52,18 +53,6 @@ std::vector<VertexId> ring_of(const TriangleMesh& mesh, VertexId v) {
 
 }  // namespace
 
-bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component) {
-  double volume = 0;
-  std::optional<Vec3> origin;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (mesh.component(TriangleId{static_cast<std::int32_t>(t)}) != component) continue;
-    const auto [a, b, c] = mesh.triangles()[t];
-    if (!origin) origin = positions[+a];
-    volume += (positions[+a] - *origin).dot((positions[+b] - *origin).cross(positions[+c] - *origin));
-  }
-  return volume < 0;
-}
-
 // Seen from the outermost vertex, its neighbours are the corners of a polygon that does not cross itself. The
 // faces look outward if it runs counter-clockwise, and how it runs is seen at its own outermost corner.
 std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
@@ -96,6 +85,28 @@ std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
       return OutermostVertex{*v, outward ? 0 : -1};
     }
   return std::nullopt;
+}
+
+bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component,
+                  const std::function<bool(VertexId)>& is_on_curve) {
+  double volume = 0, sizes = 0, count = 0;  // six times the volume
+  std::optional<Vec3> origin;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (mesh.component(TriangleId{static_cast<std::int32_t>(t)}) != component) continue;
+    const auto [a, b, c] = mesh.triangles()[t];
+    if (!origin) origin = positions[+a];
+    const Vec3 from = positions[+a] - *origin, ab = positions[+b] - positions[+a],
+               ac = positions[+c] - positions[+a];
+    volume += from.dot(ab.cross(ac));
+    sizes += from.norm() * ab.norm() * ac.norm();
+    ++count;
+  }
+  // A term is off by less than 32 units of its size, and each sum of terms by one unit of all sizes.
+  if (std::abs(volume) <= (32 + count) * kUnitRoundoff * sizes)
+    if (const std::optional<OutermostVertex> known =
+            find_outermost_vertex(mesh, positions, component, is_on_curve))
+      return known->winding < 0;
+  return volume < 0;
 }
 
 std::vector<std::optional<int>> spread_winding(std::size_t parts, std::span<const WindingStep> steps,

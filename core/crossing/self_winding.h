@@ -12,9 +12,6 @@
 
 namespace cscd {
 
-// Whether a closed component holds a negative volume, so that its faces look inward. Up to rounding.
-bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component);
-
 // A vertex of a closed component at the border of all space that the component does not wind around, and the
 // winding number just before the faces at that vertex: 0, or -1 where these faces look inward.
 struct OutermostVertex {
@@ -28,6 +25,12 @@ struct OutermostVertex {
 std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
                                                      std::span<const Vec3> positions, std::int32_t component,
                                                      const std::function<bool(VertexId)>& is_on_curve);
+
+// Whether the faces of a closed component look inward: it holds a negative volume. Where rounding leaves the
+// sign of the volume open, an outermost vertex decides, which is right if the component does not cross
+// itself.
+bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component,
+                  const std::function<bool(VertexId)>& is_on_curve);
 
 // A way from one part of the component's skin to another, on which so many more of its faces come to lie
 // before the skin. Each way can be gone back.
