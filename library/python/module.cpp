@@ -3,12 +3,35 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <stdexcept>
 
 #include "cscd/cscd.h"
 
 // The module `cscd._cscd`: the library with numpy arrays in and out. The package around it (cscd/__init__.py)
 // turns what callers give into arrays of the types below, which are read where they are, and has the
 // documentation. Calls release the lock of the interpreter.
+
+// pybind11 makes memory for an object when a method is called before __init__(), and leaves it as it is. An
+// object of such a class is read through this caster, which refuses that.
+namespace pybind11::detail {
+
+template <class Type>
+struct MadeObjectCaster : type_caster_base<Type> {
+  bool load(handle source, bool convert) {
+    if (isinstance<Type>(source) && !reinterpret_cast<instance*>(source.ptr())
+                                         ->get_value_and_holder(get_type_info(typeid(Type)))
+                                         .holder_constructed())
+      throw std::runtime_error("this object of cscd has not been made; call super().__init__() first");
+    return type_caster_base<Type>::load(source, convert);
+  }
+};
+template <>
+struct type_caster<cscd::SelfCollision> : MadeObjectCaster<cscd::SelfCollision> {};
+template <>
+struct type_caster<cscd::SelfCollision::Exclusions> : MadeObjectCaster<cscd::SelfCollision::Exclusions> {};
+
+}  // namespace pybind11::detail
+
 namespace {
 
 namespace py = pybind11;

@@ -66,6 +66,33 @@ class Input(unittest.TestCase):
         self.assertIsNotNone(error, "taken")
         self.assertIn(text, error)
 
+    # Mutation: the module reads the memory that pybind11 makes for an object whose __init__() has not been called.
+    def test_methods_of_what_was_never_made_are_refused(self):
+        class Early(cscd.SelfCollision):
+            def __init__(self):
+                self.number = self.vertex_count
+                super().__init__(FACES, START)
+
+        class Failed(cscd.SelfCollision):
+            def __init__(self):
+                try:
+                    super().__init__(FACES, START[:5])
+                except ValueError:
+                    self.is_free(START, END)
+
+        raw = cscd.SelfCollision.__new__(cscd.SelfCollision)
+        exclude = cscd.Exclusions.__new__(cscd.Exclusions)
+        for call in (Early, Failed, lambda: raw.is_free(START, END), lambda: raw.closed, raw.preparation,
+                     lambda: cscd.SelfCollision(FACES, START, exclude=exclude)):
+            with self.assertRaisesRegex(RuntimeError, r"call super\(\).__init__\(\) first"):
+                call()
+
+        class Late(cscd.SelfCollision):
+            def __init__(self):
+                super().__init__(FACES, START, exclude=cscd.Exclusions())
+                self.number = self.vertex_count
+        self.assertEqual(Late().number, 6)
+
     def test_layouts_and_types_are_read_alike(self):
         for layout in LAYOUTS:
             for kind in TYPES:
