@@ -1,6 +1,5 @@
 #include "library/arguments.h"
 
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,23 +17,30 @@ std::vector<std::pair<Id, Id>> ids_of(const std::vector<std::pair<int, int>>& pa
   return ids;
 }
 
+void set(Exclusions& out, const TriangleMesh& mesh, std::span<const Vec3> reference,
+         const SelfCollision::Exclusions& asked) {
+  if (!asked.rigid.empty()) out.set_rigid(mesh, asked.rigid);
+  if (!asked.group.empty())
+    out.set_groups(mesh, asked.group, asked.groups_that_ignore_each_other);
+  else if (!asked.groups_that_ignore_each_other.empty())
+    throw InputError("groups_that_ignore_each_other: no vertex has a group; give `group` as well");
+  out.exclude(mesh, ids_of<VertexId>(asked.vertex_pairs));
+  out.exclude(mesh, ids_of<TriangleId>(asked.face_pairs));
+  if (asked.rings < 0) throw InputError("rings: " + std::to_string(asked.rings) + "; give at least 0");
+  out.exclude_rings(mesh, asked.rings);
+  out.exclude_near(reference, asked.rest_distance);
+}
+
 }  // namespace
 
 Exclusions exclusions_of(const TriangleMesh& mesh, std::span<const Vec3> reference,
                          const SelfCollision::Exclusions& asked) {
   Exclusions out;
-  if (!asked.rigid.empty()) out.set_rigid(mesh, asked.rigid);
-  if (!asked.group.empty())
-    out.set_groups(mesh, asked.group, asked.groups_that_ignore_each_other);
-  else if (!asked.groups_that_ignore_each_other.empty())
-    throw InputError("exclude: pairs of groups without the group of each vertex; give `group` as well");
-  out.exclude(mesh, ids_of<VertexId>(asked.vertex_pairs));
-  out.exclude(mesh, ids_of<TriangleId>(asked.face_pairs));
-  if (asked.rings < 0) throw InputError("exclude: rings is negative; give at least 0");
-  out.exclude_rings(mesh, asked.rings);
-  if (!(asked.rest_distance >= 0) || !std::isfinite(asked.rest_distance))
-    throw InputError("exclude: rest_distance is no finite length; give at least 0");
-  out.exclude_near(reference, asked.rest_distance);
+  try {
+    set(out, mesh, reference, asked);
+  } catch (const InputError& error) {
+    throw InputError(std::string("exclude, ") + error.what());
+  }
   return out;
 }
 

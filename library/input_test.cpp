@@ -11,6 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/base/number_text.h"
+
 #include "cscd/cscd.h"
 
 // Holds every entry of the library to the shapes, types and values that it takes: what is right in any layout
@@ -124,7 +126,9 @@ TEST(Input, WrongShapesAreRefusedWhereverTheyAreGiven) {
   expect_refused("has no triangles", [&] { SelfCollision(MatrixXi(0, 3), kStart); });
   expect_refused("has no triangles", [&] { SelfCollision(std::vector<int>(), kStart); });
   expect_refused("faces: 0 rows of 0 columns", [&] { SelfCollision(MatrixXi(), kStart); });
-  expect_refused("flat array: 5 numbers", [&] { SelfCollision(std::vector<int>(5), kStart); });
+  expect_refused("faces: 5 numbers are no", [&] { SelfCollision(std::vector<int>(5), kStart); });
+  expect_refused("reference positions: 5 numbers are no",
+                 [&] { SelfCollision(kFaces, std::vector<double>(5)); });
   expect_refused("faces: triangle 1 names vertex 8589934592", [&] {
     SelfCollision(std::vector<long long>{0, 1, 2, 3, 4, 1LL << 33}, kStart);
   });
@@ -180,6 +184,10 @@ TEST(Input, WrongShapesAreRefusedWhereverTheyAreGiven) {
   expect_refused("obstacle, positions: 3 rows of 6 columns",
                  [&] { SelfCollision::Obstacle(kFaces, kStart.transpose()); });
   expect_refused("obstacle, faces: 1 rows of 4 columns", [&] { SelfCollision::Obstacle(quads, square); });
+  expect_refused("obstacle, faces: triangle 0 names vertex 8589934592", [&] {
+    SelfCollision::Obstacle(std::vector<long long>{0, 1, 1LL << 33}, square);
+  });
+  expect_refused("end positions: 19 numbers are no", [&] { body.is_free(kStart, std::vector<double>(19)); });
   EXPECT_EQ(body.first_contact(kStart, kEnd).time(), 0.5) << "the object outlives wrong calls";
 }
 
@@ -191,8 +199,9 @@ TEST(Input, WrongNumbersAreRefused) {
     expect_refused("safety", [&] { body.largest_step(kStart, kEnd, safety); });
   for (const double radius : {nan, inf, -inf, -1.0, -1e-300})
     expect_refused("radius", [&] { body.candidates(kStart, kEnd, radius); });
-  for (const std::size_t obstacle : {std::size_t{0}, std::size_t{1}, ~std::size_t{0}})
-    expect_refused("there are 0", [&] { body.place_obstacle(obstacle, kStart); });
+  for (const int obstacle : {0, 1, -1})
+    expect_refused("obstacle " + std::to_string(obstacle) + ": there are 0",
+                   [&] { body.place_obstacle(static_cast<std::size_t>(obstacle), kStart); });
 
   using Change = std::function<void(Options&)>;
   const auto refused = [](const std::string& part, const Change& change) {
@@ -203,23 +212,32 @@ TEST(Input, WrongNumbersAreRefused) {
   for (const int threads : {kLeast, -1, 0, 1025, kMost})
     refused("threads is " + std::to_string(threads), [&](Options& o) { o.threads = threads; });
   for (const double distance : {nan, inf, -inf, -1.0})
-    refused("rest_distance", [&](Options& o) { o.exclude.rest_distance = distance; });
-  for (const int rings : {kLeast, -1}) refused("rings", [&](Options& o) { o.exclude.rings = rings; });
+    refused("exclude, rest_distance: " + exact_text(distance),
+            [&](Options& o) { o.exclude.rest_distance = distance; });
+  for (const int rings : {kLeast, -1})
+    refused("exclude, rings: " + std::to_string(rings), [&](Options& o) { o.exclude.rings = rings; });
   for (const int wrong : {kLeast, -1, 6, kMost}) {
-    refused("vertex " + std::to_string(wrong), [&](Options& o) { o.exclude.vertex_pairs = {{wrong, 0}}; });
-    if (wrong != 6)
-      refused("group " + std::to_string(wrong),
-              [&](Options& o) { o.exclude.group = {0, 0, 0, 0, 0, wrong}; });
-    refused("group " + std::to_string(wrong), [&](Options& o) {
-      o.exclude.group = {0, 0, 0, 1, 1, 1};
-      o.exclude.groups_that_ignore_each_other = {{0, wrong}};
+    refused("exclude, vertex_pairs: entry 1 names vertex " + std::to_string(wrong), [&](Options& o) {
+      o.exclude.vertex_pairs = {{1, 0}, {wrong, 0}};
     });
+    if (wrong < 0)
+      refused("exclude, group: vertex 5 has group " + std::to_string(wrong),
+              [&](Options& o) { o.exclude.group = {0, 0, 0, 0, 0, wrong}; });
+    refused("exclude, groups_that_ignore_each_other: entry 0 names group " + std::to_string(wrong),
+            [&](Options& o) {
+              o.exclude.group = {0, 0, 0, 1, 1, 1};
+              o.exclude.groups_that_ignore_each_other = {{0, wrong}};
+            });
   }
   for (const int wrong : {kLeast, -1, 2, kMost})
-    refused("triangle " + std::to_string(wrong), [&](Options& o) { o.exclude.face_pairs = {{1, wrong}}; });
-  refused("5 entries for 6 vertices", [](Options& o) { o.exclude.rigid.resize(5); });
-  refused("7 entries for 6 vertices", [](Options& o) { o.exclude.group.resize(7); });
-  refused("without the group", [](Options& o) { o.exclude.groups_that_ignore_each_other = {{0, 0}}; });
+    refused("exclude, face_pairs: entry 0 names face " + std::to_string(wrong), [&](Options& o) {
+      o.exclude.face_pairs = {{1, wrong}};
+    });
+  refused("exclude, rigid: 5 entries for 6 vertices", [](Options& o) { o.exclude.rigid.resize(5); });
+  refused("exclude, group: 7 entries for 6 vertices", [](Options& o) { o.exclude.group.resize(7); });
+  refused("exclude, groups_that_ignore_each_other: no vertex has a group", [](Options& o) {
+    o.exclude.groups_that_ignore_each_other = {{0, 0}};
+  });
   for (const std::size_t size : {1u, 7u, 64u, 4096u})
     refused("preparation", [&](Options& o) { o.preparation.assign(size, std::byte{1}); });
   for (const int wrong : {kLeast, -1, 6, kMost})

@@ -37,7 +37,7 @@ constexpr std::size_t kMostLabels = 1000;
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 std::span<const Vec3> rows_of(const Positions& positions, std::string_view name) {
-  positions.require_three_columns(name, "vertex");
+  positions.require_rows_of_three(name, "vertex");
   return {reinterpret_cast<const Vec3*>(positions.data()), positions.rows()};
 }
 
@@ -50,7 +50,7 @@ std::span<const Vec3> rows_of(const Positions& positions, std::size_t count, std
 }
 
 std::vector<Triangle> triangles_of(const Faces& faces) {
-  faces.require_three_columns("faces", "triangle");
+  faces.require_rows_of_three("faces", "triangle");
   std::vector<Triangle> triangles;
   triangles.reserve(faces.rows());
   for (const int* c = faces.data(); triangles.size() < faces.rows(); c += 3)
@@ -113,7 +113,7 @@ class SelfCollision::Engine {
       throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
                        std::to_string(kMostThreads));
     if (options_.exclude.ongoing && !options_.check_start)
-      throw InputError("exclude: ongoing needs to know what crosses at the start; set check_start");
+      throw InputError("exclude, ongoing: needs to know what crosses at the start; set check_start");
     check_labels();
     thickness_ = checked_thickness();
     options_.obstacles.clear();
@@ -142,7 +142,8 @@ class SelfCollision::Engine {
   }
 
   void move(std::size_t obstacle, const Positions& start, const Positions& end) {
-    const std::string name = "obstacle " + std::to_string(obstacle);
+    // A caller's -1 is the largest number by the time it is here.
+    const std::string name = "obstacle " + std::to_string(static_cast<std::ptrdiff_t>(obstacle));
     const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
     if (obstacle >= count)
       throw InputError(name + ": there are " + std::to_string(count) + "; obstacles are counted from 0");

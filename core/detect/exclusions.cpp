@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
+#include "core/geometry/unit_scale.h"
 
 namespace cscd {
 namespace {
@@ -38,11 +40,13 @@ void require_one_each(std::size_t count, std::size_t size, const std::string& wh
 template <class Id>
 void append(std::span<const std::pair<Id, Id>> pairs, std::size_t count, const std::string& what,
             std::vector<std::uint64_t>& keys) {
-  for (const auto& [a, b] : pairs) {
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [a, b] = pairs[i];
     for (const Id id : {a, b})
       if (static_cast<std::int64_t>(id) < 0 || static_cast<std::size_t>(id) >= count)
-        throw InputError("excluded pairs: " + what + " " + std::to_string(static_cast<std::int64_t>(id)) +
-                         " is outside 0 to " + std::to_string(count - 1));
+        throw InputError(what + "_pairs: entry " + std::to_string(i) + " names " + what + " " +
+                         std::to_string(static_cast<std::int64_t>(id)) + "; give 0 to " +
+                         std::to_string(count - 1));
     keys.push_back(key(a, b));
   }
   sort(keys);
@@ -72,20 +76,21 @@ void Exclusions::set_rigid(const TriangleMesh& mesh, std::vector<bool> rigid) {
 Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::string_view what,
                                          std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
   if (const auto least = std::ranges::min_element(group); least != group.end() && *least < 0)
-    throw InputError("groups: " + std::string(what) + " " + std::to_string(least - group.begin()) +
+    throw InputError("group: " + std::string(what) + " " + std::to_string(least - group.begin()) +
                      " has group " + std::to_string(*least) + "; number groups from 0");
   const std::int32_t last = group.empty() ? -1 : *std::ranges::max_element(group);
   if (last >= kMostGroups)
-    throw InputError("groups: group " + std::to_string(last) + "; number groups from 0 to " +
+    throw InputError("group: group " + std::to_string(last) + "; number groups from 0 to " +
                      std::to_string(kMostGroups - 1));
   Groups out;
   out.count = static_cast<std::size_t>(last + 1);
   out.ignoring.assign(out.count * out.count, false);
-  for (const auto& [a, b] : ignoring) {
+  for (std::size_t k = 0; k < ignoring.size(); ++k) {
+    const auto& [a, b] = ignoring[k];
     for (const std::int32_t g : {a, b})
       if (g < 0 || g > last)
-        throw InputError("groups: no " + std::string(what) + " has group " + std::to_string(g) +
-                         ", which a pair names");
+        throw InputError("groups_that_ignore_each_other: entry " + std::to_string(k) + " names group " +
+                         std::to_string(g) + ", which no " + std::string(what) + " has");
     const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
     out.ignoring[i * out.count + j] = out.ignoring[j * out.count + i] = true;
   }
@@ -95,13 +100,13 @@ Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::s
 
 void Exclusions::set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
                             std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
-  require_one_each(mesh.vertex_count(), group.size(), "groups", "vertices");
+  require_one_each(mesh.vertex_count(), group.size(), "group", "vertices");
   vertex_groups_ = groups_of(std::move(group), "vertex", ignoring);
 }
 
 void Exclusions::set_triangle_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
                                      std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
-  require_one_each(mesh.triangle_count(), group.size(), "groups", "triangles");
+  require_one_each(mesh.triangle_count(), group.size(), "group", "triangles");
   triangle_groups_ = groups_of(std::move(group), "triangle", ignoring);
 }
 
@@ -110,7 +115,7 @@ void Exclusions::exclude(const TriangleMesh& mesh, std::span<const std::pair<Ver
 }
 
 void Exclusions::exclude(const TriangleMesh& mesh, std::span<const std::pair<TriangleId, TriangleId>> pairs) {
-  append(pairs, mesh.triangle_count(), "triangle", triangle_pairs_);
+  append(pairs, mesh.triangle_count(), "face", triangle_pairs_);
 }
 
 void Exclusions::exclude_rings(const TriangleMesh& mesh, int rings) {
@@ -129,7 +134,7 @@ void Exclusions::exclude_rings(const TriangleMesh& mesh, int rings) {
     for (const VertexId u : reached)
       if (u > start) vertex_pairs_.push_back(key(start, u));
     if (vertex_pairs_.size() > kMostPairs)
-      throw InputError("exclusion by rings: " + std::to_string(rings) + " rings hold more than " +
+      throw InputError("rings: " + std::to_string(rings) + " rings hold more than " +
                        std::to_string(kMostPairs) + " pairs of vertices; give fewer rings");
   }
   sort(vertex_pairs_);
@@ -137,11 +142,9 @@ void Exclusions::exclude_rings(const TriangleMesh& mesh, int rings) {
 
 void Exclusions::exclude_near(std::span<const Vec3> reference, double distance) {
   if (!(distance >= 0) || !std::isfinite(distance))
-    throw InputError("exclusion by distance: give a finite length of at least 0");
+    throw InputError("rest_distance: " + exact_text(distance) + "; give a finite length of at least 0");
   reference_.assign(reference.begin(), reference.end());
-  int exponent = 0;
-  std::frexp(distance, &exponent);
-  scale_ = std::ldexp(1, std::clamp(-exponent, -1000, 1000));
+  scale_ = unit_scale(distance);
   near_ = distance * scale_;
 }
 

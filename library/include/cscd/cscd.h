@@ -71,8 +71,8 @@ class CSCD_EXPORT SelfCollision {
     std::vector<std::array<double, 3>> positions;
 
     Obstacle(const Faces& corners, const Positions& where) {
-      corners.require_three_columns("obstacle, faces", "triangle");
-      where.require_three_columns("obstacle, positions", "vertex");
+      corners.require_rows_of_three("obstacle, faces", "triangle");
+      where.require_rows_of_three("obstacle, positions", "vertex");
       for (const int* c = corners.data(); faces.size() < corners.rows(); c += 3)
         faces.push_back({c[0], c[1], c[2]});
       for (const double* p = where.data(); positions.size() < where.rows(); p += 3)

@@ -30,8 +30,9 @@ concept MayHaveThreeColumns = int(Matrix::ColsAtCompileTime) == 3 ||
 // Eigen, or a flat array: a contiguous range of three numbers for each row, such as std::vector or std::span.
 //
 // The view refers to the caller's numbers where they are of type `Number` and stand row by row without gaps.
-// Otherwise the view holds a copy. It keeps the number of columns, so that the library can refuse a matrix of
-// the wrong shape in a release build too.
+// Otherwise the view holds a copy. The view does not know which argument it is, so it keeps what is wrong
+// with the numbers or their shape, and require_rows_of_three() throws where the name of the argument is
+// known.
 template <class Number>
 class MatrixView {
  public:
@@ -57,8 +58,7 @@ class MatrixView {
       : rows_(std::ranges::size(flat) / 3), columns_(3) {
     const std::size_t size = std::ranges::size(flat);
     if (size % 3 != 0)
-      throw std::invalid_argument("flat array: " + std::to_string(size) +
-                                  " numbers are no whole rows; give three numbers for each row");
+      defect_ = std::to_string(size) + " numbers are no whole rows; give three numbers for each row";
     if constexpr (std::same_as<std::ranges::range_value_t<Flat>, Number>)
       numbers_ = std::ranges::data(flat);
     else
@@ -70,10 +70,11 @@ class MatrixView {
   // Row by row, rows() times columns() numbers.
   const Number* data() const { return copy_.empty() ? numbers_ : copy_.data(); }
 
-  // Throws std::invalid_argument unless the matrix has three columns. The text begins with `name`, and says
-  // that there is a row for each `what`.
-  void require_three_columns(std::string_view name, std::string_view what) const {
-    if (columns_ == 3) return;
+  // Throws std::invalid_argument unless there are rows of three numbers that a `Number` can hold. The text
+  // begins with `name`, and says that there is a row for each `what`. To be called before data() is read.
+  void require_rows_of_three(std::string_view name, std::string_view what) const {
+    if (columns_ == 3 && defect_.empty()) return;
+    if (columns_ == 3) throw std::invalid_argument(std::string(name) + ": " + defect_);
     std::string hint = "; give one row of three for each ";
     hint += what;
     if (rows_ == 3 && columns_ > 4) hint += ": transpose the matrix";
@@ -88,10 +89,12 @@ class MatrixView {
     copy_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       if constexpr (std::integral<Scalar>)
-        if (!std::in_range<Number>(values[i]))
-          throw std::invalid_argument("faces: triangle " + std::to_string(i / columns_) + " names vertex " +
-                                      std::to_string(values[i]) + "; an index is at most " +
-                                      std::to_string(std::numeric_limits<Number>::max()));
+        if (!std::in_range<Number>(values[i])) {
+          defect_ = "triangle " + std::to_string(i / columns_) + " names vertex " +
+                    std::to_string(values[i]) + "; an index is at most " +
+                    std::to_string(std::numeric_limits<Number>::max());
+          return;
+        }
       copy_[i] = static_cast<Number>(values[i]);
     }
   }
@@ -99,6 +102,7 @@ class MatrixView {
   std::size_t rows_, columns_;
   const Number* numbers_ = nullptr;
   std::vector<Number> copy_;
+  std::string defect_;  // what is wrong with the numbers, or empty
 };
 
 }  // namespace cscd

@@ -173,6 +173,10 @@ class SelfCollision(_cscd.SelfCollision):
         The promise holds for the paths themselves, if both functions keep theirs: `clear` is proven, and so is `touches`.
         For a mesh without obstacles and without a thickness.
         """
+        for name, function in (("positions", positions), ("acceleration_bound", acceleration_bound)):
+            if not callable(function):
+                raise ValueError(f"{name}: give a function of {'a time' if name == 'positions' else 'two times'}")
+
         def bounds(earlier, later):
             given = as_array(acceleration_bound(earlier, later), "acceleration_bound")
             return numbers(given.reshape(-1), "acceleration_bound", REAL, "vertices").tolist()

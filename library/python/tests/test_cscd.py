@@ -110,7 +110,7 @@ class SelfCollision(unittest.TestCase):
         self.assertTrue(body.is_free(inside, self.before))
         self.assertEqual(len(body.all_contacts(inside, self.before).start_crossings), 0)
         self.assertFalse(body.is_free(self.before, inside))
-        with self.assertRaisesRegex(ValueError, "exclude: ongoing needs"):
+        with self.assertRaisesRegex(ValueError, "exclude, ongoing: needs"):
             cscd.SelfCollision(self.faces, self.before, exclude=cscd.Exclusions(ongoing=True), check_start=False)
         with self.assertRaisesRegex(ValueError, "exclude, ongoing: give True or False"):
             cscd.Exclusions(ongoing=1)

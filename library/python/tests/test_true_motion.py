@@ -62,6 +62,10 @@ class TrueMotion(unittest.TestCase):
                                         (lambda t: rest, lambda a, b: -1, "at least 0")):
             with self.assertRaisesRegex(ValueError, words):
                 body.true_motion(positions, bound)
+        with self.assertRaisesRegex(ValueError, "positions: give a function of a time"):
+            body.true_motion(rest, lambda a, b: 1)
+        with self.assertRaisesRegex(ValueError, "acceleration_bound: give a function of two times"):
+            body.true_motion(lambda t: rest, rest)
         with self.assertRaisesRegex(ValueError, "no span of time"):
             body.true_motion(lambda t: rest, lambda a, b: 1, 1, 1)
 
