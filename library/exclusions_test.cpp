@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -101,6 +103,24 @@ TEST(SelfCollision, SeesAWrongFilterOfEachKind) {
     }
     EXPECT_GT(seen, 0u) << "kind " << kind;
   }
+}
+
+// Mutations: a group that no pair names is taken for one of those that pairs name; a group's number is its
+// place in the table.
+TEST(SelfCollision, TakesGroupsOfAnyNumber) {
+  const std::vector<std::int32_t> group{7, 4096, std::numeric_limits<std::int32_t>::max(), 7, 0, 5000};
+  const std::vector<std::pair<std::int32_t, std::int32_t>> pairs{{7, group[2]}, {4096, 4096}};
+  const TriangleMesh mesh({corners(0, 1, 2), corners(3, 4, 5)}, 6);
+  Exclusions exclusions;
+  exclusions.set_groups(mesh, group, pairs);
+  for (std::size_t u = 0; u < 6; ++u)
+    for (std::size_t v = 0; v < 6; ++v) {
+      const auto is = [&](const auto& pair) {
+        return std::pair(group[u], group[v]) == pair || std::pair(group[v], group[u]) == pair;
+      };
+      EXPECT_EQ(exclusions.excludes(VertexId{static_cast<int>(u)}, VertexId{static_cast<int>(v)}),
+                std::ranges::any_of(pairs, is));
+    }
 }
 
 // Filters name vertices and faces of obstacles behind those of the mesh.

@@ -229,6 +229,10 @@ TEST(Input, WrongNumbersAreRefused) {
               o.exclude.groups_that_ignore_each_other = {{0, wrong}};
             });
   }
+  refused("exclude, groups_that_ignore_each_other: 5000 different groups; give at most 4096", [](Options& o) {
+    o.exclude.group.assign(6, 4999);
+    for (int g = 0; g < 5000; ++g) o.exclude.groups_that_ignore_each_other.emplace_back(g, 0);
+  });
   for (const int wrong : {kLeast, -1, 2, kMost})
     refused("exclude, face_pairs: entry 0 names face " + std::to_string(wrong), [&](Options& o) {
       o.exclude.face_pairs = {{1, wrong}};

@@ -13,7 +13,7 @@
 namespace cscd {
 namespace {
 
-constexpr std::int32_t kMostGroups = 4096;
+constexpr std::size_t kMostGroups = 4096;                 // that pairs name; two mebibytes
 constexpr std::size_t kMostPairs = std::size_t{1} << 27;  // a gibibyte
 
 template <class Id>
@@ -79,22 +79,36 @@ Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::s
     throw InputError("group: " + std::string(what) + " " + std::to_string(least - group.begin()) +
                      " has group " + std::to_string(*least) + "; number groups from 0");
   const std::int32_t last = group.empty() ? -1 : *std::ranges::max_element(group);
-  if (last >= kMostGroups)
-    throw InputError("group: group " + std::to_string(last) + "; number groups from 0 to " +
-                     std::to_string(kMostGroups - 1));
-  Groups out;
-  out.count = static_cast<std::size_t>(last + 1);
-  out.ignoring.assign(out.count * out.count, false);
+  std::vector<std::int32_t> named;  // by a pair, sorted
   for (std::size_t k = 0; k < ignoring.size(); ++k) {
     const auto& [a, b] = ignoring[k];
     for (const std::int32_t g : {a, b})
       if (g < 0 || g > last)
         throw InputError("groups_that_ignore_each_other: entry " + std::to_string(k) + " names group " +
                          std::to_string(g) + ", which no " + std::string(what) + " has");
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    named.insert(named.end(), {a, b});
+  }
+  if (named.empty()) return {};
+  std::ranges::sort(named);
+  named.erase(std::unique(named.begin(), named.end()), named.end());
+  if (named.size() > kMostGroups)
+    throw InputError("groups_that_ignore_each_other: " + std::to_string(named.size()) +
+                     " different groups; give at most " + std::to_string(kMostGroups));
+  // The groups that no pair names become one, which ignores none.
+  const auto place_of = [&](std::int32_t g) {
+    const auto at = std::ranges::lower_bound(named, g);
+    return static_cast<std::size_t>(at == named.end() || *at != g ? named.end() - named.begin()
+                                                                  : at - named.begin());
+  };
+  Groups out;
+  out.count = named.size() + 1;
+  out.ignoring.assign(out.count * out.count, false);
+  for (const auto& [a, b] : ignoring) {
+    const std::size_t i = place_of(a), j = place_of(b);
     out.ignoring[i * out.count + j] = out.ignoring[j * out.count + i] = true;
   }
-  if (!ignoring.empty()) out.of = std::move(group);
+  for (std::int32_t& g : group) g = static_cast<std::int32_t>(place_of(g));
+  out.of = std::move(group);
   return out;
 }
 

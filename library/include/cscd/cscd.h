@@ -87,8 +87,8 @@ class CSCD_EXPORT SelfCollision {
     // Vertices that never collide with each other, such as a part of the mesh that the caller moves as one
     // body; empty, or one entry a vertex. Surfaces beside the mesh are Options::obstacles.
     std::vector<bool> rigid;
-    // The group of each vertex, from 0, and pairs of groups that do not collide; a group may be paired with
-    // itself. Empty, or one entry a vertex.
+    // The group of each vertex, any number from 0, and pairs of groups that do not collide; a group may be
+    // paired with itself. Pairs name at most 4096 different groups. Empty, or one entry a vertex.
     std::vector<int> group;
     std::vector<std::pair<int, int>> groups_that_ignore_each_other;
     std::vector<std::pair<int, int>> vertex_pairs;

@@ -43,7 +43,8 @@ class Exclusions(_cscd.Exclusions):
     Two features may collide if some vertex of one may collide with some vertex of the other.
 
     rigid: [vertices] bool; vertices that never collide with each other, such as a part that moves as one body.
-    group: [vertices] int from 0, and pairs of groups that do not collide with each other.
+    group: [vertices] int, any from 0, and pairs of groups that do not collide with each other, which name at most 4096
+        different groups.
     vertex_pairs, face_pairs: [pairs, 2] int; pairs of indices that do not collide.
     rings: vertices that are joined by at most so many edges do not collide.
     rest_distance: nor do vertices nearer than this in the reference positions.

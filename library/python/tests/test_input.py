@@ -159,7 +159,7 @@ class Input(unittest.TestCase):
                     self.refused(lambda: cscd.SelfCollision(FACES, START, **{name: value}))
         for name, values in {
                 "rigid": [[1] * 6, [0.0] * 6, "abcdef", None, [[True] * 6], [True] * 5, 5],
-                "group": [[0.5] * 6, [-1] * 6, [0] * 5, [5000] * 6, [2**40] * 6, [None] * 6, 0, "a", [[0]] * 6],
+                "group": [[0.5] * 6, [-1] * 6, [0] * 5, [2**40] * 6, [None] * 6, 0, "a", [[0]] * 6],
                 "groups_that_ignore_each_other": [[(0, 0)]], "face_pairs": [[(0, 2)], [(True, False)]],
                 "vertex_pairs": [[(0, 6)], [(-1, 0)], [0, 1], [(0, 1, 2)], [(0, 0.5)], [(0, None)], 3, "ab", [(0, 2**33)]],
                 "rings": [-1, 0.5, None, "2"], "rest_distance": [-1, np.nan, np.inf, "1", None, [1], 1j, True]}.items():
@@ -182,6 +182,8 @@ class Input(unittest.TestCase):
         every = cscd.Exclusions(group=np.array([0, 0, 0, 1, 1, 1], dtype="u1"),
                                 groups_that_ignore_each_other=np.array([[0.0, 1.0]]))
         self.assertTrue(cscd.SelfCollision(FACES, START, exclude=every, threads=np.int8(1)).is_free(START, END))
+        large = cscd.Exclusions(group=[2**31 - 1] * 3 + [5000] * 3, groups_that_ignore_each_other=[(5000, 2**31 - 1)])
+        self.assertTrue(cscd.SelfCollision(FACES, START, exclude=large).is_free(START, END))
 
     def test_random_values(self):
         random = np.random.default_rng(1)
