@@ -74,7 +74,8 @@ class SelfCollision(_cscd.SelfCollision):
     faces: [faces, 3] int, corners counter-clockwise seen from outside.
     reference: [vertices, 3] float, a pose without crossings, such as the pose at rest.
     threads: on which one step is answered; answers do not depend on it.
-    check_positions: whether positions are searched for numbers that are not finite.
+    check_positions: whether positions are searched for numbers that are not finite. Without, the answer to such numbers
+        is undefined.
     check_start: whether answers say which triangles cross at the start.
     exclude: what does not count as a collision, an object of Exclusions.
     obstacles: list of (faces, positions) of surfaces that the mesh collides with, and that never collide with each
@@ -139,8 +140,11 @@ class SelfCollision(_cscd.SelfCollision):
     def largest_step(self, start, end, safety=0.9):
         """Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step.
 
-        That is about the exact lines. Positions that you store, such as start + t * (end - start), are rounded: where steps
-        become very short, ask is_free(start, stored) before you go on from there.
+        Otherwise that is `safety`, in (0, 1], times the earliest time of a contact, rounded down. It is 0 from a start in
+        which something crosses, touches, or is within the thickness, even where that moves apart.
+
+        The promise is about the exact lines. Positions that you store, such as start + t * (end - start), are rounded: where
+        steps become very short, ask is_free(start, stored) before you go on from there.
         """
         return super().largest_step(*_step(start, end), float(numbers(safety, "safety", REAL)))
 
