@@ -132,7 +132,8 @@ TEST(VtkFiles, EscapeNames) {
   EXPECT_NE(to_pvd(moments).find("timestep=\"0.5\" part=\"1\" file=\"a&amp;b.vtp\""), std::string::npos);
 }
 
-TEST(UsdFiles, WriteColoursWhereTheyChange) {
+// Mutation: the frame before a change is not written, and readers blend over all frames since the last one.
+TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
   UsdSurface surface(kTriangles, 24);
   constexpr UsdSurface::Colour kPalette[] = {{0, 0, 0}, {1, 0, 0}};
   for (const std::uint8_t second : {0, 0, 1})
@@ -145,7 +146,8 @@ TEST(UsdFiles, WriteColoursWhereTheyChange) {
             std::string::npos);
   EXPECT_NE(text.find("int[] curveVertexCounts.timeSamples = {\n            0: [4],"), std::string::npos);
   const std::string colours = text.substr(text.find("displayColor.timeSamples"), 200);
-  EXPECT_NE(colours.find("0: [(0, 0, 0), (0, 0, 0)],\n            2: [(0, 0, 0), (1, 0, 0)]"),
+  EXPECT_NE(colours.find("0: [(0, 0, 0), (0, 0, 0)],\n            1: [(0, 0, 0), (0, 0, 0)],\n"
+                         "            2: [(0, 0, 0), (1, 0, 0)]"),
             std::string::npos)
       << colours;
 }

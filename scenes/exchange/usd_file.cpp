@@ -1,7 +1,7 @@
 #include "scenes/exchange/usd_file.h"
 
-#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace cscd::scenes {
 namespace {
@@ -67,29 +67,33 @@ void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::ui
   curve_points_ += time;
   append_list(curve_points, vector_into(curve_points_), curve_points_);
   curve_points_ += ",\n";
-  if (!std::ranges::equal(depth, last_depth_)) {
-    last_depth_.assign(depth.begin(), depth.end());
-    depths_ += time;
-    append_list(
-        depth,
-        [&](float d) {
-          char number[32];
-          std::snprintf(number, sizeof number, "%.9g", static_cast<double>(d));
-          depths_ += number;
-        },
-        depths_);
-    depths_ += ",\n";
-  }
-  if (std::ranges::equal(colour, last_colour_)) return;
-  last_colour_.assign(colour.begin(), colour.end());
-  colours_ += time;
+  std::string row;
+  append_list(
+      depth,
+      [&](float d) {
+        char number[32];
+        std::snprintf(number, sizeof number, "%.9g", static_cast<double>(d));
+        row += number;
+      },
+      row);
+  depths_.add(time, std::exchange(row, {}));
   append_list(
       colour,
       [&](std::uint8_t c) {
-        append_vector({palette[c][0], palette[c][1], palette[c][2]}, colours_);
+        append_vector({palette[c][0], palette[c][1], palette[c][2]}, row);
       },
-      colours_);
-  colours_ += ",\n";
+      row);
+  colours_.add(time, std::move(row));
+}
+
+void UsdSurface::HeldSamples::add(const std::string& time, std::string row) {
+  if (row != last_row) {
+    if (last_time != written_time) rows += last_time + last_row + ",\n";
+    rows += time + row + ",\n";
+    written_time = time;
+    last_row = std::move(row);
+  }
+  last_time = time;
 }
 
 std::string UsdSurface::text(double mark_width) const {
@@ -108,9 +112,9 @@ std::string UsdSurface::text(double mark_width) const {
   samples("float3[] extent", extents_);
   samples("point3f[] points", points_);
   out += "    color3f[] primvars:displayColor (\n        interpolation = \"uniform\"\n    )\n";
-  samples("color3f[] primvars:displayColor", colours_);
+  samples("color3f[] primvars:displayColor", colours_.rows);
   out += "    float[] primvars:depth (\n        interpolation = \"vertex\"\n    )\n";
-  samples("float[] primvars:depth", depths_);
+  samples("float[] primvars:depth", depths_.rows);
   out += "}\n\ndef Points \"contacts\"\n{\n";
   samples("point3f[] points", marks_);
   const auto look = [&](double width, const char* colour) {

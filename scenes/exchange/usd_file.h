@@ -18,8 +18,7 @@ class UsdSurface {
   UsdSurface(std::span<const Triangle> triangles, double fps);
 
   // Adds the next frame. `colour` names a colour of the palette for each triangle, and `depth` is a number of
-  // each vertex; both are written where they differ from those of the frame before. `marks` and `curves` may
-  // be empty.
+  // each vertex; both are written where they change. `marks` and `curves` may be empty.
   using Colour = std::array<float, 3>;
   void append(std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
               std::span<const Colour> palette, std::span<const float> depth, std::span<const Vec3> marks,
@@ -28,11 +27,18 @@ class UsdSurface {
   std::string text(double mark_width) const;
 
  private:
+  // Samples of an array that seldom changes. A frame is written if its array is another than that of the
+  // frame before, and then the frame before is written too: readers draw straight lines between samples, so a
+  // sample long ago would begin to change at once.
+  struct HeldSamples {
+    void add(const std::string& time, std::string row);
+    std::string rows, last_row, last_time, written_time;
+  };
+
   double fps_;
   std::size_t frames_ = 0;
-  std::vector<std::uint8_t> last_colour_;
-  std::vector<float> last_depth_;
-  std::string counts_, corners_, points_, extents_, colours_, depths_, marks_, curve_counts_, curve_points_;
+  HeldSamples colours_, depths_;
+  std::string counts_, corners_, points_, extents_, marks_, curve_counts_, curve_points_;
 };
 
 }  // namespace cscd::scenes
