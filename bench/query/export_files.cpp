@@ -62,6 +62,12 @@ double fps_of(const Input& input) {
   return input.import ? input.import->fps : scenes::kExportedFps;
 }
 
+// Where a file does not say how long its unit is, a metre is assumed, as glTF has it.
+double metres_per_unit(const Input& input) {
+  const double centimetres = input.import ? input.import->centimetres_per_unit : 0;
+  return centimetres > 0 ? centimetres / 100 : 1;
+}
+
 // NAME.0012.obj for frame 12 of NAME.obj; the number has as many digits as the last frame needs, at least
 // four.
 fs::path numbered(const fs::path& output, std::size_t frame, std::size_t frames,
@@ -297,7 +303,7 @@ void export_usd(Input& input, const fs::path& output, bool force) {
   constexpr scenes::UsdSurface::Colour kPalette[] = {
       {0.79F, 0.83F, 0.86F}, {0.90F, 0.62F, 0.0F}, {0.84F, 0.37F, 0.0F}};  // clear, touches, crosses
   Marker marker(input);
-  scenes::UsdSurface surface(input.mesh.triangles(), fps_of(input));
+  scenes::UsdSurface surface(input.mesh.triangles(), {fps_of(input), input.up.axis, metres_per_unit(input)});
   Vec3 low = input.reference[0], high = low;
   for (const Vec3& x : input.reference) {
     low = low.cwiseMin(x);
@@ -332,7 +338,8 @@ void export_files(Input& input, const fs::path& output, const std::string& forma
     export_usd(input, output, force);
   } else {
     OutputFile file(output, force, ".glb");
-    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input)));
+    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input), input.up.axis,
+                                  metres_per_unit(input)));
     std::printf("%s", output.string().c_str());
   }
   std::printf(": %zu frames of %zu vertices and %zu triangles\n", input.clip->frame_count(),

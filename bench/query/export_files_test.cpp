@@ -276,5 +276,21 @@ TEST_F(ExportFiles, UsdHoldsEveryFrame) {
   EXPECT_TRUE(std::regex_search(samples("curveVertexCounts"), std::regex("\\[[0-9]"))) << "nothing crosses";
 }
 
+// Mutation: the writers are not told which axis of the input points up.
+TEST_F(ExportFiles, UsdAndBakedGlbKeepTheUpAxis) {
+  ASSERT_EQ(run("cscd export small y.h5").status, 0);
+  {
+    scenes::PointCacheReader source(folder / "y.h5");
+    scenes::ClipHeader header = source.header();
+    header.up = "z";
+    scenes::PointCacheWriter writer(folder / "z.h5", std::move(header), false);
+    scenes::copy_frames(source, writer);
+    writer.finish();
+  }
+  ASSERT_EQ(run("cscd export z.h5 z.usda && cscd export z.h5 z.glb --bake").status, 0);
+  EXPECT_NE(text("z.usda").find("metersPerUnit = 1\n    upAxis = \"Z\""), std::string::npos);
+  EXPECT_NE(text("z.glb").find("\"rotation\":[-0.707"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cscd::bench

@@ -134,7 +134,7 @@ TEST(VtkFiles, EscapeNames) {
 
 // Mutation: the frame before a change is not written, and readers blend over all frames since the last one.
 TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
-  UsdSurface surface(kTriangles, 24);
+  UsdSurface surface(kTriangles, {.fps = 24});
   constexpr UsdSurface::Colour kPalette[] = {{0, 0, 0}, {1, 0, 0}};
   for (const std::uint8_t second : {0, 0, 1})
     surface.append(kPositions, std::vector<std::uint8_t>{0, second}, kPalette,
@@ -150,6 +150,24 @@ TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
                          "            2: [(0, 0, 0), (1, 0, 0)]"),
             std::string::npos)
       << colours;
+}
+
+// Mutations: any axis but z is taken for y; the unit is left to USD's default of a centimetre.
+TEST(UsdFiles, SayWhichAxisIsUpAndHowLongAUnitIs) {
+  const auto head = [](const std::string& up) {
+    UsdSurface surface(kTriangles, {24, up, 0.01});
+    surface.append(kPositions, std::vector<std::uint8_t>{0, 0}, std::vector<UsdSurface::Colour>(1),
+                   std::vector<float>(4), {}, {});
+    const std::string text = surface.text(0.1);
+    return text.substr(0, text.find("def Mesh"));
+  };
+  EXPECT_NE(head("y").find("metersPerUnit = 0.01\n    upAxis = \"Y\""), std::string::npos);
+  EXPECT_NE(head("z").find("upAxis = \"Z\""), std::string::npos);
+  EXPECT_EQ((head("y") + head("z")).find("rotate"), std::string::npos);
+  EXPECT_NE(head("x").find("rotateZ = 90"), std::string::npos);
+  EXPECT_NE(head("-x").find("rotateZ = -90"), std::string::npos);
+  EXPECT_NE(head("-y").find("rotateX = 180"), std::string::npos);
+  EXPECT_NE(head("-z").find("rotateX = 90"), std::string::npos);
 }
 
 }  // namespace

@@ -24,9 +24,23 @@ void append_list(const Row& row, const Append& append, std::string& out) {
   out += ']';
 }
 
+// USD lets y and z point up, and no other axis. The root of a scene that has another axis up is turned until
+// that axis is y.
+std::string turn_to_y(const std::string& up) {
+  const auto about = [](const std::string& axis, const char* degrees) {
+    return "    float xformOp:rotate" + axis + " = " + degrees +
+           "\n    uniform token[] xformOpOrder = [\"xformOp:rotate" + axis + "\"]\n";
+  };
+  if (up == "x") return about("Z", "90");
+  if (up == "-x") return about("Z", "-90");
+  if (up == "-y") return about("X", "180");
+  if (up == "-z") return about("X", "90");
+  return {};
+}
+
 }  // namespace
 
-UsdSurface::UsdSurface(std::span<const Triangle> triangles, double fps) : fps_(fps) {
+UsdSurface::UsdSurface(std::span<const Triangle> triangles, UsdStage stage) : stage_(std::move(stage)) {
   append_list(
       triangles, [&](const Triangle&) { counts_ += '3'; }, counts_);
   append_list(
@@ -98,10 +112,15 @@ void UsdSurface::HeldSamples::add(const std::string& time, std::string row) {
 
 std::string UsdSurface::text(double mark_width) const {
   char number[32];
-  std::snprintf(number, sizeof number, "%.9g", fps_);
-  std::string out = "#usda 1.0\n(\n    defaultPrim = \"surface\"\n    startTimeCode = 0\n    endTimeCode = " +
-                    std::to_string(frames_ - 1) + "\n    timeCodesPerSecond = " + number +
-                    "\n    upAxis = \"Y\"\n)\n\n";
+  const auto shown = [&](double x) {
+    std::snprintf(number, sizeof number, "%.9g", x);
+    return std::string(number);
+  };
+  std::string out = "#usda 1.0\n(\n    defaultPrim = \"clip\"\n    startTimeCode = 0\n    endTimeCode = " +
+                    std::to_string(frames_ - 1) + "\n    timeCodesPerSecond = " + shown(stage_.fps) +
+                    "\n    metersPerUnit = " + shown(stage_.metres_per_unit) + "\n    upAxis = \"" +
+                    (stage_.up == "z" ? "Z" : "Y") + "\"\n)\n\ndef Xform \"clip\"\n{\n" +
+                    turn_to_y(stage_.up);
   const auto samples = [&](const std::string& name, const std::string& rows, const std::string& notes = "") {
     out += "    " + name + ".timeSamples = {\n" + rows + "    }" + notes + "\n";
   };
@@ -118,8 +137,7 @@ std::string UsdSurface::text(double mark_width) const {
   out += "}\n\ndef Points \"contacts\"\n{\n";
   samples("point3f[] points", marks_);
   const auto look = [&](double width, const char* colour) {
-    std::snprintf(number, sizeof number, "%.9g", width);
-    out += std::string("    float[] widths = [") + number +
+    out += "    float[] widths = [" + shown(width) +
            "] (\n        interpolation = \"constant\"\n    )\n    color3f[] primvars:displayColor = [" +
            colour + "]\n}\n";
   };
@@ -130,7 +148,7 @@ std::string UsdSurface::text(double mark_width) const {
   samples("int[] curveVertexCounts", curve_counts_);
   samples("point3f[] points", curve_points_);
   look(mark_width / 2, "(0.84, 0.37, 0)");
-  return out;
+  return out + "}\n";
 }
 
 }  // namespace cscd::scenes

@@ -11,11 +11,18 @@
 
 namespace cscd::scenes {
 
+// How a .usda file is to be shown.
+struct UsdStage {
+  double fps = 30;
+  std::string up = "y";  // the axis that points up (scenes/clip/up_axis.h)
+  double metres_per_unit = 1;
+};
+
 // A .usda file of a moving surface: its points, colours and depths by time, points that mark contacts, and
 // curves in which it crosses itself.
 class UsdSurface {
  public:
-  UsdSurface(std::span<const Triangle> triangles, double fps);
+  UsdSurface(std::span<const Triangle> triangles, UsdStage stage);
 
   // Adds the next frame. `colour` names a colour of the palette for each triangle, and `depth` is a number of
   // each vertex; both are written where they change. `marks` and `curves` may be empty.
@@ -35,7 +42,7 @@ class UsdSurface {
     std::string rows, last_row, last_time, written_time;
   };
 
-  double fps_;
+  UsdStage stage_;
   std::size_t frames_ = 0;
   HeldSamples colours_, depths_;
   std::string counts_, corners_, points_, extents_, marks_, curve_counts_, curve_points_;

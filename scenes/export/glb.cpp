@@ -277,6 +277,17 @@ struct BakedBuffer {
   }
 };
 
+// The rotation that brings an axis to y, as a quaternion whose real part is last.
+std::array<double, 4> turn_to_y(const std::string& up) {
+  const double half = std::sqrt(0.5);
+  if (up == "x") return {0, 0, half, half};
+  if (up == "-x") return {0, 0, -half, half};
+  if (up == "-y") return {1, 0, 0, 0};
+  if (up == "z") return {-half, 0, 0, half};
+  if (up == "-z") return {half, 0, 0, half};
+  return {0, 0, 0, 1};
+}
+
 std::vector<float> rounded(std::span<const Vec3> positions, std::span<const Vec3> base) {
   std::vector<float> out;
   out.reserve(3 * positions.size());
@@ -339,7 +350,8 @@ std::string to_glb(const Character& character) {
   return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
 }
 
-std::string baked_glb(ClipSource& clip, const std::string& name, double fps) {
+std::string baked_glb(ClipSource& clip, const std::string& name, double fps, const std::string& up,
+                      double metres_per_unit) {
   const std::size_t frames = clip.frame_count(), targets = frames - 1;
   if (12 * clip.header().vertex_count * frames > UINT32_MAX)
     throw InputError("the frames are more than the 4 GiB of a .glb file; export them as .pc2 or .h5");
@@ -368,7 +380,10 @@ std::string baked_glb(ClipSource& clip, const std::string& name, double fps) {
   Json file{{"asset", {{"version", "2.0"}, {"generator", "cscd"}}},
             {"scene", 0},
             {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-            {"nodes", Json::array({{{"name", name}, {"mesh", 0}}})},
+            {"nodes", Json::array({{{"name", name},
+                                    {"mesh", 0},
+                                    {"rotation", turn_to_y(up)},
+                                    {"scale", std::vector<double>(3, metres_per_unit)}}})},
             {"meshes", Json::array({{{"name", name},
                                      {"primitives", Json::array({std::move(primitive)})},
                                      {"weights", std::vector<int>(targets, 0)}}})}};

@@ -12,6 +12,7 @@
 
 #include "core/base/test_refusal.h"
 #include "scenes/character/test_figure.h"
+#include "scenes/clip/up_axis.h"
 #include "scenes/export/test_round_trip.h"
 
 namespace cscd::scenes {
@@ -345,6 +346,23 @@ TEST(Glb, WhatTheFileCannotSayIsRefused) {
          part.first.back() = part.influences.size();
        }),
        "follows no joint");
+}
+
+// Mutations: the node of baked frames is not turned, or the other way, or not scaled.
+TEST(BakedGlb, TurnsItsUpAxisToYAndScalesToMetres) {
+  for (const std::string_view up : kUpAxes) {
+    const Vec3 tip = (up[0] == '-' ? -1.0 : 1.0) *
+                     Vec3(up.back() == 'x' ? 1 : 0, up.back() == 'y' ? 1 : 0, up.back() == 'z' ? 1 : 0);
+    Clip clip({{{VertexId{0}, VertexId{1}, VertexId{2}}}, 3, {}, false});
+    for (const double height : {2.0, 3.0})
+      clip.append({std::vector<Vec3>{height * tip, {1, 1, 1}, {-1, 1, -1}}, {}});
+    const ReadBack read = read_back(baked_glb(clip, "tip", 30, std::string(up), 0.01));
+    for (const std::size_t frame : {0, 1})
+      EXPECT_LT(
+          (read.clip.frame(frame).positions[0] - Vec3(0, 0.02 + 0.01 * static_cast<double>(frame), 0)).norm(),
+          1e-8)
+          << up;
+  }
 }
 
 }  // namespace
