@@ -101,7 +101,8 @@ TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
   }
 }
 
-// Mutations: the first second, or frame, is not looked at; frames that are not evenly spaced have a rate.
+// Mutations: the first second, or frame, is not looked at; frames that are not evenly spaced have a rate; the
+// step between the samples of PC2 is not looked at.
 TEST(MeshCaches, SayWhenTheirFramesAre) {
   const std::vector<Vec3> one = {{1, 2, 3}};
   const auto with = [&](MeshCacheFormat format, std::size_t at, std::initializer_list<float> numbers) {
@@ -122,6 +123,11 @@ TEST(MeshCaches, SayWhenTheirFramesAre) {
   EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).fps(), std::nullopt);
   EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).first_frame(), 0);
   EXPECT_EQ(MeshCache(MeshCacheFormat::pc2, named).first_frame(), 101);
+  const std::string halves = with(MeshCacheFormat::pc2, 20, {10.0F, 0.5F});
+  EXPECT_NE(test::refusal([&] {
+              MeshCache(MeshCacheFormat::pc2, halves);
+            }).find("its samples are 0.5 frames apart"),
+            std::string::npos);
 }
 
 TEST(VtkFiles, EscapeNames) {

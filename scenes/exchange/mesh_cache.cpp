@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 
 #include "core/base/error.h"
@@ -78,6 +79,13 @@ void MeshCache::read_times(std::string_view bytes) {
   };
   if (format_ == MeshCacheFormat::pc2) {
     if (const double first = number(20); std::isfinite(first)) first_frame_ = first;
+    if (const double step = number(24); step != 1) {
+      char digits[32];
+      std::snprintf(digits, sizeof digits, "%g", step);
+      throw InputError(std::string("its samples are ") + digits +
+                       " frames apart, at byte 24, and only caches with a sample a frame are read; export it "
+                       "again with a sampling of 1");
+    }
     return;
   }
   const auto second = [&](std::size_t frame) { return number(kMddHead + 4 * frame); };
