@@ -52,6 +52,15 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
                 .status,
             0);
   EXPECT_NE(run("cscd query film.mdd").out.find("24 frames a second, as the file says"), std::string::npos);
+  // All times of the frames are 0.
+  ASSERT_EQ(run("cp film.obj still.obj && cp film.mdd still.mdd && dd if=/dev/zero of=still.mdd bs=4 seek=2 "
+                "conv=notrunc count=" +
+                std::to_string(expected.size() + 1) + " 2>/dev/null")
+                .status,
+            0);
+  const std::string still = run("cscd query still.mdd").out;
+  EXPECT_NE(still.find("30 frames a second"), std::string::npos) << still;
+  EXPECT_NE(still.find("note: its frames are not evenly spaced in time"), std::string::npos) << still;
   const json late = answer("late.1003.ply");
   EXPECT_EQ(verdicts(late), expected);
   EXPECT_EQ(late["intervals"][0]["frame"], 1000);

@@ -123,6 +123,10 @@ TEST(MeshCaches, SayWhenTheirFramesAre) {
   EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).fps(), std::nullopt);
   EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).first_frame(), 0);
   EXPECT_EQ(MeshCache(MeshCacheFormat::pc2, named).first_frame(), 101);
+  const std::string falling = with(MeshCacheFormat::mdd, 8, {2.0F, 2.04F, 2.0F});
+  EXPECT_NE(
+      test::refusal([&] { MeshCache(MeshCacheFormat::mdd, falling); }).find("frame 2: its time is before"),
+      std::string::npos);
   const std::string halves = with(MeshCacheFormat::pc2, 20, {10.0F, 0.5F});
   EXPECT_NE(test::refusal([&] {
               MeshCache(MeshCacheFormat::pc2, halves);

@@ -90,6 +90,10 @@ void MeshCache::read_times(std::string_view bytes) {
   }
   const auto second = [&](std::size_t frame) { return number(kMddHead + 4 * frame); };
   if (frames_ < 2) return;
+  for (std::size_t f = 1; f < frames_; ++f)
+    if (!(second(f) >= second(f - 1)))
+      throw InputError("frame " + std::to_string(f) +
+                       ": its time is before that of the frame before, or no number; export it again");
   const double first = second(0), step = (second(frames_ - 1) - first) / static_cast<double>(frames_ - 1);
   if (!(step > 0) || !std::isfinite(step)) return;
   for (std::size_t f = 0; f < frames_; ++f)

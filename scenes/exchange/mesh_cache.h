@@ -24,7 +24,8 @@ std::string mesh_cache_frame(MeshCacheFormat format, std::span<const Vec3> posit
 class MeshCache {
  public:
   // Throws InputError for bytes that are no such cache, are too few or too many for what its head says, or
-  // hold no frame, and for a PC2 cache whose samples are not one frame apart.
+  // hold no frame, for a PC2 cache whose samples are not one frame apart, and for an MDD cache whose times
+  // fall.
   MeshCache(MeshCacheFormat format, std::string_view bytes);
 
   std::size_t vertices() const { return vertices_; }

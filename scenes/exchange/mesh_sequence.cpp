@@ -79,7 +79,7 @@ class FileSequence final : public MeshSequence {
   std::string format() const override {
     return extension_of(files_[0]) == ".ply" ? "PLY sequence" : "OBJ sequence";
   }
-  std::string files() const override {
+  std::string note() const override {
     return "the frames are " + std::to_string(files_.size()) + " files, " +
            files_.front().filename().string() + " to " + files_.back().filename().string();
   }
@@ -129,6 +129,11 @@ class CacheSequence final : public MeshSequence {
       throw InputError(faces.filename().string() + ": has no faces; export it with faces");
   }
   std::string format() const override { return pc2_ ? "PC2 cache" : "MDD cache"; }
+  std::string note() const override {
+    if (pc2_ || cache_.fps()) return {};
+    return "its frames are not evenly spaced in time; they are taken as evenly spaced, 30 a second unless "
+           "--fps says otherwise";
+  }
   std::size_t frame_count() const override { return cache_.frames(); }
   std::size_t vertex_count() const override { return cache_.vertices(); }
   std::span<const std::array<std::int32_t, 3>> triangles() const override { return surface_.triangles; }

@@ -28,8 +28,9 @@ class MeshSequence {
  public:
   virtual ~MeshSequence() = default;
   virtual std::string format() const = 0;
-  // Which files were taken: the first, the last and how many. Empty for a cache, which is one file.
-  virtual std::string files() const { return {}; }
+  // What a user should know of the frames: which files they are, or that a cache's times give no rate. May be
+  // empty.
+  virtual std::string note() const = 0;
   virtual std::size_t frame_count() const = 0;
   // The number of the first frame: that in the name of the first file, or what a cache says.
   virtual double first_frame() const = 0;

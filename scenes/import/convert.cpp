@@ -255,7 +255,7 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   for (std::size_t c = 0; c < report.components; ++c) report.chosen_components.push_back(c);
   if (options.survey) report.component_bones.assign(report.components, 0);
   report.chosen_triangles = surface.triangles.size();
-  if (const std::string files = sequence->files(); !files.empty()) report.notes.push_back(files);
+  if (const std::string note = sequence->note(); !note.empty()) report.notes.push_back(note);
   write_source_map(surface.sources, sources);
 
   PointCacheWriter writer(cache, {surface.triangles, surface.vertex.size(), {}, false}, false);
