@@ -59,7 +59,7 @@ TEST(SelfCollision, AllocatesNothingInAFreeStepAfterAFreeStep) {
 
 // Memory may run out in the middle of a step; the next ones are answered right. Mutations: clusters whose
 // cutting was broken off stay as they are; edges that were counted on the way stay counted; the end of a step
-// is known before all that touched is kept.
+// is known before all that touched is kept; a search for crossings that was broken off leaves its marks.
 TEST(SelfCollision, AnswersRightAfterAllocationsThatFailed) {
   std::size_t failed = 0;
   for (std::uint64_t seed = 1; seed <= test::intervals(); ++seed) {
@@ -85,6 +85,23 @@ TEST(SelfCollision, AnswersRightAfterAllocationsThatFailed) {
                                     expected = fresh.all_contacts(to, from);
         EXPECT_EQ(test::found(got), test::found(expected));
         EXPECT_EQ(got.start_crossings, expected.start_crossings);
+      }
+    }
+    // What was marked on a surface that crosses itself is no longer marked.
+    const auto expected = SelfCollision(step.faces, step.start).crossings(step.end).overlaps;
+    for (int i = 0; i < 10; ++i) {
+      g_failing = g_allocations + std::uint64_t(std::exp(std::uniform_real_distribution(0.0, 6.0)(random)));
+      try {
+        body.crossings(step.end);
+      } catch (const std::bad_alloc&) {
+      }
+      g_failing = 0;
+      const auto got = body.crossings(step.end).overlaps;
+      ASSERT_EQ(got.size(), expected.size());
+      for (std::size_t k = 0; k < got.size(); ++k) {
+        ASSERT_EQ(got[k].regions.size(), expected[k].regions.size());
+        for (std::size_t r = 0; r < got[k].regions.size(); ++r)
+          EXPECT_EQ(got[k].regions[r].vertices, expected[k].regions[r].vertices);
       }
     }
     test::expect_right(step, body, Exclusions());

@@ -72,6 +72,9 @@ class PoseOverlaps {
   PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> exact, std::span<const Vec3> positions,
                bool each_way)
       : finder_(finder), mesh_(finder.mesh_), exact_(exact), positions_(positions), each_way_(each_way) {}
+  ~PoseOverlaps() { clean(); }  // also where memory runs out on the way
+  PoseOverlaps(const PoseOverlaps&) = delete;
+  PoseOverlaps& operator=(const PoseOverlaps&) = delete;
 
   Overlaps find(std::span<const CrossingPair> pairs) {
     out_.crossing = find_curves(mesh_, exact_, pairs, positions_);
@@ -273,9 +276,9 @@ class PoseOverlaps {
     const std::int32_t other = groups_[found.group].other;
     const auto take = [&](VertexId v, std::int32_t image) {
       if (finder_.visited_[+v] == static_cast<std::int32_t>(r)) return;
-      finder_.visited_[+v] = static_cast<std::int32_t>(r);
       list.push_back(v);
       found.region.image.push_back(image);
+      finder_.visited_[+v] = static_cast<std::int32_t>(r);
     };
     for (const Seed& seed : found.seeds) take(seed.vertex, seed.image);
     for (std::size_t i = 0; i < list.size(); ++i)
@@ -469,11 +472,14 @@ class PoseOverlaps {
   }
   // Leaves the finder's marks as they were.
   void clean() {
+    if (finder_.visited_.size() != mesh_.vertex_count()) return;  // nothing has been marked yet
     mark(0);
     for (const Piercing& p : crossing().piercings) finder_.pierced_[+p.edge] = kNone;
-    for (const Overlap& overlap : out_.overlaps)
-      for (const CrossingRegion& region : overlap.regions)
-        for (const VertexId v : region.vertices) finder_.visited_[+v] = kNone;
+    const auto leave = [&](const CrossingRegion& region) {
+      for (const VertexId v : region.vertices) finder_.visited_[+v] = kNone;
+    };
+    for (const Overlap& overlap : out_.overlaps) std::ranges::for_each(overlap.regions, leave);
+    for (const Found& found : regions_) leave(found.region);  // those that no overlap has taken
   }
 
   OverlapFinder& finder_;
