@@ -93,6 +93,7 @@ void export_frames(const ExportOptions& options) {
     export_files(input, options.output, format, options.force, options.events);
     return;
   }
+  note_renumbered(input);
   scenes::ClipHeader header = input.clip->header();
   if (!input.up.because.empty()) header.up = input.up.axis;
   scenes::PointCacheWriter writer(options.output, std::move(header), options.force);

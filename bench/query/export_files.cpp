@@ -1,6 +1,7 @@
 #include "bench/query/export_files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -29,6 +30,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The number of a frame in the files. In the clip, it is the number by which answers name the frame; a number
+// nearly whole is taken for whole, because models hold times in single precision. The lead-in counts down
+// from the clip, because the frames of a file follow one another.
+double file_number(const Input& input, std::size_t frame) {
+  const std::size_t lead_in = input.import ? input.import->lead_in : 0;
+  const double number = frame_number(input, std::max(frame, lead_in)), whole = std::round(number);
+  const double before = frame < lead_in ? static_cast<double>(lead_in - frame) : 0;
+  return (std::abs(number - whole) < 1e-3 ? whole : number) - before;
+}
+
+// The number in the name of the first file of a sequence.
+std::size_t first_in_names(const Input& input) {
+  const double first = file_number(input, 0);
+  if (first >= 0 && first == std::floor(first)) return static_cast<std::size_t>(first);
+  note_renumbered(input);
+  return 0;
+}
+
 // Files that are opened together before the work, so that none appears if one cannot.
 class Files {
  public:
@@ -40,6 +59,17 @@ class Files {
       throw InputError("output " + path.string() +
                        ": is a device or a pipe, and this format needs an ordinary file; choose one");
     return paths_.size() - 1;
+  }
+  // Adds a file for each frame: NAME.0012.obj for frame 12 of NAME.obj. The number has as many digits as the
+  // last frame needs, at least four.
+  void add_sequence(const fs::path& output, std::size_t first, std::size_t frames,
+                    const std::string& extension) {
+    const std::size_t digits = std::max<std::size_t>(4, std::to_string(first + frames - 1).size());
+    for (std::size_t f = first; f < first + frames; ++f) {
+      std::string number = std::to_string(f);
+      number.insert(0, digits - number.size(), '0');
+      add(output.parent_path() / (output.stem().string() + "." + number + extension));
+    }
   }
   void write(std::size_t file, std::string_view content) {
     UnfinishedFile out(files_[file]->target.path, force_);
@@ -68,20 +98,10 @@ double metres_per_unit(const Input& input) {
   return centimetres > 0 ? centimetres / 100 : 1;
 }
 
-// NAME.0012.obj for frame 12 of NAME.obj; the number has as many digits as the last frame needs, at least
-// four.
-fs::path numbered(const fs::path& output, std::size_t frame, std::size_t frames,
-                  const std::string& extension) {
-  std::string number = std::to_string(frame);
-  const std::size_t digits = std::max<std::size_t>(4, std::to_string(frames - 1).size());
-  number.insert(0, digits - number.size(), '0');
-  return output.parent_path() / (output.stem().string() + "." + number + extension);
-}
-
 void export_sequence(Input& input, const fs::path& output, const std::string& format, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, format));
+  files.add_sequence(output, first_in_names(input), frames, format);
   for (std::size_t f = 0; f < frames; ++f) {
     const std::span<const Vec3> positions = input.clip->load_frame(f).positions;
     files.write(f, format == ".obj" ? scenes::to_obj(positions, input.mesh.triangles())
@@ -95,7 +115,8 @@ void export_mesh_cache(Input& input, const fs::path& output, const std::string& 
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
   const std::size_t cache = files.add(output), faces = files.add(fs::path(output).replace_extension(".obj"));
-  std::string bytes = scenes::mesh_cache_head(kind, input.mesh.vertex_count(), frames, fps_of(input));
+  std::string bytes =
+      scenes::mesh_cache_head(kind, input.mesh.vertex_count(), frames, fps_of(input), file_number(input, 0));
   for (std::size_t f = 0; f < frames; ++f)
     bytes += scenes::mesh_cache_frame(kind, input.clip->load_frame(f).positions);
   files.write(faces, scenes::to_obj(input.reference, input.mesh.triangles()));
@@ -217,9 +238,10 @@ class Marker {
 void export_events(Input& input, const fs::path& output, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, ".ply"));
+  const std::size_t first = first_in_names(input);
+  files.add_sequence(output, first, frames, ".ply");
   const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.obj");
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(curves, f, frames, ".obj"));
+  files.add_sequence(curves, first, frames, ".obj");
 
   Marker marker(input);
   Progress progress("export " + output.string(), frames);
@@ -249,12 +271,12 @@ void export_events(Input& input, const fs::path& output, bool force) {
 void export_paraview(Input& input, const fs::path& output, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
-  const std::size_t list = files.add(output);
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(output, f, frames, ".vtp"));
+  const std::size_t list = files.add(output), first = first_in_names(input);
+  files.add_sequence(output, first, frames, ".vtp");
   const fs::path contacts = output.parent_path() / (output.stem().string() + ".contacts.pvd");
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(contacts, f, frames, ".vtp"));
+  files.add_sequence(contacts, first, frames, ".vtp");
   const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.pvd");
-  for (std::size_t f = 0; f < frames; ++f) files.add(numbered(curves, f, frames, ".vtp"));
+  files.add_sequence(curves, first, frames, ".vtp");
 
   Marker marker(input);
   std::vector<scenes::VtkMoment> moments;
@@ -285,9 +307,7 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     files.write(1 + f, surface.text());
     files.write(1 + frames + f, points.text());
     files.write(1 + 2 * frames + f, lines.text());
-    const std::size_t interval = last ? f - 1 : f;
-    const ClipMoment moment{interval, last ? 1.0 : 0.0};
-    const double time = second_of(input, moment).value_or(static_cast<double>(f) / fps_of(input));
+    const double time = file_number(input, f) / fps_of(input);
     moments.push_back({time, 0, files.name(1 + f)});
     moments.push_back({time, 1, files.name(1 + frames + f)});
     moments.push_back({time, 2, files.name(1 + 2 * frames + f)});
@@ -315,8 +335,8 @@ void export_usd(Input& input, const fs::path& output, bool force) {
     std::vector<std::uint8_t> colour(triangles, 0);
     for (std::size_t t = 0; t < marks.touches.size(); ++t)
       colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
-    surface.append(input.clip->load_frame(f).positions, colour, kPalette, depth_of(marks, input.mesh),
-                   marks.points, marks.curves);
+    surface.append(file_number(input, f), input.clip->load_frame(f).positions, colour, kPalette,
+                   depth_of(marks, input.mesh), marks.points, marks.curves);
     progress.advance();
   }
   file.commit(surface.text(0.004 * (high - low).norm()));
@@ -324,6 +344,12 @@ void export_usd(Input& input, const fs::path& output, bool force) {
 }
 
 }  // namespace
+
+void note_renumbered(const Input& input) {
+  if (const double first = file_number(input, 0); first != 0)
+    std::fprintf(stderr, "note: the first frame of %s has the number %.6g, and the files count from 0\n",
+                 input.name.c_str(), first);
+}
 
 void export_files(Input& input, const fs::path& output, const std::string& format, bool force, bool events) {
   if (events) {
@@ -337,9 +363,11 @@ void export_files(Input& input, const fs::path& output, const std::string& forma
   } else if (format == ".usda") {
     export_usd(input, output, force);
   } else {
+    const double first = file_number(input, 0);
+    if (first < 0) note_renumbered(input);  // glTF has no time before 0
     OutputFile file(output, force, ".glb");
-    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input), input.up.axis,
-                                  metres_per_unit(input)));
+    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input), std::max(first, 0.0),
+                                  input.up.axis, metres_per_unit(input)));
     std::printf("%s", output.string().c_str());
   }
   std::printf(": %zu frames of %zu vertices and %zu triangles\n", input.clip->frame_count(),

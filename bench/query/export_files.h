@@ -18,7 +18,13 @@ namespace cscd::bench {
 //               there
 //   .usda       points and colours over time, and the contacts as points
 //   .glb        morph targets, without bones
+//
+// Frames have the numbers by which answers about the input name them. A line on standard error says so where
+// a format cannot hold these numbers, and counts from 0.
 void export_files(Input& input, const std::filesystem::path& output, const std::string& format, bool force,
                   bool events);
+
+// Says that the files of an input count their frames from 0 where its first frame has another number.
+void note_renumbered(const Input& input);
 
 }  // namespace cscd::bench

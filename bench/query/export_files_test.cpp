@@ -22,6 +22,20 @@ class ExportFiles : public QueryProgram {
     EXPECT_EQ(ran.status, 0) << ran.errors;
     return ran.out;
   }
+  // Writes late.glb, the figure with clips that begin so many seconds after frame 0.
+  static constexpr double kLate = 0.2;
+  void put_late_figure() const {
+    scenes::Character figure = scenes::walking_figure();
+    for (scenes::Animation& clip : figure.animations) {
+      clip.start += kLate;
+      for (scenes::Channel& channel : clip.channels) {
+        for (auto& key : channel.moves) key.time += kLate;
+        for (auto& key : channel.rotations) key.time += kLate;
+        for (auto& key : channel.scales) key.time += kLate;
+      }
+    }
+    put("late.glb", scenes::to_glb(figure));
+  }
 };
 
 // Verdict and time of each interval.
@@ -74,6 +88,30 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
   }
 }
 
+// Mutation: a format counts its frames from 0.
+TEST_F(ExportFiles, FramesKeepTheNumbersOfTheirClip) {
+  put_late_figure();
+  const json first = answer("late.glb --clip hug --component largest")["summary"]["first"];
+  ASSERT_GT(first["frame"], 6);
+  for (const char* output : {"f.obj", "f.ply", "f.pc2 --force", "f.mdd --force", "f.glb --bake", "f.usda"}) {
+    const Ran ran = run(std::string("cscd export late.glb --clip hug --component largest ") + output);
+    ASSERT_EQ(ran.status, 0) << output << ran.errors;
+    EXPECT_EQ(ran.errors.find("count from 0"), std::string::npos) << output << ran.errors;
+  }
+  for (const char* input : {"f.0006.obj", "f.0006.ply", "f.pc2", "f.mdd", "f.glb"})
+    EXPECT_NEAR(answer(input)["summary"]["first"]["frame"].get<double>(), first["frame"].get<double>(), 0.01)
+        << input;
+  EXPECT_NE(text("f.usda").find("startTimeCode = 6\n    endTimeCode = 36\n"), std::string::npos);
+  EXPECT_NE(text("f.usda").find("points.timeSamples = {\n            6: ["), std::string::npos);
+  // Names of files hold whole numbers alone, and a point cache none.
+  EXPECT_NE(
+      run("cscd export late.glb --clip hug f.h5").errors.find("has the number 6, and the files count from 0"),
+      std::string::npos);
+  EXPECT_NE(run("cscd export late.glb --clip hug --fps 24 g.obj").errors.find("has the number 4.8, and"),
+            std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "g.0000.obj"));
+}
+
 TEST_F(ExportFiles, NothingIsWrittenWhereOneFileStandsInTheWay) {
   put("walk.0003.obj", "mine");
   expect_refused(run("cscd export small walk.obj"), "walk.0003.obj");
@@ -115,9 +153,11 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
   }
 }
 
+// Mutation: the seconds count from the start of the clip.
 TEST_F(ExportFiles, VtkReadsSurfaceContactsAndCurves) {
-  const json query = answer("figure.glb --clip hug");
-  ASSERT_EQ(run("cscd export figure.glb --clip hug p.pvd").status, 0);
+  put_late_figure();
+  const json query = answer("late.glb --clip hug");
+  ASSERT_EQ(run("cscd export late.glb --clip hug p.pvd").status, 0);
   const std::string out = python("vtkmodules.vtkIOXML", R"(
 import json
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -145,7 +185,7 @@ print(json.dumps(rows)))");
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     EXPECT_EQ(rows[3 * i + 1][2], intervals[i]["contacts"].size()) << i;
     EXPECT_EQ(rows[3 * i][3], query["import"]["chosen_triangles"]);
-    EXPECT_NEAR(rows[3 * i][1].get<double>(), intervals[i]["seconds"].get<double>(), 1e-6);
+    EXPECT_NEAR(rows[3 * i][1].get<double>(), intervals[i]["seconds"].get<double>() + kLate, 1e-6);
     touched += rows[3 * i][4]["touches"].get<double>();
     for (const char* array : {"cluster", "positive", "second_cover", "third_cover", "patch"})
       EXPECT_TRUE(rows[3 * i][4].contains(array)) << array;
@@ -233,9 +273,11 @@ print(json.dumps({"colours": len(mesh.color_attributes), "edges": edges}))
   EXPECT_GT(made["edges"], 0);
 }
 
+// Mutation: the script counts its frames from 1.
 TEST_F(ExportFiles, BlenderLoadsMeshCacheAndContacts) {
   if (run("command -v blender").status != 0) GTEST_SKIP() << "Debian's blender is not installed";
-  ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest walk.pc2").status, 0);
+  put_late_figure();
+  ASSERT_EQ(run("cscd export late.glb --clip hug --component largest walk.pc2").status, 0);
   const json query = answer("walk.pc2");
   put("walk.json", query.dump());
   const std::string script =
@@ -258,6 +300,7 @@ TEST_F(ExportFiles, BlenderLoadsMeshCacheAndContacts) {
   EXPECT_EQ(made["contacts"], contacts);
   EXPECT_EQ(made["touching_vertices"], vertices.size());
   EXPECT_GE(made["markers"], 2);
+  EXPECT_EQ(made["frames"], query["intervals"].back()["frame"].get<int>() + 1);
   // The mesh follows its cache: this is where its first vertex is in the frame of the first contact.
   ASSERT_EQ(run("cscd export figure.glb --clip hug --component largest walk.h5").status, 0);
   scenes::PointCacheReader frames(folder / "walk.h5");

@@ -83,13 +83,13 @@ TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
 TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
   for (const MeshCacheFormat format : {MeshCacheFormat::pc2, MeshCacheFormat::mdd}) {
     const std::vector<Vec3> one = {{1, 2, 3}, {-0.5, 1e10, 0}}, other = {{4, 5, 6}, {7, 8, 9}};
-    const std::string bytes =
-        mesh_cache_head(format, 2, 2, 30) + mesh_cache_frame(format, one) + mesh_cache_frame(format, other);
+    const std::string bytes = mesh_cache_head(format, 2, 2, 30, 7) + mesh_cache_frame(format, one) +
+                              mesh_cache_frame(format, other);
     const MeshCache cache(format, bytes);
     EXPECT_EQ(cache.vertices(), 2u);
     ASSERT_EQ(cache.frames(), 2u);
     EXPECT_EQ(cache.fps(), format == MeshCacheFormat::mdd ? std::optional(30.0) : std::nullopt);
-    EXPECT_EQ(cache.first_frame(), 0);
+    EXPECT_EQ(cache.first_frame(), 7);
     std::vector<Vec3> read;
     cache.read_frame(0, read);
     EXPECT_EQ(read, one);
@@ -106,7 +106,7 @@ TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
 TEST(MeshCaches, SayWhenTheirFramesAre) {
   const std::vector<Vec3> one = {{1, 2, 3}};
   const auto with = [&](MeshCacheFormat format, std::size_t at, std::initializer_list<float> numbers) {
-    std::string bytes = mesh_cache_head(format, 1, 3, 25);
+    std::string bytes = mesh_cache_head(format, 1, 3, 25, 0);
     for (int f = 0; f < 3; ++f) bytes += mesh_cache_frame(format, one);
     for (const float x : numbers) {
       const auto bits = std::bit_cast<std::uint32_t>(x);
@@ -146,8 +146,9 @@ TEST(VtkFiles, EscapeNames) {
 TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
   UsdSurface surface(kTriangles, {.fps = 24});
   constexpr UsdSurface::Colour kPalette[] = {{0, 0, 0}, {1, 0, 0}};
+  double frame = 0;
   for (const std::uint8_t second : {0, 0, 1})
-    surface.append(kPositions, std::vector<std::uint8_t>{0, second}, kPalette,
+    surface.append(frame++, kPositions, std::vector<std::uint8_t>{0, second}, kPalette,
                    std::vector<float>{0, 0, 0, 0.5F}, {}, std::vector<std::vector<Vec3>>{kPositions});
   const std::string text = surface.text(0.1);
   EXPECT_NE(text.find("timeCodesPerSecond = 24"), std::string::npos);
@@ -166,7 +167,7 @@ TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
 TEST(UsdFiles, SayWhichAxisIsUpAndHowLongAUnitIs) {
   const auto head = [](const std::string& up) {
     UsdSurface surface(kTriangles, {24, up, 0.01});
-    surface.append(kPositions, std::vector<std::uint8_t>{0, 0}, std::vector<UsdSurface::Colour>(1),
+    surface.append(0, kPositions, std::vector<std::uint8_t>{0, 0}, std::vector<UsdSurface::Colour>(1),
                    std::vector<float>(4), {}, {});
     const std::string text = surface.text(0.1);
     return text.substr(0, text.find("def Mesh"));

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::string_view kPc2Begin("POINTCACHE2\0", 12);
 constexpr std::size_t kPc2Head = 32, kMddHead = 8;
+// Seconds are single precision. A frame whose number differs from a whole one by less than this has that one.
+constexpr double kNearFrame = 0.01;
 
 void append_float(double value, bool big, std::string& out) {
   append_bits(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, big, out);
@@ -25,7 +27,8 @@ bool is_big(MeshCacheFormat format) {
 
 }  // namespace
 
-std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::size_t frames, double fps) {
+std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::size_t frames, double fps,
+                            double first_frame) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (vertices > kMost || frames > kMost)
     throw InputError("more frames or vertices than a mesh cache can count; export it as .h5");
@@ -34,13 +37,14 @@ std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::s
     out = kPc2Begin;
     append_bits(1, 4, false, out);  // version
     append_bits(vertices, 4, false, out);
-    append_float(0, false, out);  // the first frame
+    append_float(first_frame, false, out);
     append_float(1, false, out);  // frames from one sample to the next
     append_bits(frames, 4, false, out);
   } else {
     append_bits(frames, 4, true, out);
     append_bits(vertices, 4, true, out);
-    for (std::size_t f = 0; f < frames; ++f) append_float(static_cast<double>(f) / fps, true, out);
+    for (std::size_t f = 0; f < frames; ++f)
+      append_float((first_frame + static_cast<double>(f)) / fps, true, out);
   }
   return out;
 }
@@ -73,13 +77,13 @@ MeshCache::MeshCache(MeshCacheFormat format, std::string_view bytes) : format_(f
 
 // An MDD cache holds the second of every frame. Its rate is known where they are evenly spaced.
 void MeshCache::read_times(std::string_view bytes) {
-  const auto number = [&](std::size_t at) {
+  const auto float_at = [&](std::size_t at) {
     return double{
         std::bit_cast<float>(static_cast<std::uint32_t>(bits_of(bytes.substr(at, 4), is_big(format_))))};
   };
   if (format_ == MeshCacheFormat::pc2) {
-    if (const double first = number(20); std::isfinite(first)) first_frame_ = first;
-    if (const double step = number(24); step != 1) {
+    if (const double first = float_at(20); std::isfinite(first)) first_frame_ = first;
+    if (const double step = float_at(24); step != 1) {
       char digits[32];
       std::snprintf(digits, sizeof digits, "%g", step);
       throw InputError(std::string("its samples are ") + digits +
@@ -88,7 +92,7 @@ void MeshCache::read_times(std::string_view bytes) {
     }
     return;
   }
-  const auto second = [&](std::size_t frame) { return number(kMddHead + 4 * frame); };
+  const auto second = [&](std::size_t frame) { return float_at(kMddHead + 4 * frame); };
   if (frames_ < 2) return;
   for (std::size_t f = 1; f < frames_; ++f)
     if (!(second(f) >= second(f - 1)))
@@ -100,7 +104,8 @@ void MeshCache::read_times(std::string_view bytes) {
     if (!(std::abs(second(f) - (first + static_cast<double>(f) * step)) <= 0.01 * step)) return;
   const double rate = 1 / step, whole = std::round(rate);
   fps_ = std::abs(rate - whole) <= 1e-3 * rate ? whole : rate;
-  first_frame_ = std::round(first * *fps_);
+  const double number = first * *fps_, nearest = std::round(number);
+  first_frame_ = std::abs(number - nearest) <= kNearFrame ? nearest : number;
 }
 
 void MeshCache::read_frame(std::size_t frame, std::vector<Vec3>& positions) const {

@@ -16,8 +16,10 @@ namespace cscd::scenes {
 enum class MeshCacheFormat { pc2, mdd };
 
 // Writes the head of a cache, before the positions of frame after frame. PC2 keeps a constant frame rate; MDD
-// keeps the second of every frame. Throws InputError for more frames or vertices than the format can count.
-std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::size_t frames, double fps);
+// keeps the second of every frame. `first_frame` is the number of the first frame, whose frame 0 is at 0
+// seconds. Throws InputError for more frames or vertices than the format can count.
+std::string mesh_cache_head(MeshCacheFormat format, std::size_t vertices, std::size_t frames, double fps,
+                            double first_frame);
 std::string mesh_cache_frame(MeshCacheFormat format, std::span<const Vec3> positions);
 
 // A cache over the bytes of a file, which must outlive it.

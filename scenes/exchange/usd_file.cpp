@@ -6,6 +6,12 @@
 namespace cscd::scenes {
 namespace {
 
+std::string text_of(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
 void append_vector(const Vec3& x, std::string& out) {
   char text[96];
   std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", x.x(), x.y(), x.z());
@@ -51,10 +57,12 @@ UsdSurface::UsdSurface(std::span<const Triangle> triangles, UsdStage stage) : st
       corners_);
 }
 
-void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
+void UsdSurface::append(double frame, std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
                         std::span<const Colour> palette, std::span<const float> depth,
                         std::span<const Vec3> marks, std::span<const std::vector<Vec3>> curves) {
-  const std::string time = "            " + std::to_string(frames_++) + ": ";
+  if (points_.empty()) first_frame_ = frame;
+  last_frame_ = frame;
+  const std::string time = "            " + text_of(frame) + ": ";
   const auto vector_into = [](std::string& out) { return [&out](const Vec3& x) { append_vector(x, out); }; };
   points_ += time;
   append_list(positions, vector_into(points_), points_);
@@ -83,13 +91,7 @@ void UsdSurface::append(std::span<const Vec3> positions, std::span<const std::ui
   curve_points_ += ",\n";
   std::string row;
   append_list(
-      depth,
-      [&](float d) {
-        char number[32];
-        std::snprintf(number, sizeof number, "%.9g", static_cast<double>(d));
-        row += number;
-      },
-      row);
+      depth, [&](float d) { row += text_of(static_cast<double>(d)); }, row);
   depths_.add(time, std::exchange(row, {}));
   append_list(
       colour,
@@ -111,16 +113,11 @@ void UsdSurface::HeldSamples::add(const std::string& time, std::string row) {
 }
 
 std::string UsdSurface::text(double mark_width) const {
-  char number[32];
-  const auto shown = [&](double x) {
-    std::snprintf(number, sizeof number, "%.9g", x);
-    return std::string(number);
-  };
-  std::string out = "#usda 1.0\n(\n    defaultPrim = \"clip\"\n    startTimeCode = 0\n    endTimeCode = " +
-                    std::to_string(frames_ - 1) + "\n    timeCodesPerSecond = " + shown(stage_.fps) +
-                    "\n    metersPerUnit = " + shown(stage_.metres_per_unit) + "\n    upAxis = \"" +
-                    (stage_.up == "z" ? "Z" : "Y") + "\"\n)\n\ndef Xform \"clip\"\n{\n" +
-                    turn_to_y(stage_.up);
+  std::string out =
+      "#usda 1.0\n(\n    defaultPrim = \"clip\"\n    startTimeCode = " + text_of(first_frame_) +
+      "\n    endTimeCode = " + text_of(last_frame_) + "\n    timeCodesPerSecond = " + text_of(stage_.fps) +
+      "\n    metersPerUnit = " + text_of(stage_.metres_per_unit) + "\n    upAxis = \"" +
+      (stage_.up == "z" ? "Z" : "Y") + "\"\n)\n\ndef Xform \"clip\"\n{\n" + turn_to_y(stage_.up);
   const auto samples = [&](const std::string& name, const std::string& rows, const std::string& notes = "") {
     out += "    " + name + ".timeSamples = {\n" + rows + "    }" + notes + "\n";
   };
@@ -137,7 +134,7 @@ std::string UsdSurface::text(double mark_width) const {
   out += "}\n\ndef Points \"contacts\"\n{\n";
   samples("point3f[] points", marks_);
   const auto look = [&](double width, const char* colour) {
-    out += "    float[] widths = [" + shown(width) +
+    out += "    float[] widths = [" + text_of(width) +
            "] (\n        interpolation = \"constant\"\n    )\n    color3f[] primvars:displayColor = [" +
            colour + "]\n}\n";
   };

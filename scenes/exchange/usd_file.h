@@ -24,10 +24,11 @@ class UsdSurface {
  public:
   UsdSurface(std::span<const Triangle> triangles, UsdStage stage);
 
-  // Adds the next frame. `colour` names a colour of the palette for each triangle, and `depth` is a number of
-  // each vertex; both are written where they change. `marks` and `curves` may be empty.
+  // Adds the next frame, whose number is `frame`. `colour` names a colour of the palette for each triangle,
+  // and `depth` is a number of each vertex; both are written where they change. `marks` and `curves` may be
+  // empty.
   using Colour = std::array<float, 3>;
-  void append(std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
+  void append(double frame, std::span<const Vec3> positions, std::span<const std::uint8_t> colour,
               std::span<const Colour> palette, std::span<const float> depth, std::span<const Vec3> marks,
               std::span<const std::vector<Vec3>> curves);
   // Marks are drawn as balls of this width, in lengths of the scene, and curves as lines of half the width.
@@ -43,7 +44,7 @@ class UsdSurface {
   };
 
   UsdStage stage_;
-  std::size_t frames_ = 0;
+  double first_frame_ = 0, last_frame_ = -1;
   HeldSamples colours_, depths_;
   std::string counts_, corners_, points_, extents_, marks_, curve_counts_, curve_points_;
 };

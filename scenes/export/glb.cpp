@@ -350,8 +350,8 @@ std::string to_glb(const Character& character) {
   return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
 }
 
-std::string baked_glb(ClipSource& clip, const std::string& name, double fps, const std::string& up,
-                      double metres_per_unit) {
+std::string baked_glb(ClipSource& clip, const std::string& name, double fps, double first_frame,
+                      const std::string& up, double metres_per_unit) {
   const std::size_t frames = clip.frame_count(), targets = frames - 1;
   if (12 * clip.header().vertex_count * frames > UINT32_MAX)
     throw InputError("the frames are more than the 4 GiB of a .glb file; export them as .pc2 or .h5");
@@ -369,7 +369,7 @@ std::string baked_glb(ClipSource& clip, const std::string& name, double fps, con
         {{"POSITION", buffer.add_positions(rounded(clip.load_frame(f).positions, base))}});
   std::vector<float> times, weights(frames * targets, 0.0F);
   for (std::size_t f = 0; f < frames; ++f) {
-    times.push_back(static_cast<float>(static_cast<double>(f) / fps));
+    times.push_back(static_cast<float>((first_frame + static_cast<double>(f)) / fps));
     if (f > 0) weights[f * targets + f - 1] = 1;
   }
   const std::size_t input = buffer.add(std::span<const float>(times), 1, "SCALAR");

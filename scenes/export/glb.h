@@ -23,10 +23,11 @@ std::string glb_container(const std::string& json, const std::string& binary);
 std::string to_glb(const Character& character);
 
 // Returns a .glb file of any clip, without bones: each frame but the first is a morph target, and an
-// animation leads from one to the next in straight lines, as intervals do. Numbers are rounded to single
+// animation leads from one to the next in straight lines, as intervals do. It begins when frame `first_frame`
+// is shown, which is not negative; frame 0 is at 0 seconds. Numbers are rounded to single
 // precision. In glTF y points up and lengths are metres, so a node turns the axis `up` (clip/up_axis.h) to y
 // and scales by `metres_per_unit`. Throws InputError where the file would have 4 GiB or more.
-std::string baked_glb(ClipSource& clip, const std::string& name, double fps, const std::string& up,
-                      double metres_per_unit);
+std::string baked_glb(ClipSource& clip, const std::string& name, double fps, double first_frame,
+                      const std::string& up, double metres_per_unit);
 
 }  // namespace cscd::scenes

@@ -356,7 +356,8 @@ TEST(BakedGlb, TurnsItsUpAxisToYAndScalesToMetres) {
     Clip clip({{{VertexId{0}, VertexId{1}, VertexId{2}}}, 3, {}, false});
     for (const double height : {2.0, 3.0})
       clip.append({std::vector<Vec3>{height * tip, {1, 1, 1}, {-1, 1, -1}}, {}});
-    const ReadBack read = read_back(baked_glb(clip, "tip", 30, std::string(up), 0.01));
+    const ReadBack read = read_back(baked_glb(clip, "tip", 30, 6, std::string(up), 0.01));
+    EXPECT_NEAR(read.report.clips[0].start, 0.2, 1e-6);
     for (const std::size_t frame : {0, 1})
       EXPECT_LT(
           (read.clip.frame(frame).positions[0] - Vec3(0, 0.02 + 0.01 * static_cast<double>(frame), 0)).norm(),

@@ -12,7 +12,7 @@ walk.pc2` writes the first two. The scene gets
     begins;
   - a marker on the time line at the first contact, at the worst interval, and wherever contacts begin after none.
 
-Frame 1 of Blender is frame 0 of the cache. It prints what it made as one line of JSON. Needs Blender 3.4 or later.
+Frames of Blender have the numbers by which the answer names them. The script prints what it made as one line of JSON. Needs Blender 3.4 or later.
 """
 import argparse
 import json
@@ -63,11 +63,11 @@ def material(name, colour):
     return made
 
 
-def add_cache(surface, path):
+def add_cache(surface, path, first):
     modifier = surface.modifiers.new("cache", "MESH_CACHE")
     modifier.cache_format = "PC2" if path.suffix.lower() == ".pc2" else "MDD"
     modifier.filepath = str(path.resolve())
-    modifier.frame_start = 1
+    modifier.frame_start = first
     modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"  # as they are
 
 
@@ -93,21 +93,21 @@ def add_points(interval, collection, look, size):
     cloud = bpy.data.objects.new(mesh.name, mesh)
     cloud["contacts"] = len(interval["contacts"])
     collection.objects.link(cloud)
-    frame = interval["index"] + 1
+    frame = interval["frame"]
     for at, hidden in ((frame - 1, True), (frame, False), (frame + 1, True)):
         cloud.hide_viewport = cloud.hide_render = hidden
         cloud.keyframe_insert("hide_viewport", frame=at)
         cloud.keyframe_insert("hide_render", frame=at)
 
 
-def add_markers(scene, intervals, worst):
+def add_markers(scene, intervals, worst_frame):
     before = None
     for interval in intervals:
         if before is None or interval["index"] > before + 1:
-            scene.timeline_markers.new("first contact" if before is None else "contact", frame=interval["index"] + 1)
+            scene.timeline_markers.new("first contact" if before is None else "contact", frame=interval["frame"])
         before = interval["index"]
-    if worst is not None:
-        scene.timeline_markers.new("worst", frame=worst["interval"] + 1)
+    if worst_frame is not None:
+        scene.timeline_markers.new("worst", frame=worst_frame)
 
 
 def render(scene, surface, interval, path):
@@ -128,7 +128,7 @@ def render(scene, surface, interval, path):
     sun.data.energy = 2.5
     sun.rotation_euler = (towards + Vector((0.6, 0.8, 0.3))).to_track_quat("Z", "Y").to_euler()
     scene.collection.objects.link(sun)
-    scene.frame_set(interval["index"] + 1)
+    scene.frame_set(interval["frame"])
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 32
     scene.cycles.use_denoising = False  # not in every build
@@ -148,12 +148,15 @@ def main():
     answer = json.loads(chosen.answer.read_text())
     if answer.get("schema") != "cscd.query/3" or "intervals" not in answer:
         refuse(f"{chosen.answer}: is no answer about one clip; write it with cscd query INPUT --clip NAME --json FILE")
+    first = round(answer["import"]["clips"][0]["first_frame"])
+    for interval in answer["intervals"]:
+        interval["frame"] = first + interval["index"]  # Blender's frames are whole numbers
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     surface = read_mesh(chosen.mesh)
     scene.collection.objects.link(surface)
     surface.data.materials.append(material("surface", (0.6, 0.66, 0.7)))
-    add_cache(surface, chosen.cache)
+    add_cache(surface, chosen.cache, first)
     touching = [interval for interval in answer["intervals"] if interval["contacts"]]
     vertices = mark_touching(surface, touching)
     collection = bpy.data.collections.new("contacts")
@@ -161,11 +164,12 @@ def main():
     look = material("contacts", (0.84, 0.2, 0.0))
     for interval in touching:
         add_points(interval, collection, look, 0.004 * max(surface.dimensions))
-    add_markers(scene, touching, answer["summary"]["worst"])
-    scene.frame_start, scene.frame_end = 1, answer["intervals"][-1]["index"] + 2
+    worst = answer["summary"]["worst"]
+    add_markers(scene, touching, worst and first + worst["interval"])
+    scene.frame_start, scene.frame_end = first, answer["intervals"][-1]["frame"] + 1
     if chosen.still and touching:
         render(scene, surface, touching[0], chosen.still)
-    scene.frame_set((touching[0]["index"] if touching else 0) + 1)
+    scene.frame_set((touching or answer["intervals"])[0]["frame"])
     moved = surface.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices
     if chosen.save:
         bpy.ops.wm.save_as_mainfile(filepath=str(chosen.save.resolve()))
