@@ -11,12 +11,16 @@ constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::size_t kHead = 8192;
 
 // Files of old versions have forms of elements that this parser would take for damage, so their version is
-// looked for first.
+// looked for first. A file of another format has none.
 void require_new_head(std::string_view text) {
   const std::string_view head = text.substr(0, kHead);
   constexpr std::string_view kName = "FBXVersion:";
   const std::size_t at = head.find(kName);
-  if (at == head.npos) return;
+  if (at == head.npos)
+    throw InputError(
+        "is no FBX file, whatever its name says: it neither begins as a binary one does nor names an "
+        "FBXVersion; "
+        "give it the extension of its own format");
   const std::size_t digits = head.find_first_not_of(" \t", at + kName.size());
   const std::size_t end = std::min(head.find_first_of(" \t\r\n;", digits), head.size());
   WrittenNumber version{};

@@ -296,7 +296,8 @@ TEST(Fbx, RefusesWhatIsDamagedOrCannotBe) {
   for (const std::string& text : {old.text(), old.text() + "Takes {\n}\n"})
     EXPECT_NE(refusal_of(text).find("is FBX 6.1 text, which is too old"), std::string::npos)
         << refusal_of(text);
-  EXPECT_NE(refusal_of("").find("is no FBX file"), std::string::npos);
+  for (const char* other : {"", "glTF\2\n}", "{\"asset\": {}}", "xof 0303txt"})
+    EXPECT_NE(refusal_of(other).find("is no FBX file, whatever its name says"), std::string::npos) << other;
   EXPECT_NE(
       refusal_of(good.text().substr(0, good.text().find("PolygonVertexIndex"))).find("brace is not closed"),
       std::string::npos);
