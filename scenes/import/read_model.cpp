@@ -51,8 +51,10 @@ const Format& format_of(const std::filesystem::path& path) {
     if (format.extension == ".bvh") continue;  // holds bones alone
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
-  throw InputError("files of the kind '" + extension + "' are not read; convert it to one of " + known +
-                   ", or to .h5, .obj, .ply, .pc2 or .mdd");
+  const std::string why = extension.empty()
+                              ? "has no extension, by which its format is known; give it its own, one of "
+                              : "files of the kind '" + extension + "' are not read; convert it to one of ";
+  throw InputError(why + known + ", or .h5, .obj, .ply, .pc2 or .mdd");
 }
 
 void keep_only(Assimp::Importer& importer, std::string_view name) {
