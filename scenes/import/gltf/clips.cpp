@@ -115,6 +115,8 @@ std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert)
     }
     keys.push_back(key);
   }
+  if (keys.size() == 1 && from.times.count > 1)
+    throw InputError(from.where + ": its key times do not rise, as glTF requires; export it again");
   return keys;
 }
 

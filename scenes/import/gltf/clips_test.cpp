@@ -102,6 +102,14 @@ TEST(GltfClips, KeysOutOfOrderAreNoted) {
   const Character character = read(file);
   EXPECT_TRUE(has_note(character, "1 keys out of order"));
   expect_same_motion(character, bending_tube());
+  // Where no key follows another, nothing is left of the motion.
+  for (const std::vector<float>& times : {std::vector<float>{1, 0.5F, 0}, {0, 0, 0}}) {
+    TubeFile still;
+    still.root["animations"][0]["channels"].clear();
+    still.animate(TubeFile::kUpper, "rotation", times,
+                  still.accessor(std::vector<float>{0, 0, 0, 1, h, 0, 0, h, 0, 0, h, h}, "VEC4"));
+    EXPECT_NE(refusal(still).find("its key times do not rise"), std::string::npos);
+  }
 }
 
 TEST(GltfClips, WhatDoesNotFitIsRefused) {
