@@ -10,8 +10,8 @@
 namespace cscd {
 
 // The feature pairs tested in this interval, so that each is tested once however many triangle pairs carry
-// it. This keeps rule any-carrier (core/soundness.md): no triangle owns a feature, and the first surviving
-// triangle pair brings it.
+// it. This keeps rule any-carrier (core/soundness.md): whichever surviving triangle pair comes first brings
+// it.
 //
 // The set uses open addressing with linear probing. An entry carries the interval's number in its top bits,
 // so a new interval forgets the old entries without touching them.
