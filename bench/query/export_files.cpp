@@ -347,8 +347,8 @@ void export_usd(Input& input, const fs::path& output, bool force) {
 
 void note_renumbered(const Input& input) {
   if (const double first = file_number(input, 0); first != 0)
-    std::fprintf(stderr, "note: the first frame of %s has the number %.6g, and the files count from 0\n",
-                 input.name.c_str(), first);
+    std::printf("note: the first frame of %s has the number %.6g, and the files count from 0\n",
+                input.name.c_str(), first);
 }
 
 void export_files(Input& input, const fs::path& output, const std::string& format, bool force, bool events) {

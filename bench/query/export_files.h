@@ -19,8 +19,8 @@ namespace cscd::bench {
 //   .usda       points and colours over time, and the contacts as points
 //   .glb        morph targets, without bones
 //
-// Frames have the numbers by which answers about the input name them. A line on standard error says so where
-// a format cannot hold these numbers, and counts from 0.
+// Frames have the numbers by which answers about the input name them. A line says so where a format cannot
+// hold these numbers, and counts from 0.
 void export_files(Input& input, const std::filesystem::path& output, const std::string& format, bool force,
                   bool events);
 

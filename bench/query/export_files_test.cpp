@@ -96,7 +96,7 @@ TEST_F(ExportFiles, FramesKeepTheNumbersOfTheirClip) {
   for (const char* output : {"f.obj", "f.ply", "f.pc2 --force", "f.mdd --force", "f.glb --bake", "f.usda"}) {
     const Ran ran = run(std::string("cscd export late.glb --clip hug --component largest ") + output);
     ASSERT_EQ(ran.status, 0) << output << ran.errors;
-    EXPECT_EQ(ran.errors.find("count from 0"), std::string::npos) << output << ran.errors;
+    EXPECT_EQ(ran.out.find("count from 0"), std::string::npos) << output << ran.out;
   }
   for (const char* input : {"f.0006.obj", "f.0006.ply", "f.pc2", "f.mdd", "f.glb"})
     EXPECT_NEAR(answer(input)["summary"]["first"]["frame"].get<double>(), first["frame"].get<double>(), 0.01)
@@ -105,9 +105,9 @@ TEST_F(ExportFiles, FramesKeepTheNumbersOfTheirClip) {
   EXPECT_NE(text("f.usda").find("points.timeSamples = {\n            6: ["), std::string::npos);
   // Names of files hold whole numbers alone, and a point cache none.
   EXPECT_NE(
-      run("cscd export late.glb --clip hug f.h5").errors.find("has the number 6, and the files count from 0"),
+      run("cscd export late.glb --clip hug f.h5").out.find("has the number 6, and the files count from 0"),
       std::string::npos);
-  EXPECT_NE(run("cscd export late.glb --clip hug --fps 24 g.obj").errors.find("has the number 4.8, and"),
+  EXPECT_NE(run("cscd export late.glb --clip hug --fps 24 g.obj").out.find("has the number 4.8, and"),
             std::string::npos);
   EXPECT_TRUE(fs::exists(folder / "g.0000.obj"));
 }
