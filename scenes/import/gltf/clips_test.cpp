@@ -110,6 +110,10 @@ TEST(GltfClips, KeysOutOfOrderAreNoted) {
                   still.accessor(std::vector<float>{0, 0, 0, 1, h, 0, 0, h, 0, 0, h, h}, "VEC4"));
     EXPECT_NE(refusal(still).find("its key times do not rise"), std::string::npos);
   }
+  TubeFile resting;  // but a channel that keeps still loses nothing
+  resting.animate(TubeFile::kUpper, "scale", {0, 0},
+                  resting.accessor(std::vector<float>{1, 1, 1, 1, 1, 1}, "VEC3"));
+  EXPECT_EQ(refusal(resting), "");
 }
 
 TEST(GltfClips, WhatDoesNotFitIsRefused) {
