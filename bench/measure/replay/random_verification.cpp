@@ -221,6 +221,8 @@ void judge(Subject&& subject, bool by_all_pairs, std::span<const StrategyRow> ro
     const Strategy& strategy = *asked.strategy;
     if (strategy.name == oracle.name && !by_all_pairs) continue;
     if (thick && !strategy.knows_distance) continue;
+    // Rows of signs alone refuse pairs of different thickness.
+    if (!subject.thickness.is_uniform() && strategy.guarantee == Guarantee::first_contact) continue;
     if (subject.torn && strategy.guarantee != Guarantee::complete) continue;  // promises nothing there
     const Subject::Result own = asked == judge ? Subject::Result{} : subject.run(asked, exact);
     const Subject::Result& result = asked == judge ? judged : own;
