@@ -34,8 +34,8 @@ bool KnownStarts::begin(const Motion& motion, bool& finite) {
   return moved_on_;
 }
 
-void KnownStarts::abandon() {
-  if (moved_on_) poses_.go_back();
+void KnownStarts::abandon(const Motion& motion) {
+  if (moved_on_) poses_.go_back(motion.start());
   moved_on_ = false;
 }
 
@@ -64,6 +64,7 @@ Report KnownStarts::see(Detector& detector, Step step, ContactSet& found) {
 
 bool KnownStarts::follow_to(std::span<const Vec3> pose, const Rig::Interval* bones, Detector& detector,
                             const Certainty& certainty) {
+  poses_.keep_before();  // whoever asks about another start may have asked about it before
   const bool has_bones = bones == nullptr || pose_bones_.size() == bones->start.size();
   if (!(certainty.all || certainty.whether) || !has_bones || same_bits(end_, pose)) return false;
   std::optional<Rig::Interval> way;
@@ -90,7 +91,7 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
   end_follows_ = false;  // until all that tells what crosses there is kept: memory may run out on the way
   if (bones != nullptr) pose_bones_.assign(bones->start.begin(), bones->start.end());
   const bool nothing_touched = found.contacts.empty() && certainty.whether;
-  if (!nothing_touched) abandon();
+  if (!nothing_touched) abandon(motion);
   if (nothing_touched) {
     if (!moved_on_) poses_.follow(motion.end(), found);
     free_of_close_pairs_ = true;

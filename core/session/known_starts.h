@@ -21,7 +21,7 @@ struct Certainty {
 // known pose, and whose contacts are certain, tells what crosses at its end. Steps are therefore best asked
 // for in the order of the motion. Where something touches, the start stays the known pose until a step starts
 // at the end, because who looks for a step that is free asks about the same start again. Where nothing
-// touches, the start stays known beside the end, for the same reason.
+// touches, the start stays known beside the end for who has asked about another start lately.
 //
 // With a thickness it knows also which poses are *clear*: nothing crosses, and no pair is close. A step
 // without a contact proves its start and its end clear. The pairs that touch are among the close ones, so
@@ -46,7 +46,7 @@ class KnownStarts {
   // or learn_end() have to follow.
   bool begin(const Motion& motion, bool& finite);
   // Ends a step of which nothing is learned: its start is the known pose again.
-  void abandon();
+  void abandon(const Motion& motion);
   // Returns whether a pose, or the start of the step that has begun, is known.
   bool knows(std::span<const Vec3> pose) const { return moved_on_ || poses_.knows(pose); }
 

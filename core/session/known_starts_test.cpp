@@ -85,7 +85,7 @@ TEST_F(KnownStartsTest, BothEndsOfAStepWithContactsAreKnownWhereTheyAreAll) {
   starts_.learn_end(motion, nullptr, kAll, found);
   EXPECT_TRUE(starts_.embedded());
   ASSERT_TRUE(starts_.begin(Motion(near_, far_), finite)) << "a shorter step from the same start";
-  starts_.abandon();
+  starts_.abandon(Motion(near_, far_));
   ASSERT_FALSE(truth(inside_).empty());
   ASSERT_TRUE(starts_.begin(Motion(inside_, near_), finite));
   EXPECT_EQ(starts_.crossings().pairs, truth(inside_));
@@ -126,6 +126,8 @@ TEST_F(KnownStartsTest, TheEndAfterContactsIsNotKnownWhereSomeMayBeMissing) {
 // taken for known after a step in which something touched.
 TEST_F(KnownStartsTest, TheStartOfAStepInWhichNothingTouchesStaysKnown) {
   starts_.search(far_, nullptr, nullptr);
+  Scripted detector;
+  EXPECT_TRUE(starts_.follow_to(far_, nullptr, detector, kWhether));  // so that starts are kept
   bool finite = false;
   for (const std::vector<Vec3>& end : {near_, pose(4), near_}) {
     const Motion motion(far_, end);
@@ -158,7 +160,7 @@ TEST_F(KnownStartsTest, AnAbandonedStepTeachesNothing) {
   const Motion motion(far_, near_);
   bool finite = false;
   ASSERT_TRUE(starts_.begin(motion, finite));
-  starts_.abandon();
+  starts_.abandon(motion);
   EXPECT_TRUE(starts_.knows(far_));
   EXPECT_FALSE(starts_.knows(near_));
   EXPECT_FALSE(starts_.begin(Motion(near_, far_), finite)) << "it starts elsewhere";

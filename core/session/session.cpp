@@ -209,7 +209,7 @@ void Session::begin(const Motion& motion) {
   bool finite = true;
   const bool known = !options_.ignore_starts && starts_.begin(motion, finite);
   if (!options_.check_finite || (known && finite)) return;
-  if (known) starts_.abandon();
+  if (known) starts_.abandon(motion);
   require_finite(motion.start(), "start positions");
   require_finite(motion.end(), "end positions");
 }
@@ -232,7 +232,7 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
         later_missing)
       ask(fallback(), motion, bones, out);
   } catch (...) {  // nothing is known of the end then
-    starts_.abandon();
+    starts_.abandon(motion);
     throw;
   }
 

@@ -18,15 +18,19 @@ bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> e
   if (start.size() != positions_.size() || positions_.empty()) return false;
   constexpr std::size_t kBlock = 1024;  // numbers, which stay in the nearest cache
   constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000, kLowest = 0x0010'0000'0000'0000;
-  room_.resize(positions_.size());
+  const bool keeps = kept_steps_ > 0;
+  if (keeps) room_.resize(positions_.size());
   const double *const from = start[0].data(), *const to = end[0].data();
   const double* const kept = positions_[0].data();
-  double* const next = room_[0].data();
+  double* const next = keeps ? room_[0].data() : positions_[0].data();
   const std::size_t count = 3 * positions_.size();
   std::uint64_t all = 0;
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t last = std::min(first + kBlock, count);
-    if (std::memcmp(from + first, kept + first, (last - first) * sizeof(double)) != 0) return false;
+    if (std::memcmp(from + first, kept + first, (last - first) * sizeof(double)) != 0) {
+      if (!keeps) std::copy(from, from + first, next);  // what has been written over was the same
+      return false;
+    }
     for (std::size_t i = first; i < last; ++i) {
       // The sum reaches the sign where all bits of the exponent are set.
       all |= (std::bit_cast<std::uint64_t>(to[i]) & kExponent) + kLowest;
@@ -34,7 +38,12 @@ bool PoseCrossings::move_on(std::span<const Vec3> start, std::span<const Vec3> e
     }
   }
   finite = all >> 63 == 0;
-  take_room();
+  if (keeps) {
+    take_room();
+    --kept_steps_;
+  } else {
+    before_.clear();
+  }
   return true;
 }
 
@@ -43,14 +52,18 @@ void PoseCrossings::take_room() {
   before_.swap(positions_);
 }
 
-void PoseCrossings::go_back() {
-  positions_.swap(before_);
+void PoseCrossings::go_back(std::span<const Vec3> start) {
+  if (before_.empty())
+    std::ranges::copy(start, positions_.begin());
+  else
+    positions_.swap(before_);
   before_.clear();
 }
 
 bool PoseCrossings::return_to(std::span<const Vec3> positions) {
   if (before_.empty() || !same_bits(positions, before_)) return false;
   positions_.swap(before_);
+  keep_before();
   return true;
 }
 

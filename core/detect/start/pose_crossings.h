@@ -35,11 +35,15 @@ class PoseCrossings {
   // caller has to go back.
   bool move_on(std::span<const Vec3> start, std::span<const Vec3> end, bool& finite);
   // Puts the start of the step in the place of its end again.
-  void go_back();
+  void go_back(std::span<const Vec3> start);
   // Where nothing touched on the way here, the same pairs cross in the pose before. Returns whether
   // `positions` are that pose, bit for bit, and if so takes it for the one last asked for, and this one for
-  // the pose before. So a caller may ask about several steps from one start.
+  // the pose before. So a caller may ask about several steps from one start. Poses before are kept for some
+  // steps after keep_before() and after a return: who goes on and on has no use for them, and the copy shows
+  // in short steps.
   bool return_to(std::span<const Vec3> positions);
+
+  void keep_before() { kept_steps_ = kKeptSteps; }
 
   // The positions last asked for, and the crossings in them.
   std::span<const Vec3> positions() const { return positions_; }
@@ -61,6 +65,8 @@ class PoseCrossings {
   const Crossings& follow(std::span<const Vec3> positions, const ContactSet& touched);
 
  private:
+  static constexpr int kKeptSteps = 32;
+
   // Makes the pose in room_ the one last asked for, and that one the pose before.
   void take_room();
 
@@ -69,6 +75,7 @@ class PoseCrossings {
   std::vector<Vec3> positions_;
   std::vector<Vec3> before_;  // the pose before, in which the same pairs cross; empty where there is none
   std::vector<Vec3> room_;    // for the next pose
+  int kept_steps_ = 0;
   Crossings crossings_;
 };
 

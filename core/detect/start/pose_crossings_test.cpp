@@ -132,7 +132,7 @@ TEST(Crossings, AreCarriedByTheTrianglesOfBothFeatures) {
   EXPECT_EQ(carriers(mesh, FeaturePair::of(EdgeId{0}, EdgeId{13})).size(), 4u);
 }
 
-// Mutations: a difference behind the first block is passed over; a pose is forgotten where a step is refused;
+// Mutations: a difference behind the first block is passed over; what was written over is not put back;
 // only the last number counts as not finite.
 TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
   const test::Shape shape = test::icosphere(3);
@@ -154,7 +154,7 @@ TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
       nowhere[v].y() = wrong;
       EXPECT_TRUE(crossings.move_on(shape.positions, nowhere, finite));
       EXPECT_FALSE(finite) << v;
-      crossings.go_back();
+      crossings.go_back(shape.positions);
       EXPECT_TRUE(crossings.knows(shape.positions));
     }
   }
@@ -162,10 +162,14 @@ TEST(PoseCrossings, MoveOnFromTheLastKnownPoseAlone) {
   EXPECT_TRUE(crossings.move_on(shape.positions, end, finite));
   EXPECT_TRUE(finite);
   EXPECT_TRUE(crossings.knows(end));
+  EXPECT_FALSE(crossings.return_to(shape.positions)) << "nothing is kept unless asked for";
+  EXPECT_TRUE(crossings.move_on(end, shape.positions, finite));
+  crossings.keep_before();
+  EXPECT_TRUE(crossings.move_on(shape.positions, end, finite));
   EXPECT_FALSE(crossings.return_to(end)) << "that is no return";
   EXPECT_TRUE(crossings.return_to(shape.positions));
   EXPECT_TRUE(crossings.return_to(end)) << "and there again";
-  crossings.go_back();
+  crossings.go_back(shape.positions);
   EXPECT_TRUE(crossings.knows(shape.positions));
   EXPECT_FALSE(crossings.return_to(end)) << "something may have touched on the way there";
 }
