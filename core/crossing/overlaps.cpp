@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/sort_unique.h"
 #include "core/crossing/disjoint_sets.h"
 #include "core/crossing/reach.h"
 #include "core/crossing/self_winding.h"
@@ -169,12 +170,8 @@ class PoseOverlaps {
       Group group{component(p.edge), mesh_.component(p.face), {}};
       if (groups_.empty() || groups_.back() != group) groups_.push_back(std::move(group));
     }
-    const auto make_unique = [](auto& items) {
-      std::ranges::sort(items);
-      items.erase(std::unique(items.begin(), items.end()), items.end());
-    };
-    make_unique(roots_);
-    make_unique(groups_);
+    sort_unique(roots_);
+    sort_unique(groups_);
     std::vector<std::int32_t> sizes;
     for (const std::int32_t root : roots_) sizes.push_back(finder_.parent_[index(root)]);
     for (Group& group : groups_) group.parent = sizes;
@@ -224,11 +221,7 @@ class PoseOverlaps {
         found.region.images.push_back(image);
         region_of_image_[index(image)] = static_cast<std::int32_t>(at->second);
       }
-    for (Found& found : regions_) {
-      std::ranges::sort(found.region.images);
-      found.region.images.erase(std::unique(found.region.images.begin(), found.region.images.end()),
-                                found.region.images.end());
-    }
+    for (Found& found : regions_) sort_unique(found.region.images);
   }
 
   // Whether the part behind the other sheet has no more vertices than that before.

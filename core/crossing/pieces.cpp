@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/sort_unique.h"
 #include "core/detect/start/crossings.h"
 
 namespace cscd {
@@ -10,11 +11,6 @@ namespace {
 
 constexpr std::uint64_t in_halves(std::uint64_t upper, std::uint64_t lower) {
   return upper << 32 | lower;
-}
-template <class Item>
-void make_unique(std::vector<Item>& items) {
-  std::ranges::sort(items);
-  items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 }  // namespace
@@ -48,8 +44,8 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
         }
     }
   }
-  make_unique(triangles_);
-  make_unique(facing_);
+  sort_unique(triangles_);
+  sort_unique(facing_);
 }
 
 std::size_t OverlapPieces::find(TriangleId a, TriangleId b) const {

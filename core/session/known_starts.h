@@ -21,7 +21,7 @@ struct Certainty {
 // known pose, and whose contacts are certain, tells what crosses at its end. Steps are therefore best asked
 // for in the order of the motion. Where something touches, the start stays the known pose until a step starts
 // at the end, because who looks for a step that is free asks about the same start again. Where nothing
-// touches, the start stays known beside the end for who has asked about another start lately.
+// touches, the start stays known beside the end, if a start that was not known has been asked about lately.
 //
 // With a thickness it knows also which poses are *clear*: nothing crosses, and no pair is close. A step
 // without a contact proves its start and its end clear. The pairs that touch are among the close ones, so
