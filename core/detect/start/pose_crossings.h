@@ -39,8 +39,8 @@ class PoseCrossings {
   // Where nothing touched on the way here, the same pairs cross in the pose before. Returns whether
   // `positions` are that pose, bit for bit, and if so takes it for the one last asked for, and this one for
   // the pose before. So a caller may ask about several steps from one start. The pose before is kept for some
-  // steps after keep_before(), and after each return. A clip that only goes on has no use for it, and to keep
-  // it takes a tenth of the time of a short step.
+  // steps after keep_before(), and after each return. A clip that only goes on has no use for it, and a short
+  // step would take longer.
   bool return_to(std::span<const Vec3> positions);
 
   // Lets the next steps keep the pose before.
