@@ -212,7 +212,7 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
   if (s.only_straight > 0)
     out += (s.only_true > 0 ? "; they have contacts in " : "have contacts in ") +
            std::to_string(s.only_straight) + " in which the true motion has none";
-  if (s.only_true + s.only_straight == 0) out += "agree in every interval in which it is decided";
+  if (s.only_true + s.only_straight == 0) out += "agree with it in every interval that is decided";
   if (s.not_asked == s.intervals) {
     out += "\n  every interval starts crossed, and no more is asked of such";
   } else if (s.bounded() == 0) {
