@@ -108,6 +108,7 @@ TEST(SelfCollision, SeesAWrongFilterOfEachKind) {
 // Mutations: a group that no pair names is taken for one of those that pairs name; a group's number is its
 // place in the table.
 TEST(SelfCollision, TakesGroupsOfAnyNumber) {
+  const auto corners = [](int a, int b, int c) { return Triangle{VertexId{a}, VertexId{b}, VertexId{c}}; };
   const std::vector<std::int32_t> group{7, 4096, std::numeric_limits<std::int32_t>::max(), 7, 0, 5000};
   const std::vector<std::pair<std::int32_t, std::int32_t>> pairs{{7, group[2]}, {4096, 4096}};
   const TriangleMesh mesh({corners(0, 1, 2), corners(3, 4, 5)}, 6);
