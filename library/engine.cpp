@@ -1,0 +1,359 @@
+#include "library/engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/number_text.h"
+#include "core/base/rounding.h"
+#include "core/detect/contact_geometry.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+#include "core/session/vertex_bounds.h"
+#include "library/paths.h"
+
+namespace cscd {
+namespace {
+
+using Positions = SelfCollision::Positions;
+using Faces = SelfCollision::Faces;
+
+constexpr int kMostThreads = 1024;  // each has memory of its own
+constexpr std::size_t kMostLabels = 1000;
+constexpr int kFilteredSteps = 16;  // after a step in which something excluded touched
+
+// A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+std::span<const Vec3> rows_of(const Positions& positions, std::string_view name) {
+  positions.require_rows_of_three(name, "vertex");
+  return {reinterpret_cast<const Vec3*>(positions.data()), positions.rows()};
+}
+
+std::span<const Vec3> rows_of(const Positions& positions, std::size_t count, std::string_view name) {
+  const std::span<const Vec3> rows = rows_of(positions, name);
+  if (rows.size() != count)
+    throw InputError(std::string(name) + ": " + std::to_string(rows.size()) + " rows for " +
+                     std::to_string(count) + " vertices; give one row a vertex");
+  return rows;
+}
+
+std::vector<Triangle> triangles_of(const Faces& faces) {
+  faces.require_rows_of_three("faces", "triangle");
+  std::vector<Triangle> triangles;
+  triangles.reserve(faces.rows());
+  for (const int* c = faces.data(); triangles.size() < faces.rows(); c += 3)
+    triangles.push_back({VertexId{c[0]}, VertexId{c[1]}, VertexId{c[2]}});
+  return triangles;
+}
+
+std::vector<Vec3> copy_of(std::span<const Vec3> positions) {
+  return {positions.begin(), positions.end()};
+}
+
+bool is_same(std::span<const Vec3> a, std::span<const Vec3> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+const ElementaryTest& elementary() {
+  return *find_elementary_test("filtered_exact");
+}
+
+std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair) {
+  const auto [a, b, c, d] = vertices_of(mesh, pair);
+  return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c), static_cast<int>(d)};
+}
+
+}  // namespace
+
+SelfCollision::Engine::Engine(const Faces& faces, const Positions& reference, Options options)
+    : options_(std::move(options)),
+      reference_(copy_of(rows_of(reference, "reference positions"))),
+      mesh_(triangles_of(faces), reference_.size(), "faces"),
+      beside_(obstacle_mesh_of(options_.obstacles)) {
+  require_finite(reference_, "reference positions");
+  // Positions that were never filled in. Every pair of triangles would cross.
+  if (mesh_.triangle_count() > 1 &&
+      std::ranges::all_of(reference_, [&](const Vec3& p) { return p == reference_[0]; }))
+    throw InputError("reference positions: all vertices are in one place; give the pose at rest");
+  if (options_.threads < 1 || options_.threads > kMostThreads)
+    throw InputError("options: threads is " + std::to_string(options_.threads) + "; give 1 to " +
+                     std::to_string(kMostThreads));
+  if (options_.exclude.ongoing && !options_.check_start)
+    throw InputError("exclude, ongoing: needs to know what crosses at the start; set check_start");
+  check_labels();
+  thickness_ = checked_thickness();
+  options_.obstacles.clear();
+  if (beside_)
+    obstacles_.emplace(mesh_, reference_, beside_->mesh, beside_->positions, beside_->first_vertex,
+                       elementary());
+  std::vector<Vec3> all = reference_;
+  if (beside_) all.insert(all.end(), beside_->positions.begin(), beside_->positions.end());
+  exclusions_ = exclusions_of(obstacles_ ? obstacles_->together() : mesh_, all, options_.exclude);
+  if (obstacles_ && !exclusions_.empty()) obstacles_->leave_out(exclusions_);
+  if (obstacles_) obstacles_->thicken(thickness_);
+  // Preparing here, and not in the first step, finds what is wrong with the input where it is given.
+  plain(first_);
+}
+
+Motion SelfCollision::Engine::motion(const Positions& start, const Positions& end) const {
+  return {rows_of(start, mesh_.vertex_count(), "start positions"),
+          rows_of(end, mesh_.vertex_count(), "end positions")};
+}
+
+std::span<const Vec3> SelfCollision::Engine::pose(const Positions& positions) const {
+  const std::span<const Vec3> rows = rows_of(positions, mesh_.vertex_count(), "positions");
+  check_finite(rows, "positions");
+  return rows;
+}
+
+void SelfCollision::Engine::check_finite(std::span<const Vec3> positions, const std::string& which) const {
+  if (options_.check_positions) require_finite(positions, which);
+}
+
+void SelfCollision::Engine::move(std::size_t obstacle, const Positions& start, const Positions& end) {
+  // A caller's -1 is the largest number by the time it is here.
+  const std::string name = "obstacle " + std::to_string(static_cast<std::ptrdiff_t>(obstacle));
+  const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
+  if (obstacle >= count)
+    throw InputError(name + ": there are " + std::to_string(count) + "; obstacles are counted from 0");
+  const std::string start_name = name + ", start positions", end_name = name + ", end positions";
+  const std::span<const Vec3> from = rows_of(start, obstacles_->vertex_count(obstacle), start_name);
+  const std::span<const Vec3> to = rows_of(end, obstacles_->vertex_count(obstacle), end_name);
+  check_finite(from, start_name);
+  check_finite(to, end_name);
+  obstacles_->move(obstacle, from, to);
+}
+
+void SelfCollision::Engine::step(const Motion& motion, bool first, bool any_contact) {
+  step_itself(first ? first_ : all_, motion, any_contact && !options_.exclude.ongoing);
+  if (options_.exclude.ongoing && answer_.start.total > 0) leave_out_ongoing(motion, first);
+  if (!obstacles_) return;
+  obstacles_->step(motion, first, options_.check_start, touched_, crossed_);
+  const std::optional<double> earliest = time();
+  if (first && earliest)
+    for (std::vector<cscd::Contact>* contacts : {&answer_.found.contacts, &touched_.contacts})
+      std::erase_if(*contacts, [&](const cscd::Contact& contact) { return contact.time > *earliest; });
+}
+
+std::optional<double> SelfCollision::Engine::time() const {
+  const std::optional<double> own = answer_.time();
+  if (touched_.contacts.empty()) return own;
+  return std::min(own.value_or(1), touched_.contacts.front().time);
+}
+
+void SelfCollision::Engine::write(const Motion& motion, Answer& out) const {
+  out.start_crossings.clear();
+  for (const cscd::Crossings* crossings : {&answer_.start, &crossed_})
+    for (const auto& [a, b] : crossings->pairs)
+      out.start_crossings.push_back({static_cast<int>(a), static_cast<int>(b)});
+  if (!crossed_.pairs.empty()) std::sort(out.start_crossings.begin(), out.start_crossings.end());
+  out.contacts.clear();
+  for (const cscd::Contact& contact : answer_.found.contacts)
+    out.contacts.push_back(written(mesh_, contact, motion));
+  const auto own = static_cast<std::ptrdiff_t>(out.contacts.size());
+  for (const cscd::Contact& contact : touched_.contacts)
+    out.contacts.push_back(written(obstacles_->together(), contact, obstacles_->motion()));
+  if (!touched_.contacts.empty())
+    std::inplace_merge(out.contacts.begin(), out.contacts.begin() + own, out.contacts.end(),
+                       [](const Contact& a, const Contact& b) { return a.time < b.time; });
+}
+
+// A solver that looks for a free step asks about one start many times. From a start that crosses itself
+// none is free, which is known after the first.
+bool SelfCollision::Engine::is_free(const Motion& motion) {
+  if (is_same(motion.start(), crossing_start_)) {
+    check_finite(motion.end(), "end positions");
+    return false;
+  }
+  step(motion, true, true);
+  if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
+  return !crosses() && !time();
+}
+
+void SelfCollision::Engine::candidates(const Motion& motion, double radius, Candidates& out) {
+  if (!(radius >= 0) || !std::isfinite(radius))
+    throw InputError("candidates: radius " + exact_text(radius) + "; give a finite length of at least 0");
+  search().find(motion, Thickness(radius), found_);
+  append(mesh_, out);
+  if (!obstacles_) return;
+  obstacles_->find_candidates(motion, Thickness(radius), found_);
+  append(obstacles_->together(), out);
+}
+
+SelfCollision::Crossings SelfCollision::Engine::crossings(std::span<const Vec3> pose) {
+  return crossing_search().find(pose, exclusions_);
+}
+
+SelfCollision::PathsAnswer SelfCollision::Engine::true_motion(const Paths& paths, double from, double to,
+                                                              double resolution) {
+  if (beside_ || is_thick())
+    throw InputError("true_motion: knows no obstacles and no thickness; leave them out");
+  return answer_paths(paths, from, to, resolution,
+                      setup(false, exclusions_.empty() ? nullptr : &exclusions_));
+}
+
+std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> pose, double cap) {
+  // Pairs farther apart than this do not bound anything below the cap. The slack exceeds the roundings of
+  // the sums.
+  const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * cap);
+  const Thickness reach(options_.thickness + 2 * cap + slack, options_.vertex_thickness);
+  if (!(cap >= 0) || !std::isfinite(reach.largest()))
+    throw InputError("vertex_bounds: cap " + exact_text(cap) +
+                     "; give a length of at least 0 of which twice, with the thickness, is finite");
+  const Motion rest(pose, pose);
+  VertexBounds bounds(mesh_.vertex_count(), cap);
+  search().find(rest, reach, found_);
+  bounds.add(mesh_, rest, found_, thickness_);
+  if (obstacles_) {
+    obstacles_->find_candidates(rest, reach, found_);
+    if (!found_.empty()) bounds.add(obstacles_->together(), obstacles_->motion(), found_, thickness_);
+  }
+  return bounds.find();
+}
+
+void SelfCollision::Engine::check_labels() const {
+  const std::vector<int>& labels = options_.labels;
+  if (labels.empty()) return;
+  if (labels.size() != mesh_.vertex_count())
+    throw InputError("labels: " + std::to_string(labels.size()) + " for " +
+                     std::to_string(mesh_.vertex_count()) + " vertices; give one label a vertex");
+  const std::size_t different = std::set<int>(labels.begin(), labels.end()).size();
+  if (different > kMostLabels)
+    throw InputError("labels: " + std::to_string(different) + " different ones; give at most " +
+                     std::to_string(kMostLabels) + ", such as one for each bone");
+}
+
+Thickness SelfCollision::Engine::checked_thickness() const {
+  const auto require_length = [](double length, const std::string& name) {
+    if (!(length >= 0) || !std::isfinite(length))
+      throw InputError("options: " + name + " is " + exact_text(length) +
+                       "; give a finite length of at least 0");
+  };
+  require_length(options_.thickness, "thickness");
+  const std::vector<double>& by_vertex = options_.vertex_thickness;
+  if (by_vertex.empty()) return Thickness(options_.thickness);
+  const std::size_t vertices = mesh_.vertex_count() + (beside_ ? beside_->positions.size() : 0);
+  if (by_vertex.size() != vertices)
+    throw InputError("options: vertex_thickness has " + std::to_string(by_vertex.size()) + " entries for " +
+                     std::to_string(vertices) + " vertices of the mesh and of obstacles; give one a vertex");
+  for (std::size_t v = 0; v < by_vertex.size(); ++v)
+    require_length(by_vertex[v], "vertex_thickness of vertex " + std::to_string(v));
+  require_length(Thickness(options_.thickness, by_vertex).largest(), "thickness of a pair of vertices");
+  return Thickness(options_.thickness, by_vertex);
+}
+
+StrategyInput SelfCollision::Engine::setup(bool first, const cscd::Exclusions* exclusions) const {
+  return {.mesh = mesh_,
+          .reference = reference_,
+          .rig = nullptr,
+          .elementary = elementary(),
+          .threads = options_.threads,
+          .first_only = first,
+          .exclusions = exclusions,
+          .preparation = options_.preparation,
+          .labels = options_.labels};
+}
+
+Session& SelfCollision::Engine::made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
+                                     const cscd::Exclusions* exclusions) {
+  if (wanted) return *wanted;
+  const SessionOptions options{.first = first,
+                               .keep_rest_crossings = true,
+                               .ignore_starts = !options_.check_start,
+                               .check_finite = options_.check_positions,
+                               .thickness = thickness_};
+  return wanted.emplace("reference positions", setup(first, exclusions), strategy, kDrvbcFastComplete,
+                        reference_, options);
+}
+
+// The session of a complete strategy finds out how a step starts, and tells the strategy where nothing
+// crosses, which makes that step quick. With check_start off, a session finds out and tells nothing. Then
+// the strategy that promises the first contact is right, because it takes every start for free of crossings
+// as the caller does. With exclusions, though, a caller may let excluded pairs cross, and with a thickness
+// pairs may be close at the start.
+//
+// With a thickness, pairs are excluded that are close in every step, such as neighbours, and the one
+// session knows of them.
+Session& SelfCollision::Engine::plain(Question& question) {
+  const bool for_granted =
+      !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty() && !is_thick();
+  return made(question.plain, question.first, question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete,
+              is_thick() && !exclusions_.empty() ? &exclusions_ : nullptr);
+}
+
+CrossingSearch& SelfCollision::Engine::crossing_search() {
+  if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
+  return *crossing_search_;
+}
+
+CandidateSearch& SelfCollision::Engine::search() {
+  if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
+  return *search_;
+}
+
+void SelfCollision::Engine::step_itself(Question& question, const Motion& motion, bool any_contact) {
+  if (question.filtered_steps == 0) {
+    plain(question).step(motion, nullptr, answer_, any_contact && exclusions_.empty());
+    if (exclusions_.empty() || is_thick()) return;
+    const std::size_t left_out = leave_out();
+    if (left_out > 0) question.filtered_steps = kFilteredSteps;
+    if (left_out == 0 || !question.first || !answer_.found.contacts.empty()) return;
+  }
+  made(question.filtered, question.first, kDrvbcFastComplete, &exclusions_).step(motion, nullptr, answer_);
+  --question.filtered_steps;
+}
+
+// Drops what is excluded from the answer, and returns the number of contacts dropped.
+std::size_t SelfCollision::Engine::leave_out() {
+  answer_.start.total -= std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) {
+    return exclusions_.excludes(mesh_, TrianglePair{pair.first, pair.second});
+  });
+  return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
+    return exclusions_.excludes(mesh_, contact.pair);
+  });
+}
+
+// Drops from the answer what lies within overlaps of the start. Where that leaves nothing of the first
+// contact, finds the first of the others among all contacts.
+void SelfCollision::Engine::leave_out_ongoing(const Motion& motion, bool first) {
+  const OverlapPieces pieces = crossing_search().find_pieces(motion.start(), exclusions_);
+  const auto leave_out = [&] {
+    answer_.start.total -= std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) {
+      return pieces.find(pair.first, pair.second) != OverlapPieces::kNone;
+    });
+    return std::erase_if(answer_.found.contacts, [&](const cscd::Contact& contact) {
+      return pieces.find(mesh_, contact.pair) != OverlapPieces::kNone;
+    });
+  };
+  if (leave_out() == 0 || !first || !answer_.found.contacts.empty()) return;
+  step_itself(all_, motion, false);
+  leave_out();
+  keep_first(answer_.found);
+}
+
+void SelfCollision::Engine::append(const TriangleMesh& mesh, Candidates& out) const {
+  for (const FeaturePair& pair : found_)
+    if (pair.kind == FeaturePair::Kind::vertex_face)
+      out.vertex_face.push_back({pair.a, pair.b});
+    else
+      out.edge_edge.push_back(indices_of(mesh, pair));
+}
+
+SelfCollision::Contact SelfCollision::Engine::written(const TriangleMesh& mesh, const cscd::Contact& contact,
+                                                      const Motion& motion) const {
+  const ContactGeometry geometry =
+      contact_geometry(mesh, motion, contact.pair, contact.time, thickness_.of(mesh, contact.pair) > 0);
+  const bool edges = contact.pair.kind == FeaturePair::Kind::edge_edge;
+  return {edges,
+          indices_of(mesh, contact.pair),
+          edges ? -1 : contact.pair.b,
+          contact.time,
+          geometry.point,
+          geometry.normal.value_or(Vec3::Zero()),
+          Eigen::Vector3d(geometry.weights[0], geometry.weights[1], geometry.weights[2]),
+          geometry.relative_speed.value_or(0)};
+}
+
+}  // namespace cscd

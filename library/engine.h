@@ -1,0 +1,101 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/detect/exclusions.h"
+#include "core/detect/strategy.h"
+#include "core/mesh/triangle_mesh.h"
+#include "core/session/candidates.h"
+#include "core/session/obstacles.h"
+#include "core/session/session.h"
+#include "library/arguments.h"
+#include "library/crossings.h"
+
+#include "cscd/cscd.h"
+
+namespace cscd {
+
+// What a SelfCollision holds: its mesh, what it was told of it, and the searches that answer its questions.
+// One thread asks at a time. Errors of the input are InputError.
+class SelfCollision::Engine {
+ public:
+  std::atomic_flag in_use;  // by a call
+
+  Engine(const Faces& faces, const Positions& reference, Options options);
+
+  const TriangleMesh& mesh() const { return mesh_; }
+  std::vector<std::byte> preparation() const { return first_.plain->saved_preparation(); }
+
+  // The positions as they lie in the caller's memory. Sessions look for numbers that are not finite, in the
+  // pass in which they look whether a start is known; for other questions, check_finite() does.
+  Motion motion(const Positions& start, const Positions& end) const;
+  std::span<const Vec3> pose(const Positions& positions) const;
+  void check_finite(std::span<const Vec3> positions, const std::string& which) const;
+
+  void move(std::size_t obstacle, const Positions& start, const Positions& end);
+
+  // Answers one step. The answer is kept until the next. With `any_contact`, it need not be the first one.
+  void step(const Motion& motion, bool first, bool any_contact = false);
+  bool crosses() const { return answer_.start.total + crossed_.total > 0; }
+  std::optional<double> time() const;  // of the first contact
+  void write(const Motion& motion, Answer& out) const;
+
+  bool is_free(const Motion& motion);
+  void candidates(const Motion& motion, double radius, Candidates& out);
+  SelfCollision::Crossings crossings(std::span<const Vec3> pose);
+  PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution);
+  std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap);
+
+ private:
+  // The sessions that answer one question. Each is prepared when it is asked for first. `plain` knows of no
+  // exclusions: what is excluded is dropped from its answer. Where that leaves nothing of the first contact,
+  // `filtered` finds the first of the others. So a step in which nothing excluded touches costs what it costs
+  // without exclusions, and what it proves says how the next step starts.
+  struct Question {
+    bool first;
+    std::optional<Session> plain = std::nullopt, filtered = std::nullopt;
+    int filtered_steps = 0;  // the number of steps from here on that `filtered` answers alone
+  };
+
+  void check_labels() const;
+  Thickness checked_thickness() const;
+  bool is_thick() const { return !thickness_.is_zero(); }
+
+  StrategyInput setup(bool first, const cscd::Exclusions* exclusions) const;
+  Session& made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
+                const cscd::Exclusions* exclusions);
+  Session& plain(Question& question);
+  CrossingSearch& crossing_search();
+  CandidateSearch& search();
+
+  void step_itself(Question& question, const Motion& motion, bool any_contact);
+  std::size_t leave_out();
+  void leave_out_ongoing(const Motion& motion, bool first);
+
+  void append(const TriangleMesh& mesh, Candidates& out) const;
+  Contact written(const TriangleMesh& mesh, const cscd::Contact& contact, const Motion& motion) const;
+
+  Options options_;
+  std::vector<Vec3> reference_;
+  TriangleMesh mesh_;
+  std::unique_ptr<ObstacleMesh> beside_;
+  std::optional<Obstacles> obstacles_;
+  Thickness thickness_;          // of vertices of the mesh, and behind them of obstacles
+  cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
+  Question first_{.first = true}, all_{.first = false};
+  std::optional<CandidateSearch> search_;
+  StepAnswer answer_;        // about the mesh alone
+  ContactSet touched_;       // of the mesh and obstacles
+  cscd::Crossings crossed_;  // of the mesh and obstacles
+  std::vector<FeaturePair> found_;
+  std::optional<CrossingSearch> crossing_search_;
+  std::vector<Vec3> crossing_start_;  // the last one that is_free() met
+};
+
+}  // namespace cscd
