@@ -111,7 +111,7 @@ class CurveFinder {
   }
 
   void number_piercings() {
-    std::ranges::sort(ends_, {}, &SegmentEnd::key);
+    std::ranges::sort(ends_, [](const SegmentEnd& a, const SegmentEnd& b) { return a.key() < b.key(); });
     out_.piercings.reserve(ends_.size() / 2 + 1);
     first_.reserve(ends_.size() / 2 + 2);
     out_.piercings.clear();

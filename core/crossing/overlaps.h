@@ -7,6 +7,7 @@
 #include "core/base/ids.h"
 #include "core/base/vec3.h"
 #include "core/crossing/curves.h"
+#include "core/crossing/fragments.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace cscd {
@@ -72,7 +73,7 @@ void for_each_segment(const CrossingCurves& all, const Overlap& overlap, const T
 // Finds what lies in what, one pose after another of one mesh. Where nothing crosses, a call does nothing.
 class OverlapFinder {
  public:
-  explicit OverlapFinder(const TriangleMesh& mesh);  // `mesh` must outlive the object
+  explicit OverlapFinder(const TriangleMesh& mesh) : mesh_(mesh), marks_(mesh) {}  // `mesh` must outlive it
 
   // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_way` every vertex of every
   // region gets its way out. The answer does not depend on the unit of length: where all coordinates are
@@ -83,14 +84,9 @@ class OverlapFinder {
  private:
   friend class PoseOverlaps;
   const TriangleMesh& mesh_;
-  std::vector<bool> open_;             // [components], whether it has an edge without two proper sides
-  std::vector<std::int32_t> parent_;   // [vertices]; the parent, or minus the number of vertices of a root
-  std::vector<std::int32_t> pierced_;  // [edges], the first piercing, or -1
-  std::vector<std::uint8_t> is_on_curve_;  // [vertices], whether a curve ends there
-  std::vector<std::uint8_t> is_cut_;       // [triangles], whether a curve runs through
-  std::vector<std::uint32_t> listed_;      // [triangles], in which list last
+  CurveMarks marks_;
+  std::vector<std::uint32_t> listed_, visited_;  // [triangles], [vertices], in which list last
   std::uint32_t lists_ = 0;
-  std::vector<std::int32_t> visited_;  // [vertices], by which region
 };
 
 }  // namespace cscd

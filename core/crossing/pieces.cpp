@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/base/sort_unique.h"
 #include "core/detect/start/crossings.h"
@@ -18,8 +19,10 @@ constexpr std::uint64_t in_halves(std::uint64_t upper, std::uint64_t lower) {
 OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
                              std::span<const std::size_t> number) {
   std::uint32_t pieces = 0;
+  std::vector<std::uint32_t> last(mesh.triangle_count(), ~0U);  // in which piece; most are met several times
   const auto add = [&](TriangleId t, std::uint32_t piece) {
-    triangles_.push_back(in_halves(static_cast<std::uint64_t>(+t), piece));
+    if (std::exchange(last[+t], piece) != piece)
+      triangles_.push_back(in_halves(static_cast<std::uint64_t>(+t), piece));
   };
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (number[i] == kNone) continue;

@@ -12,20 +12,19 @@
 namespace cscd {
 namespace {
 
-// The vertex that lies farthest along an axis, if there is one alone.
+// The vertex of some triangles that lies farthest along an axis, if there is one alone.
 std::optional<VertexId> farthest_vertex(const TriangleMesh& mesh, std::span<const Vec3> positions,
-                                        std::int32_t component, int axis, int sign) {
+                                        std::span<const TriangleId> triangles, int axis, int sign) {
   std::optional<VertexId> best;
   bool alone = true;
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    const VertexId v{static_cast<std::int32_t>(i)};
-    const double gain = best ? sign * (positions[i][axis] - positions[+*best][axis]) : 1;
-    if (gain < 0) continue;
-    const std::span<const TriangleId> at = mesh.triangles_at(v);
-    if (at.empty() || mesh.component(at.front()) != component) continue;
-    if (gain > 0) best = v;
-    alone = gain > 0;
-  }
+  for (const TriangleId t : triangles)
+    for (const VertexId v : mesh.corners(t)) {
+      if (v == best) continue;
+      const double gain = best ? sign * (positions[+v][axis] - positions[+*best][axis]) : 1;
+      if (gain < 0) continue;
+      if (gain > 0) best = v;
+      alone = gain > 0;
+    }
   return alone ? best : std::nullopt;
 }
 
@@ -56,7 +55,8 @@ std::vector<VertexId> ring_of(const TriangleMesh& mesh, VertexId v) {
 // Seen from the outermost vertex, its neighbours are the corners of a polygon that does not cross itself. The
 // faces look outward if it runs counter-clockwise, and how it runs is seen at its own outermost corner.
 std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
-                                                     std::span<const Vec3> positions, std::int32_t component,
+                                                     std::span<const Vec3> positions,
+                                                     std::span<const TriangleId> component,
                                                      const std::function<bool(VertexId)>& is_on_curve) {
   GenericSides sides(positions);
   for (int axis = 0; axis < 3; ++axis)
@@ -87,13 +87,12 @@ std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
   return std::nullopt;
 }
 
-bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component,
-                  const std::function<bool(VertexId)>& is_on_curve) {
+bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                  std::span<const TriangleId> component, const std::function<bool(VertexId)>& is_on_curve) {
   double volume = 0, sizes = 0, count = 0;  // six times the volume
   std::optional<Vec3> origin;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (mesh.component(TriangleId{static_cast<std::int32_t>(t)}) != component) continue;
-    const auto [a, b, c] = mesh.triangles()[t];
+  for (const TriangleId t : component) {
+    const auto [a, b, c] = mesh.corners(t);
     if (!origin) origin = positions[+a];
     const Vec3 from = positions[+a] - *origin, ab = positions[+b] - positions[+a],
                ac = positions[+c] - positions[+a];

@@ -19,18 +19,19 @@ struct OutermostVertex {
   int winding;
 };
 
-// Looks for such a vertex at the ends of the component along the axes. Decides with certainty, or returns
-// nothing. `is_on_curve` says at which vertices faces of their own ring cross each other; such a vertex says
-// nothing.
+// Looks for such a vertex at the ends of the component, all of whose triangles are given, along the axes.
+// Decides with certainty, or returns nothing. `is_on_curve` says at which vertices faces of their own ring
+// cross each other; such a vertex says nothing.
 std::optional<OutermostVertex> find_outermost_vertex(const TriangleMesh& mesh,
-                                                     std::span<const Vec3> positions, std::int32_t component,
+                                                     std::span<const Vec3> positions,
+                                                     std::span<const TriangleId> component,
                                                      const std::function<bool(VertexId)>& is_on_curve);
 
 // Whether the faces of a closed component look inward: it holds a negative volume. Where rounding leaves the
 // sign of the volume open, an outermost vertex decides, which is right if the component does not cross
 // itself.
-bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions, std::int32_t component,
-                  const std::function<bool(VertexId)>& is_on_curve);
+bool faces_inward(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                  std::span<const TriangleId> component, const std::function<bool(VertexId)>& is_on_curve);
 
 // A way from one part of the component's skin to another, on which so many more of its faces come to lie
 // before the skin. Each way can be gone back.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "core/base/stopwatch.h"
 
@@ -14,7 +15,7 @@ std::vector<CrossingPair> all_pairs(const IntervalAnswer& answer) {
   std::vector<CrossingPair> all = answer.start.pairs;
   all.insert(all.end(), answer.explained_pairs.begin(), answer.explained_pairs.end());
   all.insert(all.end(), answer.ignored_pairs.begin(), answer.ignored_pairs.end());
-  std::ranges::sort(all);
+  if (!std::ranges::is_sorted(all)) std::ranges::sort(all);
   return all;
 }
 
@@ -63,12 +64,15 @@ NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) co
     for (const std::int32_t image : overlap.regions.front().image)
       side.try_emplace(image / 2, static_cast<std::size_t>(image % 2));
   std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::size_t, std::array<TriangleId, 2>>> count;
+  auto last = count.end();  // neighbouring segments are mostly between the same places
   for (const std::int32_t curve : overlap.curves) {
     const auto own = side.find(curve);
     if (!side.empty() && own == side.end()) continue;
     const std::size_t s = own == side.end() ? 0 : own->second;
     for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
-      auto& [times, example] = count[{names_.place_number(segment[s]), names_.place_number(segment[1 - s])}];
+      const std::pair places(names_.place_number(segment[s]), names_.place_number(segment[1 - s]));
+      if (last == count.end() || last->first != places) last = count.try_emplace(places).first;
+      auto& [times, example] = last->second;
       ++times;
       example = {segment[s], segment[1 - s]};
     }
@@ -80,12 +84,13 @@ NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) co
 }
 
 std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& overlap,
-                                           const NamePair& names) const {
+                                           const NamePair& names) {
   Votes by_vertex, by_pair;
   for (const CrossingRegion& region : overlap.regions)
     for (const VertexId v : region.vertices)
       by_vertex.add(vertices_, static_cast<std::int32_t>(v), region.other);
   if (const std::size_t event = by_vertex.most(); event != kNone) return event;
+  if (!std::exchange(pairs_are_sorted_, true)) std::ranges::sort(pairs_);
   for_each_segment(all.crossing, overlap, [&](const auto& segment) {
     const auto [a, b] = pair_of(segment);
     by_pair.add(pairs_, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
@@ -164,10 +169,10 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
     here.pieces = OverlapPieces(input_.mesh, here.overlaps, here.event);
   assign_contacts(here, answer);
   std::ranges::sort(vertices);
-  std::ranges::sort(pairs);
   std::ranges::sort(going_on);
   vertices_ = std::move(vertices);
   pairs_ = std::move(pairs);
+  pairs_are_sorted_ = false;
   going_on_ = std::move(going_on);
   milliseconds_ += watch.milliseconds();
   return here;

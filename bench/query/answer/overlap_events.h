@@ -75,7 +75,7 @@ class OverlapEvents {
       std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event
 
   bool is_event(const Overlaps& all, const Overlap& overlap, const IntervalAnswer& answer) const;
-  std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names) const;
+  std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names);
   NamePair names_of(const Overlaps& all, const Overlap& overlap) const;
   void extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap, const NamePair& names,
               std::size_t interval, std::span<const Vec3> start);
@@ -84,8 +84,9 @@ class OverlapEvents {
   const SurfaceNames& names_;
   OverlapFinder finder_;
   std::vector<OverlapEvent> events_;
-  std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted
-  std::vector<std::size_t> going_on_;   // events of the last interval; sorted
+  std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted, pairs only once they are needed
+  bool pairs_are_sorted_ = false;
+  std::vector<std::size_t> going_on_;  // events of the last interval; sorted
   double milliseconds_ = 0;
   std::size_t not_measured_ = 0;
 };
