@@ -187,28 +187,31 @@ class PoseOverlaps {
     });
   }
 
-  // The other sheet of what belongs to one image, in region `own` or in none. Sets `is_open` where that is
-  // not bounded (CrossingRegion::other_is_open).
-  std::vector<TriangleId> other_sheet(std::int32_t image, std::int32_t own, bool& is_open) const {
+  // Distances to the other sheet of what belongs to one image, in region `own` or in none; valid until the
+  // next call. Sets `is_open` where that sheet is not bounded (CrossingRegion::other_is_open).
+  const SheetDistance& to_other_sheet(std::int32_t image, std::int32_t own, bool& is_open) {
     const std::int32_t opposite = image ^ 1, other = region_of_image_[index(opposite)];
-    std::vector<TriangleId> out;
+    is_open = other == kNone && !has_no_vertex(opposite);
+    if (is_open) {
+      const std::int32_t component = mesh_.component(sheet_[index(opposite)].front());
+      if (component != mesh_.component(sheet_[index(image)].front())) {
+        SheetDistance& to =
+            to_component_.try_emplace(component, mesh_, positions_, parts_->marks().triangles_of(component))
+                .first->second;
+        to.start_anew();
+        return to;
+      }
+    }
+    std::vector<TriangleId> triangles;
     const std::uint32_t list = ++finder_.lists_;
     const auto add = [&](std::int32_t of) {
       for (const TriangleId t : sheet_[index(of)])
-        if (std::exchange(finder_.listed_[+t], list) != list) out.push_back(t);
+        if (std::exchange(finder_.listed_[+t], list) != list) triangles.push_back(t);
     };
     add(opposite);
-    if (other == kNone && !has_no_vertex(opposite)) {
-      is_open = true;
-      const std::int32_t component = mesh_.component(out.front());
-      if (component != mesh_.component(sheet_[index(image)].front())) {
-        const std::span<const TriangleId> all = parts_->marks().triangles_of(component);
-        return {all.begin(), all.end()};
-      }
-    } else if (other != kNone && other != own) {
+    if (other != kNone && other != own)
       for (const std::int32_t also : regions_[index(other)].region.images) add(also);
-    }
-    return out;
+    return to_sheet_.emplace(mesh_, positions_, triangles);
   }
 
   // Takes a point into account.
@@ -232,9 +235,9 @@ class PoseOverlaps {
     CrossingRegion& region = regions_[r].region;
     if (each_way_) region.way.assign(region.vertices.size(), Vec3::Zero());
     for (const std::int32_t image : regions_[r].region.images) {
-      const std::vector<TriangleId> other =
-          other_sheet(image, static_cast<std::int32_t>(r), region.other_is_open);
-      const SheetDistance to(mesh_, positions_, other);
+      bool is_open = false;
+      const SheetDistance& to = to_other_sheet(image, static_cast<std::int32_t>(r), is_open);
+      region.other_is_open |= is_open;
       // The vertices that are farthest from the curves come first: they are deepest most often, and then the
       // others need no search.
       for (std::size_t i = region.vertices.size(); i-- > 0;) {
@@ -251,12 +254,10 @@ class PoseOverlaps {
   }
 
   // The depth of what a curve cuts off one sheet without a vertex: edges go in and come out again.
-  CrossingDepth depth_of_edges(std::int32_t image) const {
+  CrossingDepth depth_of_edges(std::int32_t image) {
     CrossingDepth depth;
     bool is_open = false;
-    std::vector<std::pair<double, const Piercing*>> on_edge;
-    std::optional<SheetDistance> to;
-    std::vector<TriangleId> other;
+    const SheetDistance* to = nullptr;
     for (const CrossingCurve::Node& node : crossing().curves[index(image / 2)].nodes) {
       if (node.piercing < 0 || node.edge_sheet != image % 2) continue;
       const Piercing& from = crossing().piercings[index(node.piercing)];
@@ -272,10 +273,7 @@ class PoseOverlaps {
         if (out == nullptr || way.dot(at.point - out->point) < 0) out = &at;
       }
       if (out == nullptr || out->behind != ends[0]) continue;
-      if (!to) {
-        other = other_sheet(image, kNone, is_open);
-        to.emplace(mesh_, positions_, other);
-      }
+      if (to == nullptr) to = &to_other_sheet(image, kNone, is_open);
       const Vec3 middle = (from.point + out->point) / 2;
       deepen(depth, middle, VertexId{-1}, to->nearest(middle, depth.lower));
     }
@@ -331,8 +329,10 @@ class PoseOverlaps {
   Overlaps out_;
   std::optional<Fragments> parts_;
   std::vector<Found> regions_;
-  std::vector<std::int32_t> region_of_image_;   // [images], or kNone
-  std::vector<std::vector<TriangleId>> sheet_;  // [images]
+  std::vector<std::int32_t> region_of_image_;           // [images], or kNone
+  std::vector<std::vector<TriangleId>> sheet_;          // [images]
+  std::map<std::int32_t, SheetDistance> to_component_;  // of components that are not closed
+  std::optional<SheetDistance> to_sheet_;
 };
 
 Overlaps OverlapFinder::find(std::span<const Vec3> positions, std::span<const CrossingPair> pairs,
