@@ -154,6 +154,56 @@ TEST(Overlaps, OfRandomClosedSurfacesAreTrue) {
   EXPECT_GT(between, count() / 50);
 }
 
+// The regions of some components, each by its vertices, and how deep it is.
+std::set<std::pair<std::vector<VertexId>, double>> regions_of(const Overlaps& found,
+                                                              const std::vector<bool>& wanted) {
+  std::set<std::pair<std::vector<VertexId>, double>> out;
+  for (const Overlap& overlap : found.overlaps)
+    for (const CrossingRegion& region : overlap.regions) {
+      if (!wanted[static_cast<std::size_t>(region.own)] || !wanted[static_cast<std::size_t>(region.other)])
+        continue;
+      std::vector<VertexId> vertices = region.vertices;
+      std::ranges::sort(vertices);
+      out.emplace(vertices, region.depth.lower);
+    }
+  return out;
+}
+
+// Of four bodies, one of them with a hole or not, any two lie in each other as they would alone.
+// Mutations: an edge is parted by the faces of all components together; a group has one fragment alone.
+TEST(Overlaps, OfManyBodiesAreThoseOfEachTwo) {
+  int compared = 0, differ = 0;
+  for (int n = 0; n < count() / 2; ++n) {
+    Pushed first(static_cast<unsigned>(n)), second(static_cast<unsigned>(n) + 5000);
+    test::Shape all =
+        test::together(first.shapes, test::moved(second.shapes, 0.7 * first.draw(), 1 + 0.3 * n / count()));
+    if (n % 2 != 0) all.triangles.pop_back();
+    const std::vector<Vec3>& x = all.positions;
+    const TriangleMesh mesh = all.mesh();
+    ASSERT_EQ(mesh.component_count(), 4);
+    const std::vector<CrossingPair> pairs = all_pairs(mesh, x);
+    OverlapFinder finder(mesh);
+    const Overlaps together = finder.find(x, pairs);
+    if (together.crossing.degenerate > 0) continue;
+    for (std::int32_t one = 0; one < 4; ++one)
+      for (std::int32_t two = one + 1; two < 4; ++two) {
+        std::vector<Triangle> triangles;
+        for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+          if (const std::int32_t c = mesh.component(triangle(t)); c == one || c == two)
+            triangles.push_back(mesh.triangles()[t]);
+        const TriangleMesh both(triangles, x.size(), "two of the bodies");
+        OverlapFinder alone(both);
+        const auto expected = regions_of(alone.find(x, all_pairs(both, x)), {true, true});
+        std::vector<bool> wanted(4, false);
+        wanted[static_cast<std::size_t>(one)] = wanted[static_cast<std::size_t>(two)] = true;
+        differ += regions_of(together, wanted) != expected;
+        compared += !expected.empty();
+      }
+  }
+  EXPECT_EQ(differ, 0);
+  EXPECT_GT(compared, count() / 2);
+}
+
 // The gradient of the length of all curves against difference quotients, where the curves stay between the
 // same triangles.
 TEST(Overlaps, SayHowCurvesGrow) {
