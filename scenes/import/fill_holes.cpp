@@ -1,16 +1,13 @@
 #include "scenes/import/fill_holes.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/utility.h>
 #include <algorithm>
-#include <iterator>
 #include <unordered_map>
+
+#include "scenes/import/fbx/triangulated_loop.h"
 
 namespace cscd::scenes {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Loop = std::vector<VertexId>;
 
 // The loops of boundary edges, each in the direction in which the missing triangles would run along it.
@@ -71,24 +68,14 @@ FilledHoles fill_holes(const TriangleMesh& mesh, std::span<const Vec3> positions
       ++filled.left;
       continue;
     }
-    std::vector<Kernel::Point_3> polyline;
-    for (const VertexId v : loop)
-      polyline.emplace_back(positions[+v].x(), positions[+v].y(), positions[+v].z());
-    std::vector<CGAL::Triple<int, int, int>> patch;
-    CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
-        polyline, std::back_inserter(patch),
-        CGAL::parameters::use_delaunay_triangulation(true).geom_traits(Kernel()));
-    if (patch.size() + 2 != loop.size()) {
+    std::vector<Vec3> points;
+    for (const VertexId v : loop) points.push_back(positions[+v]);
+    const auto patch = triangulated_loop(points, LoopKind::hole);
+    if (patch.empty()) {
       ++filled.left;
       continue;
     }
-    for (const auto& t : patch) {
-      std::array<int, 3> corner{t.first, t.second, t.third};
-      std::sort(corner.begin(), corner.end());  // along the polyline, and so oriented as the hole is
-      filled.triangles.push_back({loop[static_cast<std::size_t>(corner[0])],
-                                  loop[static_cast<std::size_t>(corner[1])],
-                                  loop[static_cast<std::size_t>(corner[2])]});
-    }
+    for (const auto& [a, b, c] : patch) filled.triangles.push_back({loop[a], loop[b], loop[c]});
     ++filled.holes;
   }
   return filled;

@@ -1,17 +1,13 @@
 #include "scenes/import/fbx/mesh.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/utility.h>
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/vec3.h"
+#include "scenes/import/fbx/triangulated_loop.h"
 
 namespace cscd::scenes::fbx {
 namespace {
@@ -40,10 +36,6 @@ void cut_quadrilateral(std::span<const std::int32_t> c, std::span<const Vec3> po
     triangles.push_back({c[1], c[2], c[3]});
   }
 }
-
-// Polygons with more corners are triangulated only by methods whose time is less than the cube of the
-// number of corners.
-constexpr std::size_t kMostCornersCubed = 256;
 
 // Cuts off, by triangles without extent, the corners that lie where the corner before them lies. Such
 // corners would turn one edge that a polygon runs along twice into two edges.
@@ -87,27 +79,14 @@ bool has_no_area(std::span<const std::int32_t> corners, std::span<const Vec3> po
 
 bool cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
                  std::vector<std::array<std::int32_t, 3>>& triangles) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  std::vector<Kernel::Point_3> polyline;
+  std::vector<Vec3> loop;
   for (const std::int32_t corner : corners) {
-    const Vec3& x = positions[static_cast<std::size_t>(corner)];
-    if (!x.allFinite()) return false;
-    polyline.emplace_back(x.x(), x.y(), x.z());
+    loop.push_back(positions[static_cast<std::size_t>(corner)]);
+    if (!loop.back().allFinite()) return false;
   }
-  std::vector<CGAL::Triple<int, int, int>> patch;
-  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
-      polyline, std::back_inserter(patch),
-      CGAL::parameters::use_2d_constrained_delaunay_triangulation(true)
-          .do_not_use_cubic_algorithm(corners.size() > kMostCornersCubed)
-          .geom_traits(Kernel()));
-  if (patch.size() + 2 != corners.size()) return false;
-  for (const auto& t : patch) {
-    std::array<int, 3> k{t.first, t.second, t.third};
-    std::sort(k.begin(), k.end());  // along the polygon, and so oriented as the polygon is
-    triangles.push_back({corners[static_cast<std::size_t>(k[0])], corners[static_cast<std::size_t>(k[1])],
-                         corners[static_cast<std::size_t>(k[2])]});
-  }
-  return true;
+  const auto cut = triangulated_loop(loop, LoopKind::polygon);
+  for (const auto& [a, b, c] : cut) triangles.push_back({corners[a], corners[b], corners[c]});
+  return !cut.empty();
 }
 
 // Adds the triangles of a polygon to `triangles`. The polygon may be concave and need not be flat. A
