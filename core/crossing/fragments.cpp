@@ -139,6 +139,10 @@ void Fragments::cut() {
   }
 }
 
+std::int32_t Fragments::end_of_tree(std::int32_t first) const {
+  return static_cast<std::int32_t>(std::ranges::upper_bound(first_, first) - first_.begin());
+}
+
 // For each pair of components, joins the fragments of one that the other component does not part: those at
 // both ends of an edge that its faces do not part.
 void Fragments::join() {
@@ -150,9 +154,8 @@ void Fragments::join() {
   }
   sort_unique(at);
   for (const auto& [group, first] : at) {
-    const auto end = std::ranges::upper_bound(first_, first);
     groups_.push_back(group);
-    parts_.push_back({first, {size_.begin() + first, size_.begin() + (end - first_.begin())}});
+    parts_.push_back({first, {size_.begin() + first, size_.begin() + end_of_tree(first)}});
   }
   for (std::size_t p = 0; p < all.size(); ++p) {
     if (p > 0 && all[p].edge == all[p - 1].edge) continue;
@@ -189,24 +192,26 @@ std::int32_t Fragments::part_of(std::size_t group, VertexId v) {
 }
 
 std::optional<int> Fragments::winding(std::int32_t own, VertexId v) {
+  const std::int32_t first = first_[index(fragment(v))];
   const auto [known, is_new] = windings_.try_emplace(own);
-  if (is_new) known->second = windings_of(own);
-  return known->second[index(fragment(v))];
+  if (is_new) known->second = windings_of(own, first);
+  return known->second[index(fragment(v) - first)];
 }
 
 // The winding number is known at an outermost vertex, and one more for each of the component's faces behind
 // which an edge leads from there.
-std::vector<std::optional<int>> Fragments::windings_of(std::int32_t own) const {
+std::vector<std::optional<int>> Fragments::windings_of(std::int32_t own, std::int32_t first) const {
   std::vector<WindingStep> steps;
   for (const Piercing& p : crossing_.piercings) {
     if (component(p.edge) != own || is_on_curve(p.behind) || is_on_curve(p.before)) continue;
     const Parting edge = parting(p.edge, own);
-    steps.push_back({fragment(edge.before), fragment(edge.behind), edge.faces});
+    steps.push_back({fragment(edge.before) - first, fragment(edge.behind) - first, edge.faces});
   }
   const std::optional<OutermostVertex> known = find_outermost_vertex(
       mesh_, exact_, marks_.triangles_of(own), [&](VertexId v) { return is_on_curve(v); });
-  if (!known) return std::vector<std::optional<int>>(size_.size());
-  return spread_winding(size_.size(), steps, fragment(known->vertex), known->winding);
+  const std::size_t count = index(end_of_tree(first) - first);
+  if (!known) return std::vector<std::optional<int>>(count);
+  return spread_winding(count, steps, fragment(known->vertex) - first, known->winding);
 }
 
 bool Fragments::is_inward(std::int32_t component) {

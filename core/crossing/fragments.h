@@ -103,7 +103,9 @@ class Fragments {
   void set_marks();
   void cut();
   void join();
-  std::vector<std::optional<int>> windings_of(std::int32_t own) const;
+  // The end of the fragments of a tree, from the first of them.
+  std::int32_t end_of_tree(std::int32_t first) const;
+  std::vector<std::optional<int>> windings_of(std::int32_t own, std::int32_t first) const;
 
   const TriangleMesh& mesh_;
   CurveMarks& marks_;
@@ -113,10 +115,11 @@ class Fragments {
   // [fragments]: minus the number of vertices, and the first fragment of the same tree. Those of one tree
   // follow each other.
   std::vector<std::int32_t> size_, first_;
-  std::vector<Group> groups_;                                         // sorted
-  std::vector<Parts> parts_;                                          // [groups]
-  std::map<std::int32_t, bool> inward_;                               // of components
-  std::map<std::int32_t, std::vector<std::optional<int>>> windings_;  // of components, [fragments]
+  std::vector<Group> groups_;            // sorted
+  std::vector<Parts> parts_;             // [groups]
+  std::map<std::int32_t, bool> inward_;  // of components
+  std::map<std::int32_t, std::vector<std::optional<int>>>
+      windings_;  // of components, [fragments of the tree]
 };
 
 }  // namespace cscd
