@@ -1,7 +1,6 @@
 #include "scenes/export/glb.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -9,14 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "core/base/error.h"
 
 // Section numbers refer to the glTF 2.0 specification.
 namespace cscd::scenes {
-
 namespace {
 
 // Writes a number of four bytes.
@@ -241,53 +238,6 @@ class ClipWriter {
   std::map<std::vector<float>, std::size_t> inputs_;
 };
 
-using Json = nlohmann::ordered_json;
-
-static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
-
-constexpr int kFloat = 5126, kUnsigned = 5125;  // the specification's component types
-
-// The buffer, and the accessors of it; each has a view of its own.
-struct BakedBuffer {
-  std::string bytes;
-  Json views = Json::array(), accessors = Json::array();
-
-  template <class Value>
-  std::size_t add(std::span<const Value> values, std::size_t width, const char* type) {
-    views.push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size_bytes()}});
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-    accessors.push_back({{"bufferView", views.size() - 1},
-                         {"componentType", std::is_same_v<Value, float> ? kFloat : kUnsigned},
-                         {"count", values.size() / width},
-                         {"type", type}});
-    return accessors.size() - 1;
-  }
-
-  // Positions need their bounds, of the rounded numbers (glTF 2.0, section 3.7.2.1).
-  std::size_t add_positions(const std::vector<float>& values) {
-    const std::size_t accessor = add(std::span<const float>(values), 3, "VEC3");
-    std::array<float, 3> low{values[0], values[1], values[2]}, high = low;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      low[i % 3] = std::min(low[i % 3], values[i]);
-      high[i % 3] = std::max(high[i % 3], values[i]);
-    }
-    accessors[accessor]["min"] = low;
-    accessors[accessor]["max"] = high;
-    return accessor;
-  }
-};
-
-// The rotation that brings an axis to y, as a quaternion whose real part is last.
-std::array<double, 4> turn_to_y(const std::string& up) {
-  const double half = std::sqrt(0.5);
-  if (up == "x") return {0, 0, half, half};
-  if (up == "-x") return {0, 0, -half, half};
-  if (up == "-y") return {1, 0, 0, 0};
-  if (up == "z") return {-half, 0, 0, half};
-  if (up == "-z") return {half, 0, 0, half};
-  return {0, 0, 0, 1};
-}
-
 std::vector<float> rounded(std::span<const Vec3> positions, std::span<const Vec3> base) {
   std::vector<float> out;
   out.reserve(3 * positions.size());
@@ -297,7 +247,32 @@ std::vector<float> rounded(std::span<const Vec3> positions, std::span<const Vec3
   return out;
 }
 
+// The file of what hangs on node 0.
+std::string file_of(Json nodes, Json meshes, Json skins, Json clips, const Buffer& buffer) {
+  Json file{{"asset", {{"version", "2.0"}, {"generator", "cscd"}}},
+            {"scene", 0},
+            {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+            {"nodes", std::move(nodes)},
+            {"meshes", std::move(meshes)}};
+  if (!skins.empty()) file["skins"] = std::move(skins);
+  if (!clips.empty()) file["animations"] = std::move(clips);
+  file["accessors"] = buffer.accessors();
+  file["bufferViews"] = buffer.views();
+  file["buffers"] = Json::array({{{"byteLength", buffer.bytes().size()}}});
+  return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
+}
+
 }  // namespace
+
+Quaternion turn_to_y(std::string_view up) {
+  const double half = std::sqrt(0.5);
+  if (up == "x") return {half, 0, 0, half};
+  if (up == "-x") return {half, 0, 0, -half};
+  if (up == "-y") return {0, 1, 0, 0};
+  if (up == "z") return {half, -half, 0, 0};
+  if (up == "-z") return {half, half, 0, 0};
+  return {};
+}
 
 std::string glb_container(const std::string& json, const std::string& binary) {
   constexpr std::size_t kHeader = 12, kChunkHeader = 8;
@@ -337,17 +312,7 @@ std::string to_glb(const Character& character) {
   for (const Animation& animation : character.animations)
     clips.push_back(ClipWriter(animation, buffer).result);
 
-  Json file{{"asset", {{"version", "2.0"}, {"generator", "cscd"}}},
-            {"scene", 0},
-            {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-            {"nodes", std::move(nodes)}};
-  file["meshes"] = std::move(meshes);
-  if (!skins.empty()) file["skins"] = std::move(skins);
-  if (!clips.empty()) file["animations"] = std::move(clips);
-  file["accessors"] = buffer.accessors();
-  file["bufferViews"] = buffer.views();
-  file["buffers"] = Json::array({{{"byteLength", buffer.bytes().size()}}});
-  return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes());
+  return file_of(std::move(nodes), std::move(meshes), std::move(skins), std::move(clips), buffer);
 }
 
 std::string baked_glb(ClipSource& clip, const std::string& name, double fps, double first_frame,
@@ -355,46 +320,39 @@ std::string baked_glb(ClipSource& clip, const std::string& name, double fps, dou
   const std::size_t frames = clip.frame_count(), targets = frames - 1;
   if (12 * clip.header().vertex_count * frames > UINT32_MAX)
     throw InputError("the frames are more than the 4 GiB of a .glb file; export them as .pc2 or .h5");
-  BakedBuffer buffer;
+  Buffer buffer;
   std::vector<std::uint32_t> corners;
   for (const Triangle& triangle : clip.header().triangles)
     for (const VertexId v : triangle) corners.push_back(static_cast<std::uint32_t>(v));
   Json primitive;
   const std::span<const Vec3> first = clip.load_frame(0).positions;
   const std::vector<Vec3> base(first.begin(), first.end());
-  primitive["attributes"]["POSITION"] = buffer.add_positions(rounded(base, {}));
-  primitive["indices"] = buffer.add(std::span<const std::uint32_t>(corners), 1, "SCALAR");
+  primitive["attributes"]["POSITION"] = buffer.add_bounded(rounded(base, {}), 3, "VEC3", Target::vertices);
+  primitive["indices"] = buffer.add(corners, 1, "SCALAR", Target::corners);
   for (std::size_t f = 1; f < frames; ++f)
     primitive["targets"].push_back(
-        {{"POSITION", buffer.add_positions(rounded(clip.load_frame(f).positions, base))}});
+        {{"POSITION",
+          buffer.add_bounded(rounded(clip.load_frame(f).positions, base), 3, "VEC3", Target::vertices)}});
   std::vector<float> times, weights(frames * targets, 0.0F);
   for (std::size_t f = 0; f < frames; ++f) {
     times.push_back(static_cast<float>((first_frame + static_cast<double>(f)) / fps));
     if (f > 0) weights[f * targets + f - 1] = 1;
   }
-  const std::size_t input = buffer.add(std::span<const float>(times), 1, "SCALAR");
-  buffer.accessors[input]["min"] = {times.front()};
-  buffer.accessors[input]["max"] = {times.back()};
-  const std::size_t output = buffer.add(std::span<const float>(weights), 1, "SCALAR");
+  const std::size_t input = buffer.add_bounded(times, 1, "SCALAR"), output = buffer.add(weights, 1, "SCALAR");
 
-  Json file{{"asset", {{"version", "2.0"}, {"generator", "cscd"}}},
-            {"scene", 0},
-            {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-            {"nodes", Json::array({{{"name", name},
-                                    {"mesh", 0},
-                                    {"rotation", turn_to_y(up)},
-                                    {"scale", std::vector<double>(3, metres_per_unit)}}})},
-            {"meshes", Json::array({{{"name", name},
-                                     {"primitives", Json::array({std::move(primitive)})},
-                                     {"weights", std::vector<int>(targets, 0)}}})}};
-  file["animations"] = Json::array(
+  const Quaternion turn = turn_to_y(up);
+  Json nodes = Json::array({{{"name", name},
+                             {"mesh", 0},
+                             {"rotation", {turn.x, turn.y, turn.z, turn.w}},
+                             {"scale", std::vector<double>(3, metres_per_unit)}}});
+  Json meshes = Json::array({{{"name", name},
+                              {"primitives", Json::array({std::move(primitive)})},
+                              {"weights", std::vector<int>(targets, 0)}}});
+  Json clips = Json::array(
       {{{"name", "frames"},
         {"samplers", Json::array({{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}})},
         {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}})}}});
-  file["accessors"] = std::move(buffer.accessors);
-  file["bufferViews"] = std::move(buffer.views);
-  file["buffers"] = Json::array({{{"byteLength", buffer.bytes.size()}}});
-  return glb_container(file.dump(-1, ' ', false, Json::error_handler_t::replace), buffer.bytes);
+  return file_of(std::move(nodes), std::move(meshes), Json::array(), std::move(clips), buffer);
 }
 
 }  // namespace cscd::scenes

@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "scenes/clip/digest.h"
+#include "scenes/export/glb.h"
 
 namespace cscd::scenes {
 namespace {
@@ -35,7 +36,7 @@ class Recorder {
  public:
   explicit Recorder(const Scene& scene) : scene_(scene) {
     character_.format = "scene";
-    character_.nodes.push_back({scene.name, -1, Transform()});
+    character_.nodes.push_back({scene.name, -1, from_parts(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones())});
     character_.animations.push_back({scene.name, 0, 0, 0, {}});
   }
 

@@ -11,9 +11,24 @@
 namespace cscd::scenes {
 namespace {
 
+// The frames of a scene, turned so that y points up, as it does in glTF.
+Clip upright(const Scene& scene) {
+  const Clip clip = generate(scene);
+  const Transform turn = from_parts(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones());
+  Clip out(clip.header());
+  for (std::size_t f = 0; f < clip.frame_count(); ++f) {
+    const FrameView frame = clip.frame(f);
+    std::vector<Vec3> positions;
+    for (const Vec3& x : frame.positions) positions.push_back(turn(x));
+    out.append({positions, frame.bones});
+  }
+  return out;
+}
+
+// Mutation: the root is not turned; the octopus, the urchin, the man and the box have z up.
 void expect_round_trip(const Scene& scene) {
   SCOPED_TRACE(scene.name);
-  const Clip wanted = generate(scene);
+  const Clip wanted = upright(scene);
   const Character character = skinned_scene(scene);
   const ReadBack back = read_back(to_glb(character));
   expect_same_frames(wanted, back.clip);
