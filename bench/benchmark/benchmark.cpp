@@ -22,6 +22,7 @@
 namespace cscd::bench {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostForAllPairs = 600;  // triangles
@@ -38,9 +39,6 @@ exact::TimeEnclosure enclosure(const TriangleMesh& mesh, const Motion& motion, c
 std::int32_t number(TriangleId triangle) {
   return static_cast<std::int32_t>(triangle);
 }
-
-namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 std::string content_of(const fs::path& path, const std::string& how_to_mend) {
   errno = 0;

@@ -16,6 +16,7 @@ namespace cscd::bench {
 
 namespace {
 
+namespace hard = scenes::hard;
 using scenes::PosedMesh;
 using scenes::Random;
 using scenes::Surface;
@@ -134,9 +135,6 @@ constexpr ShapeFamily kFamilies[] = {
      scaled},
     {"folded", "an open sheet whose one half is laid onto the other", folded},
 };
-
-namespace hard = scenes::hard;
-using scenes::PosedMesh;
 
 std::string numbered(const std::string& name, std::uint64_t number) {
   char text[24];

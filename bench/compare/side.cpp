@@ -43,8 +43,6 @@ void add_named(const fs::path& path, std::vector<Record>& records) {
                      ": holds no record; name one into which `cscd run --json` wrote");
 }
 
-using nlohmann::ordered_json;
-
 double milliseconds_per(const std::string& unit, const std::string& where) {
   if (unit == "ns") return 1e-6;
   if (unit == "us") return 1e-3;

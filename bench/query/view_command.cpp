@@ -64,10 +64,6 @@ struct Contestant {
   StrategyRecording recording;
 };
 
-}  // namespace
-
-namespace {
-
 // What the page has to know of an interval's true motion.
 json true_moment(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
                  std::size_t first) {

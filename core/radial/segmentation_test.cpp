@@ -189,8 +189,6 @@ TEST(NearestBoneByHeat, RefusesWhatItCannotUse) {
                InputError);
 }
 
-using test::Shape;
-
 TEST(Smoothing, NoPassChangesNothing) {
   const Shape shape = test::torus();
   EXPECT_EQ(smoothed(shape.mesh(), shape.positions, 0), shape.positions);

@@ -182,8 +182,6 @@ TEST(Rules, ClosedIntervalRootsAtTheEndsAndDoubleRootsCount) {
   EXPECT_EQ(first_time(start, end), 0.5) << "double root";
 }
 
-using namespace rules;
-
 // Two octahedra whose silhouette edges towards a point far below collide, crosswise. The first faces at these
 // edges are positive.
 Case colliding_silhouettes() {
