@@ -11,8 +11,8 @@ A record is a JSON file named DATE-KIND.json, or DATE-KIND-2.json where that exi
   tables    [{title, head, rows, text_columns, reasons}, ...]
 
 All but figures and tables are texts, and so are the cells of rows. `reasons` is optional and names a file of scripts/lib
-with a list of {"of": [...], "reason": text}: a row whose first cells are those of `of` gets the reason as its last cell, and a
-row without a reason is shown as such.
+with a list of {"reason": text, "places": [[...], ...]}: a row that begins with the cells of a place gets the reason as its last cell,
+and a row without a reason is shown as such.
 """
 import datetime
 import json
@@ -107,7 +107,7 @@ def reasons_of(name):
     """The reasons of a file by what they are for. Records name the file by where it was when they were made."""
     if not name:
         return {}
-    return {tuple(moved(entry["of"])): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name)}
+    return {tuple(moved(place)): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name) for place in entry["places"]}
 
 
 def reason_for(row, reasons):
