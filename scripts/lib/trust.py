@@ -26,26 +26,18 @@ from tracked import tracked_files
 
 FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
-# Files and folders that have moved since records and reasons were written.
+# Files and folders that have moved since records were written.
 MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
     "core/detect/verify": "bench/measure/strategies/verify",
-    "core/base/bring_near": "core/base/warm_cache", "core/detect/carried_filter": "core/detect/double_filter",
-    "core/detect/carried_look": "core/detect/single_filter",
     "core/elementary/certified/integer_polynomial": "core/elementary/certified/integer_roots",
     "core/elementary/newton_search.h": "core/elementary/newton.cpp",
     "core/elementary/exact/triangles_meet": "core/elementary/exact/static_contact",
-    "core/fast/cut/corner_cover": "core/fast/prepare/cut_surface", "core/fast/cut/decided_cut": "core/fast/prepare/carried_cut",
-    "core/fast/cut/observer": "core/fast/prepare/cluster_observer", "core/fast/cut/": "core/fast/prepare/",
-    "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
+    "core/fast/cut/corner_cover": "core/fast/prepare/cut_surface", "core/fast/cut/observer": "core/fast/prepare/cluster_observer",
+    "core/fast/cut/": "core/fast/prepare/", "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
     "core/fast/follow/following_cover": "core/fast/adaptive_cover", "core/fast/keep_all/": "core/fast/contour/",
     "core/fast/look/": "core/fast/classify/", "core/fast/prove/": "core/fast/certify/",
-    "core/fast/trial_poses": "core/fast/trial", "core/geometry/halves": "core/geometry/simd_halves",
-    "core/geometry/lanes_of": "core/geometry/simd_register", "core/geometry/lanes16": "core/geometry/simd_floats",
-    "core/geometry/lanes.": "core/geometry/simd_doubles.", "core/geometry/shorts32": "core/geometry/simd_shorts",
-    "core/hierarchy/descent": "core/hierarchy/overlap_descent",
-    "core/radial/observer": "core/radial/bone_observer", "core/radial/refinement": "core/radial/bone_clusters",
-    "core/radial/smoothing": "core/radial/segmentation",
+    "core/fast/trial_poses": "core/fast/trial",
 }
 # What the page adds to every record of a kind.
 NOTES = {
