@@ -10,6 +10,9 @@ const DASHES = [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
 
 export const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 
+// The text of a value; none where there is no value.
+export const textOf = (value, text = short) => (value === null || value === undefined ? "" : text(value));
+
 // Black becomes white on a dark page.
 const seen = (colour) => (colour === "#000000" && isDark() ? "#ffffff" : colour);
 
@@ -54,7 +57,7 @@ export class Chart {
       const filter = scale === LOG ? { filter: decades } : {};
       return {
         label, labelSize: 18, stroke: style.getPropertyValue("--soft"), grid: { stroke: line, width: 1, ...filter }, ticks: { stroke: line, ...filter },
-        ...filter, values: values || ((_, ticks) => ticks.map((tick) => (tick === null || tick === undefined ? "" : short(tick)))),
+        ...filter, values: values || ((_, ticks) => ticks.map((tick) => textOf(tick))),
       };
     };
     if (this.plot) this.plot.destroy();
@@ -62,8 +65,8 @@ export class Chart {
       width: this.box.clientWidth || 900, height: this.height, hooks,
       scales: { x: { time: false, distr: x.scale, range: x.range }, y: { distr: y.scale, range: y.range } },
       axes: [axis(x), { ...axis(y), size: 78 }],
-      series: [{ label: x.label, value: (_, value) => (value === null || value === undefined ? "" : x.name ? x.name(value) : short(value)) }, ...series.map((one) => ({
-        width: 1.6, points: { show: false }, value: (_, value) => (value === null || value === undefined ? "" : short(value)), ...one,
+      series: [{ label: x.label, value: (_, value) => textOf(value, x.name) }, ...series.map((one) => ({
+        width: 1.6, points: { show: false }, value: (_, value) => textOf(value), ...one,
       }))],
     }, data, this.box);
   }

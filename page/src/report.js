@@ -1,5 +1,5 @@
 // The report: the numbers of records in one page. Charts are in charts.js; accuracy, growth and history in studies.js.
-import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, short } from "./charts.js";
+import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, short, textOf } from "./charts.js";
 import { byId, element, isDark, prefersDark, radios, setDark } from "./dom.js";
 import { BLUE, ORANGE, SKY } from "./palette.js";
 import { showAccuracy, showGrowth, showHistory } from "./studies.js";
@@ -78,15 +78,17 @@ class Report {
       `${reproduced} of ${verdicts.length} claims of the paper that can be measured here are reproduced. ${environment.cpu}, ${environment.cores} cores, ${environment.compiler}, commit ${environment.commit.slice(0, 12)}${environment.dirty ? " with changes" : ""}, ${environment.date.slice(0, 10)}.`;
   }
 
+  linkTo(file) {
+    const link = element("a", file.split("/").at(-1));
+    link.href = encodeURI(this.data.base + file);
+    return link;
+  }
+
   source(id, what) {
     const files = this.data.records.map((record) => record.file);
     const place = byId(id);
     place.append(`${what} From the records `);
-    files.forEach((file, i) => {
-      const link = element("a", file.split("/").at(-1));
-      link.href = encodeURI(this.data.base + file);
-      place.append(i ? ", " : "", link);
-    });
+    files.forEach((file, i) => place.append(i ? ", " : "", this.linkTo(file)));
     place.append("; made by ", element("code", this.data.command), ".");
   }
 
@@ -96,10 +98,7 @@ class Report {
       ["one query of drvbc_fast, ms (median)", (scene) => this.cell("engine", scene, "fast.median")],
       ["times faster than the best complete baseline", (scene) => this.bestBaseline(scene)?.cell, (scene) => this.bestBaseline(scene)?.name],
       ["times faster than drvbc, the paper's method", (scene) => this.cell("engine", scene, "fast.over_drvbc")],
-      ["drvbc: times faster than base", (scene) => this.cell("table2", scene, "speedup_base"), (scene) => {
-        const published = this.cells.get(`table2 ${scene} speedup_base`)?.published;
-        return published === null || published === undefined ? "" : `published ${short(published)}`;
-      }],
+      ["drvbc: times faster than base", (scene) => this.cell("table2", scene, "speedup_base"), (scene) => textOf(this.cells.get(`table2 ${scene} speedup_base`)?.published, (published) => `published ${short(published)}`)],
     ];
     const measured = rows.filter(([, cell]) => scenes.some((scene) => cell(scene)));
     byId("speed-table").append(tableOf(["", ...scenes], measured.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
@@ -133,7 +132,7 @@ class Report {
         data: [this.record.counted_intervals, ...rows.map((strategy) => strategy.counts[this.counter].map((value) => (value > 0 ? value : null)))],
         series: rows.map((strategy, i) => ({
           label: strategy.name, stroke: colourOf(strategy.name), dash: dashOf(strategy.name, i), show: FIRST_SHOWN.has(strategy.name),
-          value: (_, value) => (value === null || value === undefined ? "" : value.toLocaleString("en")),
+          value: (_, value) => textOf(value, (count) => count.toLocaleString("en")),
         })),
         x: { label: "interval", scale: LINEAR },
         y: { label: "an interval", scale: LOG },
@@ -194,9 +193,8 @@ class Report {
     document.querySelector(`nav a[href="#${name}"]`).hidden = !data;
     if (!data) return;
     show(data);
-    const place = byId(`${name}-source`), link = element("a", (data.file || data.folder).split("/").at(-1));
-    link.href = encodeURI(this.data.base + (data.file || data.folder));
-    place.append("From ", link);
+    const place = byId(`${name}-source`);
+    place.append("From ", this.linkTo(data.file || data.folder));
     if (data.environment) place.append(`, measured on ${data.environment.cpu}, ${data.environment.date.slice(0, 10)}, commit ${data.environment.commit.slice(0, 12)}`);
     place.append("; made by ", element("code", data.command ? data.command.join(" ") : "cscd history --json"), ".");
   }
@@ -293,10 +291,8 @@ class Report {
 
   records() {
     const rows = this.data.tables.records.map((record, i) => {
-      const link = element("a", this.data.records[i].file.split("/").at(-1)), cell = element("td", undefined, "text");
-      link.href = encodeURI(this.data.base + this.data.records[i].file);
-      cell.append(link);
-      const command = element("td", undefined, "text");
+      const cell = element("td", undefined, "text"), command = element("td", undefined, "text");
+      cell.append(this.linkTo(this.data.records[i].file));
       command.append(element("code", record.command.join(" ")));
       return [this.nameOf(this.data.records[i]), cell, `${record.environment.date.slice(0, 10)}`, record.environment.commit.slice(0, 12), command];
     });

@@ -1,5 +1,5 @@
 // The parts of the report about studies of their own: accuracy against time, growth, and history.
-import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, short } from "./charts.js";
+import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, short, textOf } from "./charts.js";
 import { byId, element, radios } from "./dom.js";
 import { GREY } from "./palette.js";
 import { tableOf } from "./tables.js";
@@ -34,7 +34,7 @@ export function showAccuracy(study) {
         points: { show: true, size: 10, width: 2, stroke: colourOf(name), fill: loses ? getComputedStyle(document.documentElement).getPropertyValue("--panel") : colourOf(name) },
       }))],
       x: { label: "nanoseconds a query", scale: LOG },
-      y: { label: "share wrong or undecided", scale: LOG, values: (_, ticks) => ticks.map((tick) => (tick === null || tick === undefined ? "" : tick < 1.5 * floor() ? "none" : tick.toExponential(0))) },
+      y: { label: "share wrong or undecided", scale: LOG, values: (_, ticks) => ticks.map((tick) => textOf(tick, (share) => (share < 1.5 * floor() ? "none" : share.toExponential(0)))) },
     };
   });
   const list = () => byId("accuracy-list").replaceChildren(tableOf(["test", "ns a query", "queries", "contacts lost", "invented", "undecided"],

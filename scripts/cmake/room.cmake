@@ -47,9 +47,14 @@ set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark)(/|$)|^bench/(cli|query|m
 # USES names the rooms below it, LINK outside libraries, TEST_USES and TEST_LINK those that only its tests may see.
 # IF names a variable: where it is false, for want of an outside library, the room stays empty; where it is true, those
 # who use the room see a macro, CSCD_BASELINES_FCL for baselines/fcl.
-# PARSED names outside headers that nearly every file of the room includes, beside CSCD_PARSED.
+# JSON is for a room that links nlohmann's library and nearly every file of which includes the whole of its header.
 function(cscd_room path)
-  cmake_parse_arguments(ROOM "" "IF" "USES;LINK;PARSED;TEST_USES;TEST_LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "JSON" "IF" "USES;LINK;TEST_USES;TEST_LINK" ${ARGN})
+  set(parsed ${CSCD_PARSED})
+  if(ROOM_JSON)
+    list(APPEND ROOM_LINK nlohmann_json::nlohmann_json)
+    list(APPEND parsed <nlohmann/json.hpp>)
+  endif()
   string(REPLACE "/" "_" room ${path})
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*.cpp)
   file(GLOB tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/*_test.cpp)
@@ -77,7 +82,7 @@ function(cscd_room path)
       set(level brief)
       target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()
-    cscd_parse_once(${room} ${level} ${CSCD_PARSED} ${ROOM_PARSED})
+    cscd_parse_once(${room} ${level} ${parsed})
   else()
     add_library(${room} INTERFACE)
     target_include_directories(${room} INTERFACE ${PROJECT_SOURCE_DIR})
@@ -95,7 +100,7 @@ function(cscd_room path)
     # A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
     target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
     cscd_compile_together(${room}_test)
-    cscd_parse_once(${room}_test brief ${CSCD_PARSED} ${ROOM_PARSED} <gtest/gtest.h>)
+    cscd_parse_once(${room}_test brief ${parsed} <gtest/gtest.h>)
     gtest_discover_tests(${room}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
   endif()
 endfunction()

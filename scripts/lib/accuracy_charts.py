@@ -72,17 +72,15 @@ def draw_pareto(record, folder, pdf):
     return True
 
 
-def draw_times(axes, title):
-    log_axis(axes.yaxis)
-    axes.set_ylabel("nanoseconds a query")
-    axes.set_title(title)
-
-
-def draw_shares(axes, title):
-    """An axis of shares from zero to all, logarithmic above a ten-thousandth."""
-    axes.set_yscale("symlog", linthresh=1e-4)
-    axes.set_ylim(-3e-5, 1)
-    axes.set_ylabel("share of the queries")
+def set_scale(axes, title):
+    """An axis of times, or of shares from zero to all, logarithmic above a ten-thousandth."""
+    if title == "time":
+        log_axis(axes.yaxis)
+        axes.set_ylabel("nanoseconds a query")
+    else:
+        axes.set_yscale("symlog", linthresh=1e-4)
+        axes.set_ylim(-3e-5, 1)
+        axes.set_ylabel("share of the queries")
     axes.set_title(title)
 
 
@@ -112,10 +110,7 @@ def draw_tolerance(record, folder, pdf):
             ends.append((*points[-1], one, styles[one]["color"]))
         axes.set_xscale("log")
         axes.set_xlabel("tolerance")
-        if title == "time":
-            draw_times(axes, title)
-        else:
-            draw_shares(axes, title)
+        set_scale(axes, title)
         labelled.append((axes, ends))
     figure.suptitle("hard suite and open query set; tolerance of cubic and inclusion in extents of the query,\nof additive "
                     "as a share of the starting distance", fontsize=9)
@@ -147,10 +142,7 @@ def draw_hardness(record, folder, pdf):
             ends.append((*points[-1], name, look["color"]))
         axes.set_xscale("log")
         axes.invert_xaxis()
-        if title == "time":
-            draw_times(axes, title)
-        else:
-            draw_shares(axes, title)
+        set_scale(axes, title)
         labelled.append((axes, ends))
     cells[2].set_xlabel("hardness: off the degenerate lattice by this share of the size")
     label_panels(labelled)

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 
 from layouts import link_layout
+from records import read_json
 from script import ROOT, git, refuse
 
 CACHE = ROOT / ".cache" / "commits"
@@ -109,6 +110,14 @@ class Build:
     def run(self, words, before=()):
         environment = {**os.environ, "CSCD_CACHE": str(ROOT / ".cache"), "CSCD_SCENES": str(self.folder / "scenes")}
         return subprocess.run([*before, *map(str, words)], env=environment, capture_output=True, text=True)
+
+    def record(self, seed, command, scene, words, part):
+        """Has the program write a record of a scene to the file `part`; returns the record and the exit status."""
+        part.unlink(missing_ok=True)
+        done = self.run([self.program(seed), command, "--scene", scene, *words, "--json", part])
+        if not part.exists():
+            refuse(f"{self.commit[:10]} on {scene}: {(done.stderr.strip().splitlines() or ['failed'])[-1]}")
+        return read_json(part), done.returncode
 
 
 def held_lock():

@@ -18,12 +18,17 @@ def read_json(path):
         raise ValueError(str(error)) from error
 
 
-def read_record(path, schema, command):
-    """A record of that schema, which `command` writes; refuses anything else."""
+def read_written(path, command):
+    """The document of a file that `command` writes; refuses a file that cannot be read."""
     try:
-        record = read_json(path)
+        return read_json(path)
     except (OSError, ValueError) as error:
         refuse(f"{path}: cannot be read ({error}); name a file that `{command}` wrote")
+
+
+def read_record(path, schema, command):
+    """A record of that schema, which `command` writes; refuses anything else."""
+    record = read_written(path, command)
     if not isinstance(record, dict) or record.get("schema") != schema:
         refuse(f"{path}: its schema is not {schema}; write it anew with `{command}`")
     return record
@@ -36,10 +41,7 @@ def read_records(paths, schema, command):
     for path in paths:
         files = sorted([*path.glob("*.json"), *path.glob("*.json.gz")]) if path.is_dir() else [path]
         for file in files:
-            try:
-                record = read_json(file)
-            except (OSError, ValueError) as error:
-                refuse(f"{file}: cannot be read ({error}); name a file that `{command}` wrote")
+            record = read_written(file, command)
             found = record.get("schema") if isinstance(record, dict) else None
             if found == schema:
                 records.append(record)

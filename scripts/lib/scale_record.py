@@ -32,16 +32,16 @@ class Record:
         return f"{found['exponent']:.2f}" if found else "–"
 
 
-def row(step, name):
-    return next((r for r in step["strategies"] if r["name"] == name), None)
+def row(of, name):
+    """The row of a strategy, of a step or of a whole subject."""
+    return next((r for r in of["strategies"] if r["name"] == name), None)
 
 
 def series(subjects, name, value, x="triangles"):
     """Points of one strategy over its subjects, positive values alone."""
     points = []
     for subject in subjects:
-        prepared = next((r for r in subject["strategies"] if r["name"] == name), None)
-        asked = row(subject["steps"][0], name)
+        prepared, asked = row(subject, name), row(subject["steps"][0], name)
         y = value(prepared, asked) if prepared and asked else None
         if y:
             points.append((subject[x], y))

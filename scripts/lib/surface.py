@@ -36,16 +36,21 @@ def shaded(positions, triangles, colours, view):
     return colours * bright[:, None]
 
 
-def border_edges(positions, triangles, label, towards):
-    """Edges between triangles with different labels, as positions of their ends, where both triangles face the viewer."""
+def shared_edges(triangles):
+    """Edges that two triangles share, as pairs of vertices, and the numbers of both triangles."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(len(triangles)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
     edges, owner = edges[order], owner[order]
     twice = np.flatnonzero(np.all(edges[1:] == edges[:-1], axis=1))
-    a, b = owner[twice], owner[twice + 1]
+    return edges[twice], owner[twice], owner[twice + 1]
+
+
+def border_edges(positions, triangles, label, towards):
+    """Edges between triangles with different labels, as positions of their ends, where both triangles face the viewer."""
+    edges, a, b = shared_edges(triangles)
     facing = normals_of(positions, triangles) @ towards > 0
-    return positions[edges[twice[(label[a] != label[b]) & facing[a] & facing[b]]]]
+    return positions[edges[(label[a] != label[b]) & facing[a] & facing[b]]]
 
 
 def paint(axes, positions, triangles, colours, view, through=None, label=None, border=0.5):

@@ -11,8 +11,8 @@ A record is a JSON file named DATE-KIND.json, or DATE-KIND-2.json where that exi
   tables    [{title, head, rows, text_columns, reasons}, ...]
 
 All but figures and tables are texts, and so are the cells of rows. `reasons` is optional and names a file of scripts/lib
-with a list of {"of": [...], "reason": text}: a row whose first cells are those of `of` gets the reason as its last cell, and a
-row without a reason is shown as such.
+with a list of {"reason": text, "places": [[...], ...]}: a row that begins with the cells of a place gets the reason as its last cell,
+and a row without a reason is shown as such.
 """
 import datetime
 import json
@@ -26,26 +26,18 @@ from tracked import tracked_files
 
 FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
-# Files and folders that have moved since records and reasons were written.
+# Files and folders that have moved since records were written.
 MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
     "core/detect/verify": "bench/measure/strategies/verify",
-    "core/base/bring_near": "core/base/warm_cache", "core/detect/carried_filter": "core/detect/double_filter",
-    "core/detect/carried_look": "core/detect/single_filter",
     "core/elementary/certified/integer_polynomial": "core/elementary/certified/integer_roots",
     "core/elementary/newton_search.h": "core/elementary/newton.cpp",
     "core/elementary/exact/triangles_meet": "core/elementary/exact/static_contact",
-    "core/fast/cut/corner_cover": "core/fast/prepare/cut_surface", "core/fast/cut/decided_cut": "core/fast/prepare/carried_cut",
-    "core/fast/cut/observer": "core/fast/prepare/cluster_observer", "core/fast/cut/": "core/fast/prepare/",
-    "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
+    "core/fast/cut/corner_cover": "core/fast/prepare/cut_surface", "core/fast/cut/observer": "core/fast/prepare/cluster_observer",
+    "core/fast/cut/": "core/fast/prepare/", "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
     "core/fast/follow/following_cover": "core/fast/adaptive_cover", "core/fast/keep_all/": "core/fast/contour/",
     "core/fast/look/": "core/fast/classify/", "core/fast/prove/": "core/fast/certify/",
-    "core/fast/trial_poses": "core/fast/trial", "core/geometry/halves": "core/geometry/simd_halves",
-    "core/geometry/lanes_of": "core/geometry/simd_register", "core/geometry/lanes16": "core/geometry/simd_floats",
-    "core/geometry/lanes.": "core/geometry/simd_doubles.", "core/geometry/shorts32": "core/geometry/simd_shorts",
-    "core/hierarchy/descent": "core/hierarchy/overlap_descent",
-    "core/radial/observer": "core/radial/bone_observer", "core/radial/refinement": "core/radial/bone_clusters",
-    "core/radial/smoothing": "core/radial/segmentation",
+    "core/fast/trial_poses": "core/fast/trial",
 }
 # What the page adds to every record of a kind.
 NOTES = {
@@ -107,7 +99,7 @@ def reasons_of(name):
     """The reasons of a file by what they are for. Records name the file by where it was when they were made."""
     if not name:
         return {}
-    return {tuple(moved(entry["of"])): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name)}
+    return {tuple(moved(place)): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name) for place in entry["places"]}
 
 
 def reason_for(row, reasons):

@@ -19,7 +19,7 @@ import numpy as np
 
 from charts import matplotlib, plt, save
 from script import answer_of, parser_of, refuse
-from surface import broad_side, paint, shaded, view_axes
+from surface import broad_side, paint, shaded, shared_edges, view_axes
 
 PALETTE = np.array([matplotlib.colors.to_rgb(c) for c in
                     ("#0072B2", "#E69F00", "#56B4E9", "#D55E00", "#009E73", "#F0E442", "#CC79A7")])
@@ -29,15 +29,11 @@ DETAIL = 0.2  # width of what is enlarged, as a share of the picture
 
 def colour_of_cluster(triangles, cluster):
     """A colour for each cluster that no neighbour has, where the palette allows it; few colours are not the aim."""
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    owner = np.repeat(cluster, 3)
-    order = np.lexsort((edges[:, 1], edges[:, 0]))
-    edges, owner = edges[order], owner[order]
-    joined = np.all(edges[1:] == edges[:-1], axis=1) & (owner[1:] != owner[:-1])
     neighbours = {c: set() for c in np.unique(cluster)}
-    for a, b in zip(owner[1:][joined], owner[:-1][joined]):
-        neighbours[a].add(b)
-        neighbours[b].add(a)
+    for a, b in cluster[np.stack(shared_edges(triangles)[1:], axis=1)]:
+        if a != b:
+            neighbours[a].add(b)
+            neighbours[b].add(a)
     colour = {}
     for i, c in enumerate(neighbours):
         taken = {colour[n] for n in neighbours[c] if n in colour}

@@ -32,6 +32,9 @@ NOWHERE = (f"Nowhere in this record, as far as these rules see: `drvbc_fast` los
            "of the triangles, or jumps from one size to the next; where another row is faster in every repetition; and where long "
            "steps, contacts or bones cost it far more than they should. Preparation and other rows are not judged.")
 CONTACTS = 2  # times what the plain scene takes: what contacts may cost
+STAGES = (("refit", "refit"), ("rv_update", "classification"), ("traversal", "traversal"), ("elementary", "elementary tests"))
+QUANTITIES = (("ms", stage("total")), ("preparation, ms", lambda prepared, asked: prepared["make_ms"]), ("BVOT", count("bvot")),
+              ("PCTP", count("pctp")), ("bytes a triangle", per_triangle))
 
 
 def bounded(ratio):
@@ -56,8 +59,7 @@ def size_part(record, drawn):
             "log-log: 1 is linear, 2 quadratic.", ""]
     lines = []
     for name in record.names("size"):
-        for key, title in (("total", "time"), ("refit", "refit"), ("rv_update", "classification"), ("traversal", "traversal"),
-                           ("elementary", "elementary tests"), ("make_ms", "preparation"), ("bvot", "BVOT"), ("pctp", "PCTP")):
+        for key, title in (("total", "time"), *STAGES, ("make_ms", "preparation"), ("bvot", "BVOT"), ("pctp", "PCTP")):
             cells = [record.exponent("size", scene, name, key) for scene in scenes]
             if any(cell != "–" for cell in cells):
                 lines.append([f"`{name}`: {title}"] + cells)
@@ -66,14 +68,9 @@ def size_part(record, drawn):
     largest = {scene: max(record.of("size", scene), key=lambda s: s["triangles"]) for scene in scenes}
     lines = []
     for name in record.names("size"):
-        for title, value in (("ms", stage("total")), ("preparation, ms", lambda p, a: p["make_ms"]), ("BVOT", count("bvot")),
-                             ("PCTP", count("pctp")), ("bytes a triangle", per_triangle)):
-            cells = []
-            for scene in scenes:
-                p = next((r for r in largest[scene]["strategies"] if r["name"] == name), None)
-                a = row(largest[scene]["steps"][0], name)
-                cells.append(short(value(p, a)) if p and a else "–")
-            lines.append([f"`{name}`: {title}"] + cells)
+        for title, value in QUANTITIES:
+            pairs = [(row(largest[scene], name), row(largest[scene]["steps"][0], name)) for scene in scenes]
+            lines.append([f"`{name}`: {title}"] + [short(value(*pair)) if all(pair) else "–" for pair in pairs])
     text += ["At the largest size:", ""]
     text += table(["", *(f"{scene}, {largest[scene]['triangles']:,}" for scene in scenes)], lines) + [""]
     text += drawing(drawn, "stages", f"stages of {first} against triangles")
@@ -91,30 +88,20 @@ def step_part(record, drawn):
     text = ["## With the length of the step", "",
             "The same surfaces, intervals that end more or fewer frames later. A share of a frame ends on the straight line to "
             f"the next. Time at {LONG} frame steps over that at 1, [95 % interval]:", ""]
-    lines = []
-    for name in record.names("step"):
-        cells = []
-        for scene in scenes:
-            cells.append(bounded(record.ratios.get((scene, name, LONG))))
-        lines.append([f"`{name}`"] + cells)
-    text += table([f"{LONG}x over 1x"] + scenes, lines) + [""]
+    text += table([f"{LONG}x over 1x"] + scenes, [[f"`{name}`", *(bounded(record.ratios.get((scene, name, LONG))) for scene in scenes)]
+                                                   for name in record.names("step")]) + [""]
     text += drawing(drawn, "step", "time against the length of the step")
     steps = [step["step"] for step in record.of("step")[0]["steps"]]
-    lines = []
-    for scene in scenes:
-        cells = []
-        for length in steps:
-            step = next((s for s in record.of("step", scene)[0]["steps"] if s["step"] == length), None)
-            cells.append(f"{step['colliding']} of {len(step['starts'])}" if step else "–")
-        lines.append([scene] + cells)
+    by_length = {scene: {step["step"]: step for step in record.of("step", scene)[0]["steps"]} for scene in scenes}
+    lines = [[scene, *(f"{by[s]['colliding']} of {len(by[s]['starts'])}" if s in by else "–" for s in steps)]
+             for scene, by in by_length.items()]
     text += ["Intervals with a contact. Beyond one frame step vertices move in straight lines where the scene's bones turn, so "
              "that limbs pass through each other that never meet in the scene:", ""]
     text += table(["step"] + [f"{length:g}" for length in steps], lines) + [""]
     name = record.names("step")[0]
     lines = []
     for scene in scenes:
-        subject = record.of("step", scene)[0]
-        by = {s["step"]: row(s, name) for s in subject["steps"]}
+        by = {length: row(step, name) for length, step in by_length[scene].items()}
         for key in ("bvot", "pctp"):
             lines.append([f"{scene}: {key.upper()}"] + [short(by[s]["counts"].get(key)) if s in by else "–" for s in steps])
         lines.append([f"{scene}: ms"] + [short(by[s].get("ms", {}).get("total")) if s in by else "–" for s in steps])
@@ -132,8 +119,7 @@ def bones_part(record, drawn):
         subjects = record.of("bones", scene)
         lines = []
         for name in record.names("bones"):
-            for title, value in (("ms", stage("total")), ("preparation, ms", lambda p, a: p["make_ms"]),
-                                 ("BVOT", count("bvot")), ("PCTP", count("pctp")), ("bytes a triangle", per_triangle)):
+            for title, value in QUANTITIES:
                 found = dict(series(subjects, name, value, "bones"))
                 lines.append([f"`{name}`: {title}"] + [short(found.get(s["bones"], 0)) for s in subjects])
         text += table([f"{scene}, bones"] + [str(s["bones"]) for s in subjects], lines) + [""]
@@ -148,7 +134,7 @@ def predicted(subjects, name):
     if most == 1:
         return None
     one, many = 0, 0
-    for key in ("refit", "rv_update", "traversal", "elementary"):
+    for key, _ in STAGES:
         found = dict(series(subjects, name, stage(key), "threads"))
         if not found.get(1) or found.get(most) is None:
             continue
@@ -170,8 +156,7 @@ def threads_part(record, drawn):
         subjects = record.of("threads", scene)
         lines = []
         for name in record.names("threads"):
-            for key, title in (("total", "ms"), ("refit", "refit"), ("rv_update", "classification"),
-                               ("traversal", "traversal"), ("elementary", "elementary tests")):
+            for key, title in (("total", "ms"), *STAGES):
                 found = dict(series(subjects, name, stage(key), "threads"))
                 if found:
                     lines.append([f"`{name}`: {title}"] + [short(found.get(s["threads"])) for s in subjects])

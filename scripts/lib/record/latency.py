@@ -17,7 +17,6 @@ import sys
 
 from commits import CACHE, Build, commit_named, held_lock
 from markdown import built, short, table
-from records import read_json
 from script import ROOT, SCENES, new_results, parser_of, refuse
 
 FIRST, ALL, KNOWN, EARLIEST = "drvbc_fast", "drvbc_fast_complete", "drvbc_fast_all", "drvbc_fast --first"
@@ -130,12 +129,9 @@ def measured(build, scene, smoke, part):
     records = []
     has_known = KNOWN in build.run([build.program(0), "list", "strategies"]).stdout
     for words in commands(scene, smoke, has_known):
-        part.unlink(missing_ok=True)
-        done = build.run([build.program(0), "scale", "--scene", scene, *words, "--json", part])
-        if not part.exists():
-            refuse(f"{build.commit[:10]} on {scene}: {(done.stderr.strip().splitlines() or ['failed'])[-1]}")
-        records.append(read_json(part))
-        if done.returncode == 1 or not records[-1]["ok"]:
+        record, status = build.record(0, "scale", scene, words, part)
+        records.append(record)
+        if status == 1 or not record["ok"]:
             print(f"{build.commit[:10]} on {scene}: an answer is wrong", file=sys.stderr)
             sys.exit(1)
     return records
