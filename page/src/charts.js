@@ -3,9 +3,9 @@ import uPlot from "uplot";
 import { isDark } from "./dom.js";
 import { BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY } from "./palette.js";
 
-// One look of a strategy everywhere, as in scripts/lib/charts.py: a family has one colour, and dashes tell its members apart.
+// The colours of scripts/lib/charts.py: a family of strategies has one, and dashes tell its members apart; so has each elementary test.
 const LOOKS = [["base", "#000000"], ["aabb", SKY], ["mcd", ORANGE], ["selfccd", GREEN], ["embree", SKY], ["cgal_boxes", SKY], ["fcl", GREY], ["rvbc", PINK], ["drvbc", BLUE], ["drvbc_fast", RED],
-  ["newton", ORANGE], ["filtered_exact", RED], ["exact", "#000000"], ["cubic", BLUE], ["inclusion", GREEN], ["additive", PINK]];
+  ["newton", "#000000"], ["filtered_exact", RED], ["exact", PINK], ["cubic", ORANGE], ["inclusion", BLUE], ["additive", GREEN]];
 const DASHES = [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
 
 export const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));

@@ -67,7 +67,7 @@ def strategies_of(commit):
     catalogue = [path for path in paths if path.startswith("bench/") and path.endswith("/catalogue.cpp")]
     if not catalogue:
         refuse(f"commit {commit[:10]}: has no catalogue of strategies, so it cannot be measured")
-    rows = git("show", f"{commit}:{catalogue[0]}").partition("playing(")[0]  # behind them are look-ups and their errors
+    rows = re.split(r"playing\(|refuse_unknown\(", git("show", f"{commit}:{catalogue[0]}"))[0]  # behind them are look-ups
     engine = git("show", f"{commit}:core/fast/drvbc_fast.h") if "core/fast/drvbc_fast.h" in paths else ""
     return {*re.findall(r'"(\w+)"', rows), *re.findall(r'\.name = "(\w+)"', engine)}
 
