@@ -226,21 +226,19 @@ TEST(FbxAnimation, LayersTurnAndScaleByChannelOrAsMaps) {
 
 TEST(FbxAnimation, LayersOfRotationsWithoutADeterminedResultAreRefusedByName) {
   EXPECT_EQ(refusal_of(turning(2, 1, 4).text()), "");
-  EXPECT_NE(refusal_of(turning(2, 0, 4).text())
-                .find("'node', clip 'clip': a layer overrides rotations with a weight and by layer"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of(turning(2, 0, 4).text()),
+                   "'node', clip 'clip': a layer overrides rotations with a weight and by layer"));
   FbxText mixed = turning(0, 0);
   mixed.layer(53, property("RotationAccumulationMode", {1}));
   mixed.curve_node(95, 53, 20, "Lcl Rotation", property("d|X", {10}));
-  EXPECT_NE(refusal_of(mixed.text()).find("a layer adds angles by channel above"), std::string::npos);
+  EXPECT_TRUE(says(refusal_of(mixed.text()), "a layer adds angles by channel above"));
   FbxText bypass = layered(property("BlendModeBypass", {131584}), 100);
   EXPECT_EQ(refusal_of(bypass.text()), "") << "switches and enumerations";
   bypass = layered(property("BlendModeBypass", {1 << 14}), 100);
-  EXPECT_NE(refusal_of(bypass.text()).find("layer 'layer52' does not apply its blend mode"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of(bypass.text()), "layer 'layer52' does not apply its blend mode"));
   FbxText nan = layered("", 100);
   nan.curve_node(90, 52, 52, "Weight", property("d|Weight", {std::nan("")}));
-  EXPECT_NE(refusal_of(nan.text()).find("layer 'layer52' has a weight that is no number"), std::string::npos);
+  EXPECT_TRUE(says(refusal_of(nan.text()), "layer 'layer52' has a weight that is no number"));
 }
 
 // A curve from (0, 1) over (0.25, 3) to (1, 2) that goes on by `kind` in both directions.
@@ -272,7 +270,7 @@ TEST(FbxAnimation, CurvesGoOnBeyondTheirKeys) {
   const Character unknown = read(going_on("Q"));
   EXPECT_EQ(x_at(unknown, 4), 2);
   ASSERT_EQ(unknown.notes.size(), 1u);
-  EXPECT_NE(unknown.notes[0].find("go on in an unknown way"), std::string::npos);
+  EXPECT_TRUE(says(unknown.notes[0], "go on in an unknown way"));
 }
 
 // A file can ask for 10^18 repetitions of keys that are one tick apart.
@@ -291,10 +289,9 @@ TEST(FbxAnimation, RefusesWhatItCannotShow) {
   FbxText pivot = sliding({0, 1}, {0, 4}, {kLinear, kLinear});
   pivot.curve_node(90, 51, 20, "RotationPivot", "");
   pivot.curve(91, 90, "d|X", {0, 1}, {0, 4}, {kLinear, kLinear});
-  EXPECT_NE(refusal_of(pivot.text()).find("animates its RotationPivot"), std::string::npos);
-  EXPECT_NE(refusal_of(sliding({0, 1}, {0}, {}).text()).find("2 times and 1 values"), std::string::npos);
-  EXPECT_NE(refusal_of(sliding({0, 1}, {0, 1}, {kLinear}).text()).find("do not fit its 2 keys"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of(pivot.text()), "animates its RotationPivot"));
+  EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0}, {}).text()), "2 times and 1 values"));
+  EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0, 1}, {kLinear}).text()), "do not fit its 2 keys"));
 }
 
 TEST(FbxAnimation, KeysThatAreNoneAreLeftOutWithANote) {

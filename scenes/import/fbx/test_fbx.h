@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/read_fbx.h"
 
