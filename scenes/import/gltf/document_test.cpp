@@ -1,6 +1,7 @@
 #include <ctime>
 
 #include "core/base/test_refusal.h"
+#include "scenes/character/test_gltf.h"
 #include "scenes/import/gltf/test_files.h"
 
 // Checks containers, buffers, extensions and other members that concern the file as a whole.
@@ -19,19 +20,6 @@ std::string with_uri(const std::string& uri, std::size_t extra_length = 0) {
   TubeFile file;
   file.root["buffers"] = {{{"byteLength", file.bytes.size() + extra_length}, {"uri", uri}}};
   return file.root.dump();
-}
-
-std::string base64(const std::string& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k > bytes.size() ? '=' : kDigits[(word >> (18 - 6 * k)) & 63];
-  }
-  return out;
 }
 
 TEST(GltfDocument, BuffersMayLieInTheTextOrBesideTheFile) {
