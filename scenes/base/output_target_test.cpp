@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 
 namespace cscd {
 namespace {
@@ -56,7 +57,7 @@ TEST_F(Output, AppearsWholeOrNotAtAll) {
 TEST_F(Output, ReplacesOnlyWhenForcedAndKeepsPermissions) {
   test::write(folder / "a", "old");
   fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
-  EXPECT_NE(refusal(folder / "a").find("--force"), std::string::npos);
+  EXPECT_TRUE(scenes::says(refusal(folder / "a"), "--force"));
   EXPECT_EQ(test::read(folder / "a"), "old");
   EXPECT_EQ(refusal(folder / "a", true), "");
   EXPECT_EQ(test::read(folder / "a"), "new");
@@ -126,18 +127,18 @@ TEST_F(Output, MakesTheTargetOfADanglingLink) {
 TEST_F(Output, RefusesLinksInACircleFoldersAndSockets) {
   fs::create_symlink("b", folder / "a");
   fs::create_symlink("a", folder / "b");
-  EXPECT_NE(refusal(folder / "a").find("circle"), std::string::npos);
-  EXPECT_NE(refusal(folder, true).find("is a folder"), std::string::npos);
-  EXPECT_NE(refusal(folder / "no" / "such").find("cannot be created"), std::string::npos);
-  EXPECT_NE(refusal(folder / "new/").find("names a folder"), std::string::npos);
-  EXPECT_NE(refusal("", true).find("empty"), std::string::npos);
+  EXPECT_TRUE(scenes::says(refusal(folder / "a"), "circle"));
+  EXPECT_TRUE(scenes::says(refusal(folder, true), "is a folder"));
+  EXPECT_TRUE(scenes::says(refusal(folder / "no" / "such"), "cannot be created"));
+  EXPECT_TRUE(scenes::says(refusal(folder / "new/"), "names a folder"));
+  EXPECT_TRUE(scenes::says(refusal("", true), "empty"));
 
   const int handle = socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
   (folder / "socket").string().copy(name.sun_path, sizeof name.sun_path - 1);
   ASSERT_EQ(bind(handle, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
-  EXPECT_NE(refusal(folder / "socket", true).find("is a socket"), std::string::npos);
+  EXPECT_TRUE(scenes::says(refusal(folder / "socket", true), "is a socket"));
   close(handle);
 }
 
@@ -149,7 +150,7 @@ TEST_F(Output, KnowsDevicesAndPipes) {
   EXPECT_TRUE(find_output_target(folder / "link", true).is_stream);
   if (mknod((folder / "disk").c_str(), S_IFBLK | 0600, makedev(259, 200)) != 0)
     GTEST_SKIP() << "may not make a device";
-  EXPECT_NE(refusal(folder / "disk", true).find("is a disk"), std::string::npos);
+  EXPECT_TRUE(scenes::says(refusal(folder / "disk", true), "is a disk"));
 }
 
 TEST_F(Output, TakesTheLongestNameThatThereIs) {
@@ -162,7 +163,7 @@ TEST_F(Output, SaysThatAFolderIsReadOnly) {
   if (geteuid() != 0 || seteuid(65534) != 0) GTEST_SKIP() << "needs root, to become another user";
   const std::string text = refusal(folder / "a");
   ASSERT_EQ(seteuid(0), 0);
-  EXPECT_NE(text.find("Permission denied"), std::string::npos) << text;
+  EXPECT_TRUE(scenes::says(text, "Permission denied"));
 }
 
 // Forks a child process that calls begin() and is then ended by a signal. Returns the number of the signal

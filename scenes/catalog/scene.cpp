@@ -255,8 +255,7 @@ fs::path scenes_folder() {
   if (const auto found = installed_scenes()) return *found;
   throw InputError(
       "scenes are looked for in a folder scenes/, and there is none here or above; run inside the "
-      "repository, "
-      "let CSCD_SCENES name the folder, or give a file");
+      "repository, let CSCD_SCENES name the folder, or give a file");
 }
 
 Scene parse_scene(std::string_view name, const std::string& text, const std::string& where,

@@ -55,7 +55,7 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
   EXPECT_EQ(refusal("\"frames\"", "\"up\": \"w\", \"frames\""),
             "small.json: up must be one of x, y, z, -x, -y, -z");
   EXPECT_EQ(refusal("\"frames\"", "\"up\": 2, \"frames\""), "small.json: up must be a text");
-  EXPECT_NE(refusal("{", "").find("small.json: is not JSON"), std::string::npos);
+  EXPECT_TRUE(says(refusal("{", ""), "small.json: is not JSON"));
   EXPECT_EQ(refusal("cscd.scene/1", "cscd.scene/9"), "small.json: schema must be cscd.scene/1");
   EXPECT_EQ(refusal("\"story\"", "\"tale\""), "small.json: tale is unknown; remove it");
   EXPECT_EQ(refusal("\"frames\": 6", "\"frames\": 1"),
@@ -78,8 +78,8 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
             "lost); add it to the scene file");
   EXPECT_EQ(refusal("\"vertices\": 82", "\"vertices\": 83"),
             "scene small: the shape has 82 vertices, the scene file expects 83; correct one of them");
-  EXPECT_NE(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]").find("parameter first_end must be a list of lists"),
-            std::string::npos);
+  EXPECT_TRUE(
+      says(refusal("[0, 0, 0, 0]", "[0, 0, 0, \"x\"]"), "parameter first_end must be a list of lists"));
 }
 
 TEST(Scene, WithContactResponseHasPredictionsInItsFramesAndItsDigest) {
@@ -102,7 +102,7 @@ TEST(Scene, WithContactResponseHasPredictionsInItsFramesAndItsDigest) {
 TEST(SceneFile, PromisesADigest) {
   const std::string text = test::refusal([] { generate(parse_scene("small", kSmallScene, "small.json")); });
   EXPECT_EQ(text.find("scene small: the frames have digest "), 0u) << text;
-  EXPECT_NE(text.find("the scene file expects 0000000000000000"), std::string::npos) << text;
+  EXPECT_TRUE(says(text, "the scene file expects 0000000000000000"));
 }
 
 TEST(Scene, RunsTheEffectsThatItNamesAndNoOther) {
@@ -172,11 +172,11 @@ TEST_F(Catalogue, ListsAFaultySceneWithItsFault) {
   std::ofstream(root / "scenes" / "nothing.json");
   const std::vector<SceneSummary> scenes = list_scenes();
   ASSERT_EQ(scenes.size(), 6u);
-  EXPECT_NE(scenes[0].fault.find("scalar.json: must be an object"), std::string::npos) << scenes[0].fault;
-  EXPECT_NE(scenes[1].fault.find("broken.json: is not JSON"), std::string::npos) << scenes[1].fault;
-  EXPECT_NE(scenes[2].fault.find("nothing.json: is empty"), std::string::npos) << scenes[2].fault;
-  EXPECT_NE(scenes[3].fault.find("odd.json: story must be a text"), std::string::npos) << scenes[3].fault;
-  EXPECT_NE(scenes[4].fault.find("scalar.json: must be an object"), std::string::npos) << scenes[4].fault;
+  EXPECT_TRUE(says(scenes[0].fault, "scalar.json: must be an object"));
+  EXPECT_TRUE(says(scenes[1].fault, "broken.json: is not JSON"));
+  EXPECT_TRUE(says(scenes[2].fault, "nothing.json: is empty"));
+  EXPECT_TRUE(says(scenes[3].fault, "odd.json: story must be a text"));
+  EXPECT_TRUE(says(scenes[4].fault, "scalar.json: must be an object"));
   EXPECT_EQ(scenes[5].fault, "");
   EXPECT_EQ(test::refusal([] { load_scene("small"); }), "");
 }
@@ -203,12 +203,10 @@ TEST_F(Catalogue, TakesASceneFileFromAnyPath) {
       << "beside the file first";
   EXPECT_EQ(load_scene("small").shape_parameters.number("radius"), 1);
 
-  EXPECT_NE(test::refusal([&] { load_scene((folder / "no.json").string()); }).find("no such file"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([&] { load_scene((folder / "no.json").string()); }), "no such file"));
   fs::create_directory(folder / "folder.json");
-  EXPECT_NE(
-      test::refusal([&] { load_scene((folder / "folder.json").string()); }).find("not an ordinary file"),
-      std::string::npos);
+  EXPECT_TRUE(
+      says(test::refusal([&] { load_scene((folder / "folder.json").string()); }), "not an ordinary file"));
 }
 
 TEST_F(Catalogue, DoesWithoutCountsAndDigestUntilTheyAreAccepted) {
@@ -245,8 +243,7 @@ TEST_F(Catalogue, DoesWithoutCountsAndDigestUntilTheyAreAccepted) {
 
 TEST_F(Catalogue, AcceptsInPlaceOfWrongExpectations) {
   put("small", kSmallScene);
-  EXPECT_NE(test::refusal([] { open_scene(load_scene("small")); }).find("cscd scene accept"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { open_scene(load_scene("small")); }), "cscd scene accept"));
   accept_scene(root / "scenes" / "small.json");
   EXPECT_NO_THROW(open_scene(load_scene("small")));
 }
@@ -283,20 +280,17 @@ TEST_F(Catalogue, TakesFromItsBaseWhatASceneDoesNotSay) {
 
   const auto file = (root / "scenes" / "variant.json").string();
   put("variant", R"({"patch": []})");
-  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("changes a base, and none is named"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { load_scene("variant"); }), "changes a base, and none is named"));
   put("variant", R"({"base": "small", "patch": [{"op": "replace", "path": "/effects/9/drag", "value": 1}]})");
-  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("its patch (RFC 6902) does not fit"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { load_scene("variant"); }), "its patch (RFC 6902) does not fit"));
   put("variant", R"({"base": "small", "expected": {"digest": "00"}})");
   EXPECT_EQ(test::refusal([] { load_scene("variant"); }), file + ": story is missing; add it");
   put("variant", R"({"base": "small", "story": "A. B."})");
   EXPECT_EQ(test::refusal([] { load_scene("variant"); }), "") << "a digest may come later";
   put("variant", R"({"base": "nosuch"})");
-  EXPECT_NE(test::refusal([] { load_scene("variant"); }).find("nosuch.json: no such file"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { load_scene("variant"); }), "nosuch.json: no such file"));
   put("second", R"({"base": "variant"})");
-  EXPECT_NE(test::refusal([] { load_scene("second"); }).find("has a base itself"), std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { load_scene("second"); }), "has a base itself"));
 }
 
 TEST_F(Catalogue, FindsItsFolder) {
@@ -310,7 +304,7 @@ TEST_F(Catalogue, FindsItsFolder) {
   EXPECT_EQ(cache_folder(), scenes_folder().parent_path() / ".cache");
   fs::current_path(before);
   setenv("CSCD_SCENES", (root / "a").c_str(), 1);
-  EXPECT_NE(test::refusal([] { scenes_folder(); }).find("holds no scene file"), std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { scenes_folder(); }), "holds no scene file"));
 }
 
 TEST_F(Catalogue, GeneratesOnceAndAgainWhenTheCacheIsDamaged) {
@@ -360,8 +354,8 @@ TEST_F(Catalogue, KeepsWhatEachEffectTook) {
 
   const fs::path file = cache_file(scene).replace_extension(".json");
   std::ofstream(file) << "{";
-  EXPECT_NE(test::refusal([&] { effect_costs(scene); }).find("remove it, and the scene is generated anew"),
-            std::string::npos);
+  EXPECT_TRUE(
+      says(test::refusal([&] { effect_costs(scene); }), "remove it, and the scene is generated anew"));
   fs::remove(file);
   EXPECT_EQ(generated(scene), 6u) << "a cache that does not tell is none";
 }
@@ -396,17 +390,15 @@ TEST_F(Catalogue, CachesByWhatTheFramesDependOn) {
   text.replace(text.find("\"drag\": 0.5"), 11, "\"drag\": 0.6");
   put("small", text);
   EXPECT_NE(cache_file(load_scene("small")), file);
-  EXPECT_NE(test::refusal([] { open_scene(load_scene("small")); }).find("the frames have digest"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([] { open_scene(load_scene("small")); }), "the frames have digest"));
   EXPECT_FALSE(fs::exists(cache_file(load_scene("small")))) << "unverified frames are not kept";
 }
 
 TEST_F(Catalogue, SaysWhereItCannotCache) {
   for (const char* folder : {"/proc/no/such", "/proc"}) {  // cannot be made; holds no file of ours
     setenv("CSCD_CACHE", folder, 1);
-    EXPECT_NE(
-        test::refusal([] { open_scene(load_scene("small")); }).find("let CSCD_CACHE name a folder that can"),
-        std::string::npos)
+    EXPECT_TRUE(
+        says(test::refusal([] { open_scene(load_scene("small")); }), "let CSCD_CACHE name a folder that can"))
         << folder;
   }
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/base/test_says.h"
 #include "scenes/catalog/generate.h"
 #include "scenes/catalog/scene.h"
 

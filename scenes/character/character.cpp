@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 
 namespace cscd::scenes {
 namespace {
@@ -139,16 +140,9 @@ void check_layers(const Layered<Width>& layered, std::size_t weights, const std:
 }
 
 template <std::size_t Width>
-std::size_t keys_of(const Components<Width>& components) {
-  std::size_t keys = 0;
-  for (const Curve& curve : components.axis) keys += curve.keys.size();
-  return keys;
-}
-
-template <std::size_t Width>
 std::size_t keys_of(const Layered<Width>& layered) {
-  std::size_t keys = keys_of(layered.base);
-  for (const Layer<Width>& layer : layered.above) keys += keys_of(layer.values);
+  std::size_t keys = 0;
+  for_each_curve(layered, [&](const Curve& curve) { keys += curve.keys.size(); });
   return keys;
 }
 
@@ -238,8 +232,7 @@ void validate(const Character& character, const CharacterLimits& limits) {
   std::vector<int> joints;
   for (const Part& part : character.parts)
     for (const Joint& joint : part.joints) joints.push_back(joint.node);
-  std::sort(joints.begin(), joints.end());
-  joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
+  sort_unique(joints);
   require_count("bones", joints.size(), limits.joints);
 
   for (const Animation& animation : character.animations) {
@@ -262,8 +255,7 @@ std::vector<int> moving_nodes(const Character& character) {
         break;
       }
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  sort_unique(nodes);
   return nodes;
 }
 

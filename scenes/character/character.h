@@ -176,6 +176,14 @@ struct Layered {
   bool empty() const { return base.empty() && above.empty(); }
 };
 
+// Calls visit(curve) for each curve of all layers.
+template <std::size_t Width, class Visit>
+void for_each_curve(const Layered<Width>& layered, const Visit& visit) {
+  for (const Curve& curve : layered.base.axis) visit(curve);
+  for (const Layer<Width>& layer : layered.above)
+    for (const Curve& curve : layer.values.axis) visit(curve);
+}
+
 // Returns one number that keys drive, without layers.
 inline Layered<1> driven(std::vector<Key<double>> keys) {
   return {{{Curve{std::move(keys)}}}};

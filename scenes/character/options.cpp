@@ -4,14 +4,10 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::scenes {
 namespace {
-
-std::string text(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 template <class Number>
 Number number(const std::string& option, const std::string& digits) {
@@ -24,9 +20,9 @@ Number number(const std::string& option, const std::string& digits) {
 
 void check(const ImportOptions& options) {
   if (options.fps && !(*options.fps > 0 && *options.fps <= 10'000))
-    throw InputError("--fps " + text(*options.fps) + ": give a number above 0 and up to 10000");
+    throw InputError("--fps " + exact_text(*options.fps) + ": give a number above 0 and up to 10000");
   if (options.weld && !(*options.weld >= 0 && *options.weld <= 0.01))
-    throw InputError("--weld " + text(*options.weld) + ": give a share of the diagonal from 0 to 0.01");
+    throw InputError("--weld " + exact_text(*options.weld) + ": give a share of the diagonal from 0 to 0.01");
 }
 
 }  // namespace
@@ -37,11 +33,11 @@ std::vector<std::string> to_arguments(const ImportOptions& options) {
     words.push_back(name);
     words.push_back(value);
   };
-  if (options.fps) add("--fps", text(*options.fps));
+  if (options.fps) add("--fps", exact_text(*options.fps));
   if (!options.clip.empty()) add("--clip", options.clip);
   if (options.clip_number) add("--clip-number", std::to_string(*options.clip_number));
   if (options.fill_holes > 0) add("--fill-holes", std::to_string(options.fill_holes));
-  if (options.weld) add("--weld", text(*options.weld));
+  if (options.weld) add("--weld", exact_text(*options.weld));
   if (options.from_bind_pose) words.push_back("--from-bind-pose");
   if (options.flip_inward) words.push_back("--flip-inward");
   if (options.survey) words.push_back("--survey");

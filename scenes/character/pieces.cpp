@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 
 namespace cscd::scenes {
 
@@ -20,8 +21,7 @@ std::vector<Piece> pieces_of(const TriangleMesh& whole) {
     std::vector<VertexId> vertices;
     for (const TriangleId t : triangles)
       for (const VertexId v : whole.corners(t)) vertices.push_back(v);
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    sort_unique(vertices);
     for (std::size_t i = 0; i < vertices.size(); ++i)
       number[+vertices[i]] = VertexId{static_cast<std::int32_t>(i)};
     std::vector<Triangle> own;

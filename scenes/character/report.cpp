@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::scenes {
 namespace {
@@ -15,16 +17,9 @@ namespace {
 constexpr char kSchema[] = "cscd.import/3";
 
 std::string shown(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+  return exact_text(value);
 }
-std::string shown(std::size_t value) {
-  return std::to_string(value);
-}
-std::string shown(std::int32_t value) {
-  return std::to_string(value);
-}
-std::string shown(long value) {
+std::string shown(std::integral auto value) {
   return std::to_string(value);
 }
 std::string shown(const std::string& value) {

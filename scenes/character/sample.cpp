@@ -53,14 +53,6 @@ Value sample_keys(const std::vector<Key<Value>>& keys, double seconds) {
   return before.next == Between::cubic ? cubic(before, *next, s) : between(before.value, next->value, s);
 }
 
-// Returns the slope with which a curve leaves its first key or arrives at its last key.
-double end_slope(const std::vector<Key<double>>& keys, bool first) {
-  const Key<double>&a = first ? keys.front() : *(keys.end() - 2), &b = first ? keys[1] : keys.back();
-  if (a.next == Between::constant) return 0;
-  if (a.next == Between::line) return (b.value - a.value) / (b.time - a.time);
-  return first ? a.leaving : b.arriving;
-}
-
 // Returns the value where the keys of a curve are repeated, `late` seconds before the first key or after the
 // last one.
 double sample_repeated(const Curve& curve, bool before, double late) {
@@ -136,6 +128,13 @@ Vec3 vector_of(const std::array<double, 3>& numbers) {
 }
 
 }  // namespace
+
+double end_slope(const std::vector<Key<double>>& keys, bool first) {
+  const Key<double>&a = first ? keys.front() : *(keys.end() - 2), &b = first ? keys[1] : keys.back();
+  if (a.next == Between::constant) return 0;
+  if (a.next == Between::line) return (b.value - a.value) / (b.time - a.time);
+  return first ? a.leaving : b.arriving;
+}
 
 Vec3 sample(const std::vector<Key<Vec3>>& keys, double seconds) {
   return sample_keys(keys, seconds);

@@ -14,6 +14,8 @@ Quaternion sample(const std::vector<Key<Quaternion>>& keys, double seconds);
 // A curve with at least one key, between its keys and beyond them (Extrapolation). However far a time lies
 // beyond the keys and however often they are repeated, the cost is that of one look-up.
 double sample(const Curve& curve, double seconds);
+// Returns the slope with which a curve of at least two keys leaves its first key or arrives at its last key.
+double end_slope(const std::vector<Key<double>>& keys, bool first);
 
 // Returns the shares of the weights of an animation's layers, each in [0, 1]. The functions below take them.
 std::vector<double> layer_shares(const Animation& animation, double seconds);

@@ -12,6 +12,19 @@
 
 namespace cscd::scenes {
 
+inline std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k > bytes.size() ? '=' : kDigits[(word >> (18 - 6 * k)) & 63];
+  }
+  return out;
+}
+
 // Writes a character as a glTF 2 text with its data inside, so that a test of the import needs no model file
 // beside it. Every part becomes a mesh of one primitive; vertices have as many sets of four influences as the
 // part needs. The format rounds numbers to float, and reduces nodes to a move, a rotation and a scale.
@@ -27,8 +40,8 @@ class GltfText {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes_ + "]" +
            list("meshes", meshes_) + list("skins", skins_) + list("animations", animations_) +
            list("accessors", accessors_) + list("bufferViews", views_) + R"(,"buffers":[{"byteLength":)" +
-           std::to_string(bytes_.size()) + R"(,"uri":"data:application/octet-stream;base64,)" + base64() +
-           "\"}]}";
+           std::to_string(bytes_.size()) + R"(,"uri":"data:application/octet-stream;base64,)" +
+           base64(bytes_) + "\"}]}";
   }
 
  private:
@@ -162,19 +175,6 @@ class GltfText {
       skin += !part.joints.empty();
     }
     append(nodes_, text + list("children", children) + "}");
-  }
-
-  std::string base64() const {
-    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (std::size_t i = 0; i < bytes_.size(); i += 3) {
-      std::uint32_t word = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        word = word << 8 | (i + k < bytes_.size() ? static_cast<unsigned char>(bytes_[i + k]) : 0u);
-      for (std::size_t k = 0; k < 4; ++k)
-        out += i + k > bytes_.size() ? '=' : kDigits[(word >> (18 - 6 * k)) & 63];
-    }
-    return out;
   }
 
   const Character& character_;

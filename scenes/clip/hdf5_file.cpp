@@ -116,6 +116,12 @@ std::optional<std::string> read_text_attribute(hid_t file, const char* name) {
   return std::string(text);
 }
 
+Hdf5Handle timeless(hid_t kind) {
+  Hdf5Handle creation(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(creation.get(), false);
+  return creation;
+}
+
 NewHdf5File::NewHdf5File(std::filesystem::path name, bool force) : path(std::move(name)) {
   silence_hdf5();
   const OutputTarget target = find_output_target(path, force);
@@ -123,6 +129,38 @@ NewHdf5File::NewHdf5File(std::filesystem::path name, bool force) : path(std::mov
   unfinished.emplace(target.path, force);
   file = Hdf5Handle(H5Fcreate(unfinished->path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (!file.valid()) fail("HDF5 made no file");
+}
+
+void NewHdf5File::add_group(const std::string& name) {
+  const Hdf5Handle creation = timeless(H5P_GROUP_CREATE);
+  const Hdf5Handle group(H5Gcreate2(file.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                         H5Gclose);
+  if (!group.valid()) fail("HDF5 made no group " + name);
+}
+
+void NewHdf5File::add_dataset(const std::string& name, hid_t type, hid_t memory_type,
+                              const std::vector<hsize_t>& shape, const void* values) {
+  const Hdf5Handle creation = timeless(H5P_DATASET_CREATE);
+  const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  const Hdf5Handle dataset(
+      H5Dcreate2(file.get(), name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+      H5Dclose);
+  if (!dataset.valid() || H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+    refuse(name);
+}
+
+void NewHdf5File::add_integers(const std::string& name, const std::vector<hsize_t>& shape,
+                               const std::vector<std::int32_t>& values) {
+  add_dataset(name, H5T_STD_I32LE, H5T_NATIVE_INT32, shape, values.data());
+}
+
+void NewHdf5File::add_numbers(const std::string& name, const std::vector<hsize_t>& shape,
+                              const void* values) {
+  add_dataset(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, values);
+}
+
+void NewHdf5File::refuse(const std::string& name) const {
+  fail("HDF5 did not take " + name + " (is the disk full?)");
 }
 
 void NewHdf5File::finish() {

@@ -80,6 +80,9 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset);
 // Returns the text of an attribute of the file's root; nothing if it is no single text of up to 1000 bytes.
 std::optional<std::string> read_text_attribute(hid_t file, const char* name);
 
+// Returns properties of an object without a time of creation, so that equal data give equal bytes.
+Hdf5Handle timeless(hid_t kind);
+
 // An HDF5 file that is being written. It has its name only once it is finished, and vanishes if it is not.
 // Whoever derives from it holds the datasets, which are then closed before the file is.
 struct NewHdf5File {
@@ -92,9 +95,20 @@ struct NewHdf5File {
   NewHdf5File(const NewHdf5File&) = delete;
   NewHdf5File& operator=(const NewHdf5File&) = delete;
 
+  // Add a group, or a dataset with the values [shape]. Throw InputError if HDF5 does not take them.
+  void add_group(const std::string& name);
+  void add_integers(const std::string& name, const std::vector<hsize_t>& shape,
+                    const std::vector<std::int32_t>& values);
+  void add_numbers(const std::string& name, const std::vector<hsize_t>& shape, const void* values);
+  [[noreturn]] void refuse(const std::string& name) const;  // of what HDF5 did not take
+
   // Gives the file its name. All datasets have to be closed. Throws InputError if the disk did not take it.
   void finish();
   [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  void add_dataset(const std::string& name, hid_t type, hid_t memory_type, const std::vector<hsize_t>& shape,
+                   const void* values);
 };
 
 }  // namespace cscd::scenes

@@ -16,49 +16,17 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Bone) == 6 * sizeof(d
 using Shape = std::vector<hsize_t>;
 using Member = PosedMesh::Pose PosedMesh::Interval::*;
 
-// Properties of an object without a time of creation, so that equal meshes give equal bytes.
-Hdf5Handle timeless(hid_t kind) {
-  Hdf5Handle creation(H5Pcreate(kind), H5Pclose);
-  H5Pset_obj_track_times(creation.get(), false);
-  return creation;
+// Calls visit(dataset, member) for both ends of all intervals.
+template <class Visit>
+void each_end(const std::string& folder, const Visit& visit) {
+  visit(folder + "/start", &PosedMesh::Interval::start);
+  visit(folder + "/end", &PosedMesh::Interval::end);
 }
 
 }  // namespace
 
 struct MeshFileWriter::File : NewHdf5File {
   using NewHdf5File::NewHdf5File;
-
-  void add_group(const std::string& name) {
-    const Hdf5Handle creation = timeless(H5P_GROUP_CREATE);
-    const Hdf5Handle group(H5Gcreate2(file.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-                           H5Gclose);
-    if (!group.valid()) fail("HDF5 made no group " + name);
-  }
-
-  Hdf5Handle add_dataset(const std::string& name, hid_t type, const Shape& shape) {
-    const Hdf5Handle creation = timeless(H5P_DATASET_CREATE);
-    const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-    Hdf5Handle dataset(
-        H5Dcreate2(file.get(), name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-        H5Dclose);
-    if (!dataset.valid()) refuse(name);
-    return dataset;
-  }
-
-  [[noreturn]] void refuse(const std::string& name) const {
-    fail("HDF5 did not take " + name + " (is the disk full?)");
-  }
-
-  void add_integers(const std::string& name, const Shape& shape, const std::vector<std::int32_t>& values) {
-    const Hdf5Handle dataset = add_dataset(name, H5T_STD_I32LE, shape);
-    if (H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      refuse(name);
-  }
-
-  void add_numbers(const std::string& name, const Shape& shape, const void* values) {
-    const Hdf5Handle dataset = add_dataset(name, H5T_IEEE_F64LE, shape);
-    if (H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) refuse(name);
-  }
 
   void add(const std::string& name, const PosedMesh& mesh) {
     const std::string root = "/" + name;
@@ -70,10 +38,6 @@ struct MeshFileWriter::File : NewHdf5File {
       for (const VertexId corner : triangle) corners.push_back(static_cast<std::int32_t>(corner));
     add_integers(root + "/triangles", {mesh.triangles.size(), 3}, corners);
     add_numbers(root + "/reference", {vertices, 3}, mesh.reference.positions.data());
-    const auto each_end = [&](const std::string& folder, const auto& write) {
-      write(folder + "/start", &PosedMesh::Interval::start);
-      write(folder + "/end", &PosedMesh::Interval::end);
-    };
     each_end(root, [&](const std::string& dataset, Member member) {
       std::vector<Vec3> all;
       for (const PosedMesh::Interval& interval : mesh.intervals) {
@@ -170,10 +134,6 @@ struct MeshFileReader::File {
       mesh.triangles[i / 3][i % 3] = VertexId{index(triangles, corners[i], 0, vertices)};
     mesh.reference.positions = points(root + "/reference", {vertices, 3}, "/start");
     mesh.intervals.resize(intervals);
-    const auto each_end = [&](const std::string& folder, const auto& fill) {
-      fill(folder + "/start", &PosedMesh::Interval::start);
-      fill(folder + "/end", &PosedMesh::Interval::end);
-    };
     each_end(root, [&](const std::string& dataset, Member member) {
       const std::vector<Vec3> all = points(dataset, {intervals, vertices, 3}, "/start");
       for (std::size_t i = 0; i < intervals; ++i) {
@@ -194,14 +154,11 @@ struct MeshFileReader::File {
       for (std::size_t i = 0; i < bones; ++i) out.push_back({joints[2 * i], joints[2 * i + 1]});
     };
     pairs(points(root + "/bones/reference", {bones, 2, 3}, "/bones/parent"), mesh.reference.bones);
-    for (const auto& [dataset, member] :
-         {std::pair<const char*, Member>("start", &PosedMesh::Interval::start),
-          std::pair<const char*, Member>("end", &PosedMesh::Interval::end)}) {
-      const std::vector<Vec3> all =
-          points(root + "/bones/" + dataset, {intervals, bones, 2, 3}, "/bones/parent");
+    each_end(root + "/bones", [&](const std::string& dataset, Member member) {
+      const std::vector<Vec3> all = points(dataset, {intervals, bones, 2, 3}, "/bones/parent");
       for (std::size_t i = 0; i < intervals; ++i)
         pairs(std::span(all).subspan(i * bones * 2, bones * 2), (mesh.intervals[i].*member).bones);
-    }
+    });
     try {
       validate(Rig{mesh.bone_parent, mesh.reference.bones});
     } catch (const InputError& error) {

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/clip/digest.h"
 #include "scenes/clip/hdf5_file.h"
 #include "scenes/clip/test_clips.h"
@@ -297,8 +298,8 @@ TEST_F(PointCache, KeepsThePoseAtRest) {
     return test::refusal([&] { PointCacheReader reader(file); });
   };
   EXPECT_EQ(refusal({4, 3}, std::vector<double>(12, 1)), "");
-  EXPECT_NE(refusal({3, 3}, std::vector<double>(9, 1)).find("/rest"), std::string::npos);
-  EXPECT_NE(refusal({4, 3}, std::vector<double>(12, std::nan(""))).find("/rest"), std::string::npos);
+  EXPECT_TRUE(says(refusal({3, 3}, std::vector<double>(9, 1)), "/rest"));
+  EXPECT_TRUE(says(refusal({4, 3}, std::vector<double>(12, std::nan(""))), "/rest"));
 }
 
 TEST_F(PointCache, NamesFrameAndVertexThatAreNotFinite) {
@@ -319,16 +320,16 @@ TEST_F(PointCache, NamesFrameAndVertexThatAreNotFinite) {
 TEST_F(PointCache, RefusesDeclaredSizesThatNothingStandsBehind) {
   write({});
   declare("/positions", H5T_IEEE_F64LE, {2, hsize_t{1} << 27, 3});
-  EXPECT_NE(refusal().find("stores too little for it"), std::string::npos) << refusal();
+  EXPECT_TRUE(says(refusal(), "stores too little for it"));
   declare("/positions", H5T_IEEE_F64LE, {2, hsize_t{1} << 40, 3});
-  EXPECT_NE(refusal().find("from 3 to 2^28 vertices"), std::string::npos) << refusal();
+  EXPECT_TRUE(says(refusal(), "from 3 to 2^28 vertices"));
   declare("/positions", H5T_IEEE_F64LE, {2, 0, 3});
   EXPECT_NE(refusal(), "");
   write({});
   declare("/triangles", H5T_STD_I32LE, {hsize_t{1} << 27, 3});
-  EXPECT_NE(refusal().find("stores too little for it"), std::string::npos) << refusal();
+  EXPECT_TRUE(says(refusal(), "stores too little for it"));
   declare("/triangles", H5T_STD_I32LE, {hsize_t{1} << 50, 3});
-  EXPECT_NE(refusal().find("from 1 to 2^28 triangles"), std::string::npos) << refusal();
+  EXPECT_TRUE(says(refusal(), "from 1 to 2^28 triangles"));
 }
 
 TEST_F(PointCache, RefusesDataThatLieInOtherFiles) {
@@ -363,7 +364,7 @@ std::string write_refusal(const fs::path& path, bool force) {
 
 TEST_F(PointCache, OverwritesOnlyWhenAsked) {
   std::ofstream(file) << "precious";
-  EXPECT_NE(write_refusal(file, false).find("exists; choose another name"), std::string::npos);
+  EXPECT_TRUE(says(write_refusal(file, false), "exists; choose another name"));
   EXPECT_EQ(bytes(file), "precious");
   EXPECT_EQ(write_refusal(file, true), "");
   EXPECT_EQ(refusal(), "");
@@ -393,9 +394,9 @@ TEST_F(PointCache, AppearsWholeOrNotAtAll) {
 }
 
 TEST_F(PointCache, SaysWhereItCannotWrite) {
-  EXPECT_NE(write_refusal(folder / "no" / "such.h5", false).find("cannot be created"), std::string::npos);
-  EXPECT_NE(write_refusal(folder, true).find("is a folder"), std::string::npos);
-  EXPECT_NE(write_refusal("/proc/clip.h5", false).find("cannot be created"), std::string::npos);
+  EXPECT_TRUE(says(write_refusal(folder / "no" / "such.h5", false), "cannot be created"));
+  EXPECT_TRUE(says(write_refusal(folder, true), "is a folder"));
+  EXPECT_TRUE(says(write_refusal("/proc/clip.h5", false), "cannot be created"));
   EXPECT_TRUE(files().empty());
 }
 

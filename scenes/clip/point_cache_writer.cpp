@@ -40,20 +40,16 @@ struct PointCacheWriter::File : NewHdf5File {
     corners.reserve(header.triangles.size() * 3);
     for (const Triangle& triangle : header.triangles)
       for (const VertexId corner : triangle) corners.push_back(static_cast<std::int32_t>(corner));
-    write_integers("/triangles", {header.triangles.size(), 3}, corners);
+    add_integers("/triangles", {header.triangles.size(), 3}, corners);
     positions = create_growing("/positions", header.vertex_count);
     if (!header.rest.empty()) write_rest();
     if (!header.up.empty()) write_up();
     if (header.predicted) predicted = create_growing("/predicted", header.vertex_count);
     if (header.bone_parent.empty()) return;
-    const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.get(), false);
-    const Hdf5Handle group(H5Gcreate2(file.get(), "/bones", H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-                           H5Gclose);
-    if (!group.valid()) fail("HDF5 made no group /bones");
+    add_group("/bones");
     std::vector<std::int32_t> parents;
     for (const BoneId parent : header.bone_parent) parents.push_back(static_cast<std::int32_t>(parent));
-    write_integers("/bones/parent", {parents.size()}, parents);
+    add_integers("/bones/parent", {parents.size()}, parents);
     head = create_growing("/bones/head", parents.size());
     tail = create_growing("/bones/tail", parents.size());
     if (!header.predicted) return;
@@ -61,37 +57,12 @@ struct PointCacheWriter::File : NewHdf5File {
     predicted_tail = create_growing("/bones/predicted_tail", parents.size());
   }
 
-  // The properties of a dataset without a time of creation, so that equal frames give equal bytes.
-  static Hdf5Handle timeless_dataset() {
-    Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.get(), false);
-    return creation;
-  }
-
-  void write_integers(const char* name, const std::vector<hsize_t>& shape,
-                      const std::vector<std::int32_t>& values) {
-    const Hdf5Handle creation = timeless_dataset();
-    const Hdf5Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-    const Hdf5Handle dataset(
-        H5Dcreate2(file.get(), name, H5T_STD_I32LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-        H5Dclose);
-    if (H5Dwrite(dataset.get(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
-  }
-
   void write_rest() {
     if (header.rest.size() != header.vertex_count)
       throw InputError(path.string() + ", pose at rest: has " + std::to_string(header.rest.size()) +
                        " vertices; the frames have " + std::to_string(header.vertex_count));
     require_finite(header.rest, path.string() + ", pose at rest");
-    const hsize_t shape[2] = {header.vertex_count, 3};
-    const Hdf5Handle creation = timeless_dataset();
-    const Hdf5Handle space(H5Screate_simple(2, shape, nullptr), H5Sclose);
-    const Hdf5Handle dataset(H5Dcreate2(file.get(), "/rest", H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
-                                        creation.get(), H5P_DEFAULT),
-                             H5Dclose);
-    if (H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, header.rest.data()) < 0)
-      fail("HDF5 did not take /rest (is the disk full?)");
+    add_numbers("/rest", {header.vertex_count, 3}, header.rest.data());
   }
 
   void write_up() {
@@ -99,14 +70,13 @@ struct PointCacheWriter::File : NewHdf5File {
     H5Tset_size(type.get(), header.up.size() + 1);
     const Hdf5Handle attribute(
         H5Acreate2(file.get(), "up", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    if (H5Awrite(attribute.get(), type.get(), header.up.c_str()) < 0)
-      fail("HDF5 did not take the attribute up (is the disk full?)");
+    if (H5Awrite(attribute.get(), type.get(), header.up.c_str()) < 0) refuse("the attribute up");
   }
 
   Growing create_growing(const char* name, std::size_t points) {
     const hsize_t now[3] = {0, points, 3}, most[3] = {H5S_UNLIMITED, points, 3};
     const hsize_t chunk[3] = {1, std::clamp<hsize_t>(points, 1, kMostVerticesInChunk), 3};
-    const Hdf5Handle creation = timeless_dataset();
+    const Hdf5Handle creation = timeless(H5P_DATASET_CREATE);
     H5Pset_chunk(creation.get(), 3, chunk);
     const Hdf5Handle space(H5Screate_simple(3, now, most), H5Sclose);
     Growing dataset;
@@ -114,7 +84,7 @@ struct PointCacheWriter::File : NewHdf5File {
     dataset.id = Hdf5Handle(
         H5Dcreate2(file.get(), name, H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
         H5Dclose);
-    if (!dataset.id.valid()) fail(std::string("HDF5 did not take ") + name + " (is the disk full?)");
+    if (!dataset.id.valid()) refuse(name);
     return dataset;
   }
 
@@ -127,7 +97,7 @@ struct PointCacheWriter::File : NewHdf5File {
     good = good && H5Sselect_hyperslab(all.get(), H5S_SELECT_SET, start, nullptr, count, nullptr) >= 0 &&
            H5Dwrite(dataset.id.get(), H5T_NATIVE_DOUBLE, memory.get(), all.get(), H5P_DEFAULT,
                     points.data()) >= 0;
-    if (!good) fail("HDF5 did not take frame " + std::to_string(dataset.frames - 1) + " (is the disk full?)");
+    if (!good) refuse("frame " + std::to_string(dataset.frames - 1));
   }
 
   void grow_bones(Growing& heads, Growing& tails, std::span<const Bone> bones) {

@@ -140,9 +140,7 @@ EffectRow chain_contact_row() {
       integer_row("iterations", "", "sweeps over the contacts in each substep", {1, 1000}).or_else({8}),
   };
   return {"chain_contact", "capsule contact of a chain of bones with itself and a floor", Pace::substep, rows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<ChainContact>(parameters, shape);
-          }};
+          make_effect<ChainContact>};
 }
 
 }  // namespace cscd::scenes

@@ -196,10 +196,7 @@ EffectRow chain_dynamics_row() {
           .optional(),
   };
   return {"chain_dynamics", "position-based dynamics of a chain of bones under gravity, led at its ends",
-          Pace::substep, rows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<ChainDynamics>(parameters, shape);
-          }};
+          Pace::substep, rows, make_effect<ChainDynamics>};
 }
 
 }  // namespace cscd::scenes

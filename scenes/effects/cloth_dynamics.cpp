@@ -232,11 +232,9 @@ EffectRow cloth_dynamics_row() {
                  {0, 1e300})
           .or_else({0}),
   };
-  EffectRow row{
-      "cloth_dynamics", "cloth under gravity that keeps off itself, its wearer, balls and a floor (XPBD)",
-      Pace::substep, rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-        return std::make_unique<ClothDynamics>(parameters, shape);
-      }};
+  EffectRow row{"cloth_dynamics",
+                "cloth under gravity that keeps off itself, its wearer, balls and a floor (XPBD)",
+                Pace::substep, rows, make_effect<ClothDynamics>};
   row.of_surface = true;
   return row;
 }

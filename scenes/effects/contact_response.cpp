@@ -285,8 +285,7 @@ std::unique_ptr<Effect> make_contact_response(const Parameters& parameters, cons
 EffectRow contact_response_row() {
   return {"contact_response",
           "keeps the surface off itself as a simulator does: detects contacts of the predicted step, cuts it "
-          "short, "
-          "pushes apart",
+          "short, pushes apart",
           Pace::frame,
           kRows,
           [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {

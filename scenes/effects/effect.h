@@ -53,6 +53,12 @@ struct EffectRow {
   bool of_surface = false;  // moves the vertices by their own masses, so that no skeleton carries the motion
 };
 
+// The `make` of most rows: constructs an effect from both arguments.
+template <class Each>
+std::unique_ptr<Effect> make_effect(const Parameters& parameters, const Shape& shape) {
+  return std::make_unique<Each>(parameters, shape);
+}
+
 // All effects that a scene file can name.
 std::span<const EffectRow> effects();
 

@@ -64,9 +64,7 @@ EffectRow spring_follow_row() {
       number_row("damping", "1 / frame", "share of the velocity that is lost", {0, 1e9}),
   };
   return {"spring_follow", "lets bones lag behind their pose on damped springs", Pace::substep, rows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<SpringFollow>(parameters, shape);
-          }};
+          make_effect<SpringFollow>};
 }
 
 }  // namespace cscd::scenes

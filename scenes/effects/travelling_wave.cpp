@@ -85,9 +85,7 @@ EffectRow travelling_wave_row() {
       number_row("chain_phase", "turn", "phase from each chain to the next").or_else({0}),
   });
   return {"travelling_wave", "runs waves along chains of bones", Pace::substep, rows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<TravellingWave>(parameters, shape);
-          }};
+          make_effect<TravellingWave>};
 }
 
 }  // namespace cscd::scenes

@@ -52,9 +52,7 @@ EffectRow twist_row() {
                 "keys of frame and turns of a chain's last bone against its first"),
   };
   return {"twist", "turns the bones of a chain about the chain's own axis", Pace::substep, rows,
-          [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<Twist>(parameters, shape);
-          }};
+          make_effect<Twist>};
 }
 
 }  // namespace cscd::scenes

@@ -93,9 +93,7 @@ EffectRow volume_bulge_row() {
       number_row("share", "", "share of the lost volume that is given back", {0, 1}).or_else({1}),
   };
   return {"volume_bulge", "gives back the volume that skinning loses, by bulging where bones bend",
-          Pace::frame, rows, [](const Parameters& parameters, const Shape& shape) -> std::unique_ptr<Effect> {
-            return std::make_unique<VolumeBulge>(parameters, shape);
-          }};
+          Pace::frame, rows, make_effect<VolumeBulge>};
 }
 
 }  // namespace cscd::scenes

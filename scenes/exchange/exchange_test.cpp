@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/number_bytes.h"
 #include "scenes/exchange/surface_file.h"
@@ -35,20 +36,15 @@ TEST(SurfaceFiles, ObjIsReadAsOthersWriteIt) {
       "usemtl m\ns 1\nf 1/1/1 2//1 3/1 4\nf -4 -3 -2\nl 1 2");
   EXPECT_EQ(read.positions.size(), 4u);
   EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
-  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }).find("line 2: a face has fewer than three"),
-            std::string::npos);
-  EXPECT_NE(test::refusal([] { read_obj("v 0 0 x\n"); }).find("line 1: 'x' is no coordinate"),
-            std::string::npos);
-  EXPECT_NE(
-      test::refusal([] { read_obj("v 0 0 0\nv 0 0 nan\n"); }).find("line 2: a coordinate is not finite"),
-      std::string::npos);
-  EXPECT_NE(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }).find("line 2: '-2' names no vertex"),
-            std::string::npos);
-  EXPECT_NE(test::refusal([] {
-              read_obj("v 0 0 0\nf 1 1 1\nf 1 3 2\nv 1 0 0\n");
-            }).find("line 3: a face names vertex 3, and the file has 2 vertices"),
-            std::string::npos);
-  EXPECT_NE(test::refusal([] { read_obj(""); }).find("no vertices"), std::string::npos);
+  EXPECT_TRUE(
+      says(test::refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }), "line 2: a face has fewer than three"));
+  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 x\n"); }), "line 1: 'x' is no coordinate"));
+  EXPECT_TRUE(
+      says(test::refusal([] { read_obj("v 0 0 0\nv 0 0 nan\n"); }), "line 2: a coordinate is not finite"));
+  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }), "line 2: '-2' names no vertex"));
+  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 0\nf 1 1 1\nf 1 3 2\nv 1 0 0\n"); }),
+                   "line 3: a face names vertex 3, and the file has 2 vertices"));
+  EXPECT_TRUE(says(test::refusal([] { read_obj(""); }), "no vertices"));
 }
 
 TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
@@ -124,22 +120,19 @@ TEST(MeshCaches, SayWhenTheirFramesAre) {
   EXPECT_EQ(MeshCache(MeshCacheFormat::mdd, uneven).first_frame(), 0);
   EXPECT_EQ(MeshCache(MeshCacheFormat::pc2, named).first_frame(), 101);
   const std::string falling = with(MeshCacheFormat::mdd, 8, {2.0F, 2.04F, 2.0F});
-  EXPECT_NE(
-      test::refusal([&] { MeshCache(MeshCacheFormat::mdd, falling); }).find("frame 2: its time is before"),
-      std::string::npos);
+  EXPECT_TRUE(
+      says(test::refusal([&] { MeshCache(MeshCacheFormat::mdd, falling); }), "frame 2: its time is before"));
   const std::string halves = with(MeshCacheFormat::pc2, 20, {10.0F, 0.5F});
-  EXPECT_NE(test::refusal([&] {
-              MeshCache(MeshCacheFormat::pc2, halves);
-            }).find("its samples are 0.5 frames apart"),
-            std::string::npos);
+  EXPECT_TRUE(says(test::refusal([&] { MeshCache(MeshCacheFormat::pc2, halves); }),
+                   "its samples are 0.5 frames apart"));
 }
 
 TEST(VtkFiles, EscapeNames) {
   VtkSurface surface(kPositions, kTriangles);
   surface.add("<a & \"b\">", std::vector<float>{1, 2});
-  EXPECT_NE(surface.text().find("Name=\"&lt;a &amp; &quot;b&quot;&gt;\""), std::string::npos);
+  EXPECT_TRUE(says(surface.text(), "Name=\"&lt;a &amp; &quot;b&quot;&gt;\""));
   const std::vector<VtkMoment> moments = {{0.5, 1, "a&b.vtp"}};
-  EXPECT_NE(to_pvd(moments).find("timestep=\"0.5\" part=\"1\" file=\"a&amp;b.vtp\""), std::string::npos);
+  EXPECT_TRUE(says(to_pvd(moments), "timestep=\"0.5\" part=\"1\" file=\"a&amp;b.vtp\""));
 }
 
 // Mutation: the frame before a change is not written, and readers blend over all frames since the last one.
@@ -151,15 +144,14 @@ TEST(UsdFiles, WriteColoursWhereTheyChangeAndInTheFrameBefore) {
     surface.append(frame++, kPositions, std::vector<std::uint8_t>{0, second}, kPalette,
                    std::vector<float>{0, 0, 0, 0.5F}, {}, std::vector<std::vector<Vec3>>{kPositions});
   const std::string text = surface.text(0.1);
-  EXPECT_NE(text.find("timeCodesPerSecond = 24"), std::string::npos);
-  EXPECT_NE(text.find("int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]"), std::string::npos);
-  EXPECT_NE(text.find("float[] primvars:depth.timeSamples = {\n            0: [0, 0, 0, 0.5],\n    }"),
-            std::string::npos);
-  EXPECT_NE(text.find("int[] curveVertexCounts.timeSamples = {\n            0: [4],"), std::string::npos);
+  EXPECT_TRUE(says(text, "timeCodesPerSecond = 24"));
+  EXPECT_TRUE(says(text, "int[] faceVertexIndices = [0, 1, 2, 0, 2, 3]"));
+  EXPECT_TRUE(says(text, "float[] primvars:depth.timeSamples = {\n            0: [0, 0, 0, 0.5],\n    }"));
+  EXPECT_TRUE(says(text, "int[] curveVertexCounts.timeSamples = {\n            0: [4],"));
   const std::string colours = text.substr(text.find("displayColor.timeSamples"), 200);
-  EXPECT_NE(colours.find("0: [(0, 0, 0), (0, 0, 0)],\n            1: [(0, 0, 0), (0, 0, 0)],\n"
-                         "            2: [(0, 0, 0), (1, 0, 0)]"),
-            std::string::npos)
+  EXPECT_TRUE(says(colours,
+                   "0: [(0, 0, 0), (0, 0, 0)],\n            1: [(0, 0, 0), (0, 0, 0)],\n"
+                   "            2: [(0, 0, 0), (1, 0, 0)]"))
       << colours;
 }
 
@@ -172,13 +164,13 @@ TEST(UsdFiles, SayWhichAxisIsUpAndHowLongAUnitIs) {
     const std::string text = surface.text(0.1);
     return text.substr(0, text.find("def Mesh"));
   };
-  EXPECT_NE(head("y").find("metersPerUnit = 0.01\n    upAxis = \"Y\""), std::string::npos);
-  EXPECT_NE(head("z").find("upAxis = \"Z\""), std::string::npos);
-  EXPECT_EQ((head("y") + head("z")).find("rotate"), std::string::npos);
-  EXPECT_NE(head("x").find("rotateZ = 90"), std::string::npos);
-  EXPECT_NE(head("-x").find("rotateZ = -90"), std::string::npos);
-  EXPECT_NE(head("-y").find("rotateX = 180"), std::string::npos);
-  EXPECT_NE(head("-z").find("rotateX = 90"), std::string::npos);
+  EXPECT_TRUE(says(head("y"), "metersPerUnit = 0.01\n    upAxis = \"Y\""));
+  EXPECT_TRUE(says(head("z"), "upAxis = \"Z\""));
+  EXPECT_FALSE(says((head("y") + head("z")), "rotate"));
+  EXPECT_TRUE(says(head("x"), "rotateZ = 90"));
+  EXPECT_TRUE(says(head("-x"), "rotateZ = -90"));
+  EXPECT_TRUE(says(head("-y"), "rotateX = 180"));
+  EXPECT_TRUE(says(head("-z"), "rotateX = 90"));
 }
 
 }  // namespace

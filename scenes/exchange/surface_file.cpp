@@ -282,10 +282,6 @@ std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> tr
   return out;
 }
 
-std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-  return to_ply(positions, triangles, {}, {});
-}
-
 std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                    std::span<const float> quality, std::span<const Rgb> colours) {
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment written by cscd\nelement vertex " +

@@ -25,15 +25,12 @@ SurfaceFile read_obj(std::string_view text);
 SurfaceFile read_ply(std::string_view bytes);
 
 // Write a surface so that every position can be read back bit for bit: an OBJ file with 17 digits, a PLY file
-// in binary doubles, the lowest byte first.
-std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> triangles);
-std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles);
-
-// Writes a surface likewise with a number and a colour for each vertex, as the properties `quality` and
-// `red`, `green`, `blue`, by which MeshLab and Blender know them.
+// in binary doubles, the lowest byte first. A PLY file may have a number and a colour for each vertex, as the
+// properties `quality` and `red`, `green`, `blue`, by which MeshLab and Blender know them.
 using Rgb = std::array<std::uint8_t, 3>;
+std::string to_obj(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 std::string to_ply(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                   std::span<const float> quality, std::span<const Rgb> colours);
+                   std::span<const float> quality = {}, std::span<const Rgb> colours = {});
 
 // Writes curves as OBJ lines, each in an object called event_N after `events`. A curve whose last point is
 // its first is closed, and its line ends at the vertex where it begins.

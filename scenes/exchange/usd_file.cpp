@@ -63,21 +63,20 @@ void UsdSurface::append(double frame, std::span<const Vec3> positions, std::span
   if (points_.empty()) first_frame_ = frame;
   last_frame_ = frame;
   const std::string time = "            " + text_of(frame) + ": ";
-  const auto vector_into = [](std::string& out) { return [&out](const Vec3& x) { append_vector(x, out); }; };
-  points_ += time;
-  append_list(positions, vector_into(points_), points_);
-  points_ += ",\n";
+  const auto add_points = [&time](const auto& points, std::string& out) {
+    out += time;
+    append_list(
+        points, [&out](const Vec3& x) { append_vector(x, out); }, out);
+    out += ",\n";
+  };
+  add_points(positions, points_);
   Vec3 low = positions[0], high = low;
   for (const Vec3& x : positions) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  extents_ += time;
-  append_list(std::array{low, high}, vector_into(extents_), extents_);
-  extents_ += ",\n";
-  marks_ += time;
-  append_list(marks, vector_into(marks_), marks_);
-  marks_ += ",\n";
+  add_points(std::array{low, high}, extents_);
+  add_points(marks, marks_);
   std::vector<Vec3> curve_points;
   for (const std::vector<Vec3>& curve : curves)
     curve_points.insert(curve_points.end(), curve.begin(), curve.end());
@@ -86,9 +85,7 @@ void UsdSurface::append(double frame, std::span<const Vec3> positions, std::span
       curves, [&](const std::vector<Vec3>& curve) { curve_counts_ += std::to_string(curve.size()); },
       curve_counts_);
   curve_counts_ += ",\n";
-  curve_points_ += time;
-  append_list(curve_points, vector_into(curve_points_), curve_points_);
-  curve_points_ += ",\n";
+  add_points(curve_points, curve_points_);
   std::string row;
   append_list(
       depth, [&](float d) { row += text_of(static_cast<double>(d)); }, row);

@@ -1,10 +1,12 @@
 #include "scenes/exchange/vtk_file.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 
 namespace cscd::scenes {
 namespace {
@@ -13,24 +15,12 @@ static_assert(std::endian::native == std::endian::little, "the files say that th
 
 // Text as it may stand in an attribute.
 std::string escaped(std::string_view text) {
+  constexpr std::pair<char, std::string_view> kEscapes[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string out;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += letter;
-    }
+  for (const char& letter : text) {
+    const auto* const found = std::ranges::find(kEscapes, letter, &std::pair<char, std::string_view>::first);
+    out += found == std::end(kEscapes) ? std::string_view(&letter, 1) : found->second;
   }
   return out;
 }

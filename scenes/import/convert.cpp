@@ -145,8 +145,7 @@ void require_simple(const ImportOptions& options) {
   if (options != plain)
     throw InputError(
         "is a moving surface without clips and bones, which is taken as it is; leave out all options of "
-        "model "
-        "files but --fps");
+        "model files but --fps");
 }
 
 // The triangles with three corners, and the vertices that they have, in the order of the file.

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/clip/point_cache.h"
@@ -169,7 +170,7 @@ TEST_F(Convert, LowersTheToleranceWhereDetailWouldCollapse) {
   EXPECT_FALSE(report.notes.empty());
   ImportOptions forced;
   forced.weld = 1e-6;
-  EXPECT_NE(refusal(thin, forced).find("more than two triangles"), std::string::npos);
+  EXPECT_TRUE(says(refusal(thin, forced), "more than two triangles"));
 }
 
 TEST_F(Convert, BeginsInTheBindPose) {
@@ -209,13 +210,13 @@ TEST_F(Convert, ChoosesClipsByNameNumberOrLength) {
   converted(tube, options);
   EXPECT_EQ(report.chosen_clip, 1);
   options.clip = "pose";
-  EXPECT_NE(refusal(tube, options).find("--from-bind-pose"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube, options), "--from-bind-pose"));
   options.from_bind_pose = true;
   EXPECT_EQ(converted(tube, options).frame_count(), 16u);
   options.clip = "run";
-  EXPECT_NE(refusal(tube, options).find("0 'pose', 1 'bend', 2 ''"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube, options), "0 'pose', 1 'bend', 2 ''"));
   tube.animations.clear();
-  EXPECT_NE(refusal(tube).find("no clip"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube), "no clip"));
 }
 
 TEST_F(Convert, EndsWhereTheClipEnds) {
@@ -248,7 +249,7 @@ TEST_F(Convert, TakesTheFirstClipThatMovesTheSurface) {
   converted(tube);
   EXPECT_EQ(report.chosen_clip, 2);
   tube.animations = {camera, still};
-  EXPECT_NE(refusal(tube).find("none of its clips moves the surface"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube), "none of its clips moves the surface"));
   ImportOptions options;
   options.clip = "1";
   EXPECT_EQ(converted(tube, options).frame_count(), 31u) << "whoever names it gets it";
@@ -279,10 +280,10 @@ TEST_F(Convert, ComparesNamesOfClipsWithoutCaseWhereThatIsUnique) {
   EXPECT_EQ(chosen("walk"), 2);
   EXPECT_EQ(chosen("run"), 3);
   options.clip = "WALK";
-  EXPECT_NE(refusal(tube, options).find("2 clips have this name"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube, options), "2 clips have this name"));
   tube.animations[2].name = "Walk";
   options.clip = "Walk";
-  EXPECT_NE(refusal(tube, options).find("choose by number: 0 'bend', 1 'Walk', 2 'Walk'"), std::string::npos);
+  EXPECT_TRUE(says(refusal(tube, options), "choose by number: 0 'bend', 1 'Walk', 2 'Walk'"));
 }
 
 // Answers that speak of the file need the pose at rest, and where triangles and vertices come from.
@@ -404,16 +405,16 @@ TEST_F(Convert, SurveysAllComponentsAndTheStartsOfClips) {
 TEST_F(Convert, RefusesSkeletonsWithoutSurfaceAndTooManyFrames) {
   Character bones = bending_tube();
   bones.parts.clear();
-  EXPECT_NE(refusal(bones).find("5 nodes and 1 clips, but no triangles"), std::string::npos);
+  EXPECT_TRUE(says(refusal(bones), "5 nodes and 1 clips, but no triangles"));
   CharacterLimits few;
   few.frames = 20;
-  EXPECT_NE(refusal(bending_tube(), {}, few).find("lower --fps"), std::string::npos);
+  EXPECT_TRUE(says(refusal(bending_tube(), {}, few), "lower --fps"));
   few = {};
   few.cache_bytes = 1000;
-  EXPECT_NE(refusal(bending_tube(), {}, few).find("lower --fps"), std::string::npos);
+  EXPECT_TRUE(says(refusal(bending_tube(), {}, few), "lower --fps"));
   Character point = bending_tube();
   for (Vec3& x : point.parts[0].positions) x = Vec3(1, 2, 3);
-  EXPECT_NE(refusal(point).find("one point"), std::string::npos);
+  EXPECT_TRUE(says(refusal(point), "one point"));
 }
 
 }  // namespace

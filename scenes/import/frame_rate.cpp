@@ -22,9 +22,7 @@ void add_times(const std::vector<Key<Value>>& keys, std::vector<double>& times) 
 }
 template <std::size_t Width>
 void add_times(const Layered<Width>& layered, std::vector<double>& times) {
-  for (const Curve& curve : layered.base.axis) add_times(curve.keys, times);
-  for (const Layer<Width>& layer : layered.above)
-    for (const Curve& curve : layer.values.axis) add_times(curve.keys, times);
+  for_each_curve(layered, [&](const Curve& curve) { add_times(curve.keys, times); });
 }
 
 // Returns all moments at which a clip has keys, in order.

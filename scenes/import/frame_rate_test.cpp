@@ -87,10 +87,8 @@ TEST(FrameRate, OfTheUserGoesBeforeThatOfTheFileAndThatBeforeKeys) {
 
 TEST(FrameRate, OfAnFbxFileIsItsTimeMode) {
   const auto rate = [](int mode, double custom) {
-    FbxText file;
+    FbxText file = triangle_file();
     file.settings = property("TimeMode", {static_cast<double>(mode)}) + property("CustomFrameRate", {custom});
-    file.model(20, "node", 0, "", "Mesh");
-    file.triangle(10, 20);
     file.clip(0, 2);
     file.curve_node(60, 51, 20, "Lcl Translation", "");
     file.curve(61, 60, "d|X", {0, 2}, {0, 1});

@@ -7,6 +7,7 @@
 
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/skeleton.h"
 #include "scenes/import/file_system.h"
@@ -323,28 +324,25 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST_F(Model, NamesThatTwoNodesHaveAreRefused) {
   const std::string frame = " Frame Upper { }\n Mesh Flag {";
-  EXPECT_NE(refusal(write("twin.x", replaced(kXFile, " Mesh Flag {", frame)))
-                .find("'Upper': two nodes have this name"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal(write("twin.x", replaced(kXFile, " Mesh Flag {", frame))),
+                   "'Upper': two nodes have this name"));
   // A joint is named by its scoped id, which may occur again in another branch.
   const std::string twin = R"(<node id="other" sid="j2" name="other"/><node id="mesh")";
   std::string dae = replaced(kColladaFile, "low high", "low j2");
   dae = replaced(dae, R"(sid="high" name="high")", R"(sid="j2" name="second")");
   EXPECT_EQ(refusal(write("scoped.dae", dae)), "");
-  EXPECT_NE(
-      refusal(write("twin.dae", replaced(dae, R"(<node id="mesh")", twin))).find("bone 'j2': several nodes"),
-      std::string::npos);
+  EXPECT_TRUE(says(refusal(write("twin.dae", replaced(dae, R"(<node id="mesh")", twin))),
+                   "bone 'j2': several nodes"));
 }
 
 TEST_F(Model, KeysOfColladaThatAreNotJoinedByLinesAreRefusedUnlessDense) {
   for (const std::string kind : {"STEP", "BEZIER", "HERMITE", "CARDINAL"}) {
     const std::string bent = replaced(kColladaFile, "LINEAR LINEAR", kind + " LINEAR");
-    EXPECT_NE(
-        refusal(write("bent.dae", bent)).find("channel 'high/transform': its keys are joined by " + kind),
-        std::string::npos);
+    EXPECT_TRUE(
+        says(refusal(write("bent.dae", bent)), "channel 'high/transform': its keys are joined by " + kind));
     const Character dense = read_model(write("dense.dae", replaced(bent, ">0 0.5<", ">0 0.016<")), {});
     ASSERT_EQ(dense.notes.size(), 1u);
-    EXPECT_NE(dense.notes[0].find("1 animation channels of keys joined by curves"), std::string::npos);
+    EXPECT_TRUE(says(dense.notes[0], "1 animation channels of keys joined by curves"));
   }
   // Steps are accepted after the last key, which is joined to none, and between equal keys, where every way
   // of joining gives a straight line.
@@ -355,13 +353,11 @@ TEST_F(Model, KeysOfColladaThatAreNotJoinedByLinesAreRefusedUnlessDense) {
 }
 
 TEST_F(Model, RefusesOtherKindsAndDamage) {
-  EXPECT_NE(refusal(write("a.obj", "v 0 0 0\n")).find("'.obj' are not read"), std::string::npos);
-  EXPECT_NE(refusal(write("a", "xof")).find("has no extension, by which"), std::string::npos);
-  EXPECT_NE(refusal(write("cut.x", std::string(kXFile).substr(0, 300))).find("refuses it"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal(write("a.obj", "v 0 0 0\n")), "'.obj' are not read"));
+  EXPECT_TRUE(says(refusal(write("a", "xof")), "has no extension, by which"));
+  EXPECT_TRUE(says(refusal(write("cut.x", std::string(kXFile).substr(0, 300))), "refuses it"));
   // glTF 1 has the same extension, and assimp has an importer for it, which must not be used.
-  EXPECT_NE(refusal(write("old.gltf", R"({"asset":{"version":"1.0"},"meshes":{}})")).find("glTF 2"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal(write("old.gltf", R"({"asset":{"version":"1.0"},"meshes":{}})")), "glTF 2"));
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "scenes/import/fill_holes.h"
 
 namespace cscd::scenes {
@@ -70,8 +70,7 @@ Welded weld_surface(const RawSurface& raw, std::span<const std::vector<Vec3>> po
     if (share <= least || (collapsed == 0 && joined == 0)) return tried;
     const std::string what = std::to_string(collapsed) + " triangles collapse and " + std::to_string(joined) +
                              " edges get more than two triangles";
-    char number[32];
-    const std::string shown(number, std::to_chars(number, number + sizeof number, share).ptr);
+    const std::string shown = exact_text(share);
     if (wanted) throw InputError("--weld " + shown + ": " + what + "; choose a smaller tolerance");
     report.notes.push_back("weld tolerance " + shown + " is too large: " + what);
   }

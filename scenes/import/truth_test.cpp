@@ -18,9 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr double kFramesPerSecond = 30;
 
-// Reads the dataset /positions [frames,
-// vertices, 3] of an HDF5 file that need not be a point cache. Returns [frames][vertices], empty if there
-// is no such dataset.
+// Reads the dataset /positions [frames, vertices, 3] of an HDF5 file that need not be a point cache. Returns
+// [frames][vertices], empty if there is no such dataset.
 std::vector<std::vector<Vec3>> read_truth(const std::filesystem::path& path) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const Hdf5Handle positions(H5Dopen2(file.get(), "/positions", H5P_DEFAULT), H5Dclose);

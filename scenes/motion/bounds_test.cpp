@@ -3,28 +3,13 @@
 #include <limits>
 #include <numbers>
 
-#include "scenes/character/pose.h"
-#include "scenes/motion/character_motion.h"
 #include "scenes/motion/test_rigs.h"
 
 // The bounds on paths against paths that are sampled by the code that poses frames.
 namespace cscd::scenes {
 namespace {
 
-std::vector<Vec3> sampled(const Character& character, double seconds) {
-  const Animation& clip = character.animations.front();
-  std::vector<Vec3> out;
-  skin(character, pose_at(character, clip, clip.start + seconds),
-       weights_at(character, clip, clip.start + seconds), out);
-  return out;
-}
-
-MovingCharacter whole(const Character& character) {
-  MovingCharacter out{character, {}};
-  for (std::size_t v = 0; v < character.parts[0].positions.size(); ++v)
-    out.raw_vertex.push_back(static_cast<std::int32_t>(v));
-  return out;
-}
+using namespace test_rigs;
 
 std::vector<VertexId> all_vertices(std::size_t count) {
   std::vector<VertexId> out;
@@ -72,13 +57,13 @@ void compare(const CharacterMotion& motion, const Character& character, double f
 }
 
 TEST(MotionBounds, NoPathLeavesThem) {
-  for (const auto& [name, kinds] : test_rigs::kinds_of_rigs()) {
+  for (const auto& [name, kinds] : kinds_of_rigs()) {
     Seen seen;
     for (unsigned seed = 0; seed < 8; ++seed) {
-      test_rigs::RigMaker make(100 * seed + 7);
+      RigMaker make(100 * seed + 7);
       const Character character = make.tube(kinds, 1 + static_cast<int>(seed % 4));
       validate(character, {});
-      const CharacterMotion motion(whole(character));
+      const CharacterMotion motion(whole_surface(character));
       for (int n = 0; n < 10; ++n) {
         const double width = std::pow(10, make.uniform(-3, -0.5)), from = make.uniform(0, 1 - width);
         double to = from + width;
@@ -95,9 +80,9 @@ TEST(MotionBounds, NoPathLeavesThem) {
 }
 
 TEST(MotionBounds, GrowShortWithTheSquareOfTheSpan) {
-  test_rigs::RigMaker make(3);
+  RigMaker make(3);
   const Character character = make.tube({}, 3);
-  const CharacterMotion motion(whole(character));
+  const CharacterMotion motion(whole_surface(character));
   const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
   std::vector<double> bound(vertices.size());
   const auto largest = [&](double from, double to) {
@@ -111,12 +96,12 @@ TEST(MotionBounds, GrowShortWithTheSquareOfTheSpan) {
 
 // Each vertex has one bone, and the bone turns at a constant speed about an axis through its origin.
 TEST(MotionBounds, OfARigidBodyFallWithTheSquareOfTheSpan) {
-  test_rigs::RigMaker make(4);
+  RigMaker make(4);
   Character character = make.tube({}, 1);
   Animation& clip = character.animations[0];
   clip.channels = {{1, {}, {}, {}}};
   clip.channels[0].rotations = {{clip.start, {}}, {clip.start + 1, {std::cos(1), 0, 0, std::sin(1)}}};
-  const CharacterMotion motion(whole(character));
+  const CharacterMotion motion(whole_surface(character));
   const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
   std::vector<double> bound(vertices.size());
   double last = 0;
@@ -141,7 +126,7 @@ TEST(MotionBounds, OfARigidBodyFallWithTheSquareOfTheSpan) {
 
 // A tube whose vertices two joints take along by dual quaternions, half each.
 Character half_and_half() {
-  test_rigs::RigMaker make(9);
+  RigMaker make(9);
   Character character = make.tube({.dual = true}, 2);
   Part& part = character.parts[0];
   part.dual_quaternion.assign(part.positions.size(), 1);
@@ -166,17 +151,17 @@ TEST(MotionBounds, HoldTheAngularAccelerationOfDualQuaternions) {
   const Quaternion start{std::cos(0.5), 0, 0, std::sin(0.5)}, end{std::cos(0.9), 0, 0, std::sin(0.9)};
   clip.channels = {{2, {}, {}, {}}};
   clip.channels[0].rotations = {{clip.start, start, Between::cubic}, {clip.start + 1, end}};
-  const CharacterMotion motion(whole(character));
+  const CharacterMotion motion(whole_surface(character));
   Seen seen;
   compare(motion, character, 0, 0.009, 40, seen);
   EXPECT_EQ(seen.unbounded, 0u);
 }
 
 TEST(MotionBounds, PlacesAreThoseOfFrames) {
-  for (const auto& [name, kinds] : test_rigs::kinds_of_rigs()) {
-    test_rigs::RigMaker make(11);
+  for (const auto& [name, kinds] : kinds_of_rigs()) {
+    RigMaker make(11);
     const Character character = make.tube(kinds, 3);
-    const CharacterMotion motion(whole(character));
+    const CharacterMotion motion(whole_surface(character));
     const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
     std::vector<Vec3> at(vertices.size());
     std::vector<double> error(vertices.size());
@@ -201,7 +186,7 @@ TEST(MotionBounds, PlacesWithoutAnEnclosureHaveNoFiniteError) {
   clip.channels = {{2, {}, {}, {}}};
   clip.channels[0].rotations = {{clip.start, {std::cos(from), 0, 0, std::sin(from)}},
                                 {clip.start + 1, {std::cos(to), 0, 0, std::sin(to)}}};
-  const CharacterMotion motion(whole(character));
+  const CharacterMotion motion(whole_surface(character));
   const std::vector<VertexId> vertices = all_vertices(motion.vertex_count());
   std::vector<Vec3> at(vertices.size());
   std::vector<double> error(vertices.size());
@@ -221,7 +206,7 @@ TEST(MotionBounds, PlacesWithoutAnEnclosureHaveNoFiniteError) {
 TEST(MotionBounds, TurnsAreOffByNoMoreThanTheirRounding) {
   using Matrix = Eigen::Matrix<long double, 3, 3>;
   using Turn = Eigen::Quaternion<long double>;
-  test_rigs::RigMaker make(5);
+  RigMaker make(5);
   long double worst = 0;
   for (int i = 0; i < 20'000; ++i) {
     const auto quaternion = [&] {
@@ -268,11 +253,11 @@ TEST(MotionBounds, TurnsAreOffByNoMoreThanTheirRounding) {
 }
 
 TEST(MotionBounds, StepsAreJumps) {
-  test_rigs::RigMaker make(5);
+  RigMaker make(5);
   Character character = make.tube({}, 2);
   character.animations[0].start = 0.3;
   for (Key<Quaternion>& key : character.animations[0].channels[1].rotations) key.next = Between::constant;
-  const CharacterMotion motion(whole(character));
+  const CharacterMotion motion(whole_surface(character));
   const auto jump = motion.next_jump(0, 1);
   ASSERT_TRUE(jump);
   EXPECT_LT(jump->before, jump->after);

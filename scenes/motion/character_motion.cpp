@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "scenes/character/pose.h"
 
 namespace cscd::scenes {
@@ -248,8 +249,7 @@ double CharacterMotion::largest_deviation(double from, double to) const {
     for (const Place& place : place_)
       if (const auto part = static_cast<std::size_t>(place.part); moved.empty() || moved.back() != part)
         moved.push_back(part);
-    std::ranges::sort(moved);
-    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    sort_unique(moved);
     for (const std::size_t part : moved)
       if (!is_linear(part, weights)) return VertexPaths::largest_deviation(from, to);
     const JointBounds& of_joints = joint_bounds(span, moved);

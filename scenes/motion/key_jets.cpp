@@ -1,5 +1,7 @@
 #include "scenes/motion/key_jets.h"
 
+#include "scenes/character/sample.h"
+
 namespace cscd::scenes {
 namespace {
 
@@ -85,13 +87,6 @@ Jet jets_of_keys(const std::vector<Key<double>>& keys, const Span& span) {
         if (a.next == Between::line) return between(a.value, b.value, share);
         return cubic(a.value, a.leaving, b.value, b.arriving, Interval(b.time) - Interval(a.time), share);
       });
-}
-
-double end_slope(const std::vector<Key<double>>& keys, bool first) {
-  const Key<double>&a = first ? keys.front() : *(keys.end() - 2), &b = first ? keys[1] : keys.back();
-  if (a.next == Between::constant) return 0;
-  if (a.next == Between::line) return (b.value - a.value) / (b.time - a.time);
-  return first ? a.leaving : b.arriving;
 }
 
 template <std::size_t Width>

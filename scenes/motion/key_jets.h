@@ -57,12 +57,4 @@ const char* without_bounds(const Layered<Width>& layered, const Span& clip) {
   return nullptr;
 }
 
-// Calls visit(curve) for each curve of all layers.
-template <std::size_t Width, class Visit>
-void for_each_curve(const Layered<Width>& layered, const Visit& visit) {
-  for (const Curve& curve : layered.base.axis) visit(curve);
-  for (const Layer<Width>& layer : layered.above)
-    for (const Curve& curve : layer.values.axis) visit(curve);
-}
-
 }  // namespace cscd::scenes

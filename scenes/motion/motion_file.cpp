@@ -10,9 +10,11 @@
 namespace cscd::scenes {
 namespace {
 
-// Values whose bytes are all there is to them.
+// Values whose bytes are all there is to them. The structures among them hold doubles alone.
 template <class T>
-concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, Vec3> ||
+    std::is_same_v<T, Quaternion> || std::is_same_v<T, Transform> || std::is_same_v<T, ScaleTurnMove> ||
+    std::is_same_v<T, MorphTarget::Knot>;
 
 class Writer {
  public:
@@ -66,14 +68,6 @@ void visit(File& file, std::string& x) {
   x.resize(file.count(x.size()));
   file.bytes(x.data(), x.size());
 }
-template <class File>
-void visit(File& file, Vec3& x) {
-  file.bytes(x.data(), sizeof(Vec3));
-}
-template <class File>
-void visit(File& file, Quaternion& x) {
-  file.bytes(&x, sizeof x);
-}
 template <class File, class T, std::size_t N>
 void visit(File& file, std::array<T, N>& list);
 template <class File, class T>
@@ -86,14 +80,6 @@ void visit_all(File& file, Members&... members) {
   (visit(file, members), ...);
 }
 
-template <class File>
-void visit(File& file, Transform& x) {
-  visit_all(file, x.column, x.origin);
-}
-template <class File>
-void visit(File& file, ScaleTurnMove& x) {
-  visit_all(file, x.move, x.rotation, x.scale);
-}
 template <class File>
 void visit(File& file, FollowedScale& x) {
   visit_all(file, x.node, x.inverse);
@@ -109,10 +95,6 @@ void visit(File& file, Joint& x) {
 template <class File>
 void visit(File& file, Influence& x) {
   visit_all(file, x.joint, x.weight);
-}
-template <class File>
-void visit(File& file, MorphTarget::Knot& x) {
-  visit_all(file, x.driven, x.weight);
 }
 template <class File>
 void visit(File& file, MorphTarget& x) {
@@ -172,7 +154,7 @@ void visit(File& file, std::array<T, N>& list) {
 template <class File, class T>
 void visit(File& file, std::vector<T>& list) {
   list.resize(file.count(list.size()));
-  if constexpr (Plain<T> || std::is_same_v<T, Vec3>) {
+  if constexpr (Plain<T>) {
     if (!list.empty()) file.bytes(list.data(), list.size() * sizeof(T));
   } else {
     for (T& x : list) visit(file, x);

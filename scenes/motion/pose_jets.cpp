@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/sort_unique.h"
+
 namespace cscd::scenes {
 namespace {
 
@@ -12,11 +14,6 @@ std::size_t at(int index) {
 
 JetVector fixed(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
-}
-
-void sort_out(std::vector<double>& times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
 // The first and the last key of a curve are corners too: there it stops, or goes on in a straight line.
@@ -68,7 +65,7 @@ PoseJets::PoseJets(const Character& character, const Animation& animation)
     append(corners_, breaks.corners);
     append(jumps_, breaks.jumps);
     append(breaks.corners, breaks.jumps);
-    sort_out(breaks.corners);
+    sort_unique(breaks.corners);
     driven_.push_back(
         {&channel, parts_at_rest(character.nodes[at(channel.node)]), std::move(breaks.corners)});
   }
@@ -78,8 +75,8 @@ PoseJets::PoseJets(const Character& character, const Animation& animation)
       for_each_curve(weight, [&](const Curve& curve) { add_breaks(curve, breaks); });
   append(corners_, breaks.corners);
   append(jumps_, breaks.jumps);
-  sort_out(corners_);
-  sort_out(jumps_);
+  sort_unique(corners_);
+  sort_unique(jumps_);
 }
 
 std::string PoseJets::refused() const {
@@ -230,7 +227,7 @@ PoseJets::Weights PoseJets::weights(const Span& span) const {
       Breaks breaks;
       for_each_curve(morph.weights[t], [&](const Curve& curve) { add_breaks(curve, breaks); });
       append(breaks.corners, breaks.jumps);
-      sort_out(breaks.corners);
+      sort_unique(breaks.corners);
       const Jet driven = hull_of_pieces(breaks.corners, span,
                                         [&](const Span& piece) { return jets_of(morph.weights[t], piece); });
       out.of_part[at(morph.part)][t] =

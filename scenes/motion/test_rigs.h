@@ -7,7 +7,8 @@
 #include <set>
 
 #include "core/mesh/test_shapes.h"
-#include "scenes/character/character.h"
+#include "scenes/character/pose.h"
+#include "scenes/motion/character_motion.h"
 
 namespace cscd::scenes::test_rigs {
 
@@ -273,6 +274,23 @@ inline std::vector<std::pair<std::string, Kinds>> kinds_of_rigs() {
       {"mirrored dual quaternions", {.scale = true, .mirror = true, .dual = true, .most_turn = 0.15}},
       {"everything linear",
        {.cubic = true, .constant = true, .scale = true, .mirror = true, .morph = true, .response = true}}};
+}
+
+// All of a rig's surface.
+inline MovingCharacter whole_surface(const Character& character) {
+  MovingCharacter out{character, {}};
+  for (std::size_t v = 0; v < character.parts[0].positions.size(); ++v)
+    out.raw_vertex.push_back(static_cast<std::int32_t>(v));
+  return out;
+}
+
+// Where the vertices are so many seconds after the clip's start, by the code that poses frames.
+inline std::vector<Vec3> sampled(const Character& character, double seconds) {
+  const Animation& clip = character.animations.front();
+  std::vector<Vec3> out;
+  skin(character, pose_at(character, clip, clip.start + seconds),
+       weights_at(character, clip, clip.start + seconds), out);
+  return out;
 }
 
 }  // namespace cscd::scenes::test_rigs

@@ -7,14 +7,14 @@
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
-#include "scenes/character/pose.h"
-#include "scenes/motion/character_motion.h"
 #include "scenes/motion/test_rigs.h"
 
 // Verdicts about the true motion of random skinned tubes and hands that bend and twist by up to half a turn
 // in a step, against exact static tests of poses that are sampled by the code that poses frames.
 namespace cscd::scenes {
 namespace {
+
+using namespace test_rigs;
 
 constexpr double kHalfTurn = 0.5;
 
@@ -31,25 +31,10 @@ TriangleMesh mesh_of(const Character& character) {
   return TriangleMesh(triangles, character.parts[0].positions.size());
 }
 
-MovingCharacter whole_surface(const Character& character) {
-  MovingCharacter out{character, {}};
-  for (std::size_t v = 0; v < character.parts[0].positions.size(); ++v)
-    out.raw_vertex.push_back(static_cast<std::int32_t>(v));
-  return out;
-}
-
 double mean_edge_of(const TriangleMesh& mesh, std::span<const Vec3> at) {
   double sum = 0;
   for (const Edge& e : mesh.edges()) sum += (at[+e[0]] - at[+e[1]]).norm();
   return sum / static_cast<double>(mesh.edge_count());
-}
-
-std::vector<Vec3> posed(const Character& character, double seconds) {
-  const Animation& clip = character.animations.front();
-  std::vector<Vec3> out;
-  skin(character, pose_at(character, clip, clip.start + seconds),
-       weights_at(character, clip, clip.start + seconds), out);
-  return out;
 }
 
 struct Tally {
@@ -62,7 +47,7 @@ struct Tally {
 void compare_step(const Character& character, int samples, Tally& tally) {
   const TriangleMesh mesh = mesh_of(character);
   const CharacterMotion motion(whole_surface(character));
-  const std::vector<Vec3> start = posed(character, 0);
+  const std::vector<Vec3> start = sampled(character, 0);
   const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
   EmbeddingTest plain(mesh, start);
   if (!plain.embedded(start)) return;
@@ -73,7 +58,7 @@ void compare_step(const Character& character, int samples, Tally& tally) {
   bool crosses = false;
   // The first samples may be of any time; those of a `clear` are all asked about.
   for (int i = 0; i <= samples && !crosses; ++i)
-    crosses = !plain.embedded(posed(character, i / double(samples)));
+    crosses = !plain.embedded(sampled(character, i / double(samples)));
   tally.crossing += crosses;
   if (answer.verdict == TrueVerdict::clear) {
     EXPECT_FALSE(crosses) << "missed by a clear";
@@ -82,7 +67,7 @@ void compare_step(const Character& character, int samples, Tally& tally) {
     ASSERT_TRUE(answer.pair);
     EXPECT_LE(answer.to - answer.from, 1);
     const auto meet_at = [&](double time) {
-      return plain.find_all(posed(character, time), 1 << 20).contains(*answer.pair);
+      return plain.find_all(sampled(character, time), 1 << 20).contains(*answer.pair);
     };
     // Both triangles may cross before by other edges.
     EXPECT_TRUE(meet_at(answer.parts_again ? answer.from : answer.to));
@@ -161,7 +146,7 @@ TEST(TrueMotion, OfRigidAndArticulatedBodiesClosesInOnTheTimeOfContact) {
     const Character character = spindle.character();
     const TriangleMesh mesh = mesh_of(character);
     const CharacterMotion motion(whole_surface(character));
-    const std::vector<Vec3> start = posed(character, 0);
+    const std::vector<Vec3> start = sampled(character, 0);
     const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
     const double contact = spindle.contact();
     for (const double share : {0x1p-4, 0x1p-8, 0x1p-12, 0x1p-16, 0x1p-20}) {
@@ -180,7 +165,7 @@ template <class Make>
 void compare_steps(const Make& rig, int steps, int samples, unsigned seed, Tally& tally) {
   for (int step = 0; step < steps; ++step) {
     SCOPED_TRACE("step " + std::to_string(step) + ", seed " + std::to_string(seed));
-    test_rigs::RigMaker make(seed + 1000 * static_cast<unsigned>(step));
+    RigMaker make(seed + 1000 * static_cast<unsigned>(step));
     compare_step(rig(make, step), samples, tally);
     if (testing::Test::HasFailure()) break;
   }
@@ -189,13 +174,13 @@ void compare_steps(const Make& rig, int steps, int samples, unsigned seed, Tally
 TEST(TrueMotion, VerdictsOnRandomTubesAndHandsAreTrue) {
   const int steps = wanted("CSCD_TRUE_MOTION_STEPS", 36), samples = wanted("CSCD_TRUE_MOTION_SAMPLES", 60);
   Tally all;
-  for (const auto& [name, kinds] : std::vector<std::pair<std::string, test_rigs::Kinds>>{
+  for (const auto& [name, kinds] : std::vector<std::pair<std::string, Kinds>>{
            {"linear", {}}, {"cubic", {.cubic = true}}, {"dual quaternions", {.dual = true}}}) {
     SCOPED_TRACE(name);
-    const auto tube = [&, &kinds = kinds](test_rigs::RigMaker& make, int step) {
+    const auto tube = [&, &kinds = kinds](RigMaker& make, int step) {
       return make.bending_tube(kinds, kHalfTurn, 2 + step % 4);
     };
-    const auto hand = [&, &kinds = kinds](test_rigs::RigMaker& make, int step) {
+    const auto hand = [&, &kinds = kinds](RigMaker& make, int step) {
       return make.bending_hand(kinds, step % 4 == 0 ? kHalfTurn : kHalfTurn / 4);
     };
     compare_steps(tube, steps / 6, samples, 17, all);

@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "scenes/shape/limb_weights.h"
 
 namespace cscd::scenes {
@@ -122,8 +123,7 @@ class QuadGraph {
         pairs.push_back({quad[k], quad[(k + 1) % 4]});
         pairs.push_back({quad[(k + 1) % 4], quad[k]});
       }
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    sort_unique(pairs);
     for (const auto& [from, to] : pairs) {
       ++offset_[+from + 1];
       to_.push_back(to);

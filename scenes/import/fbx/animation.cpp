@@ -207,8 +207,7 @@ class ClipReader {
     if (mixes && !xyz && axes_of(turns) > 1)
       throw InputError(
           "a layer overrides rotations with a weight and by layer, in an order of axes other than XYZ; bake "
-          "the "
-          "animation to one layer on export");
+          "the animation to one layer on export");
   }
 
   // Returns the number of axes about which the layers turn. Rotations about a single axis commute.

@@ -13,9 +13,7 @@ constexpr double kConstant = 2, kNext = 0x102, kLinear = 4, kCubicUser = 0x408, 
 // A triangle on one node whose x is a curve.
 FbxText sliding(const std::vector<double>& times, const std::vector<double>& values,
                 const std::vector<double>& flags = {}, const std::vector<double>& data = {}) {
-  FbxText file;
-  file.model(20, "node", 0, property("Lcl Translation", {9, 8, 7}), "Mesh");
-  file.triangle(10, 20);
+  FbxText file = triangle_file(property("Lcl Translation", {9, 8, 7}));
   file.clip(0, 2);
   file.curve_node(60, 51, 20, "Lcl Translation", property("d|Y", {5}));
   file.curve(61, 60, "d|X", times, values, flags, data);
@@ -216,31 +214,28 @@ TEST(FbxAnimation, LayersTurnAndScaleByChannelOrAsMaps) {
         }
         const Transform expected = product({moved({0, 5, 7}), turn, scaled_by(scale)});
         const std::vector<Vec3> was = vertices_at(character, time);
-        const Vec3 points[3] = {{1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}};
         for (std::size_t v = 0; v < 3; ++v)
-          EXPECT_LT((was[v] - expected(points[v])).norm(), 1e-9)
+          EXPECT_LT((was[v] - expected(kPoints[v])).norm(), 1e-9)
               << "mode " << mode << ", by channel " << by_channel << ", time " << time << ", vertex " << v;
       }
     }
 }
 
 TEST(FbxAnimation, LayersOfRotationsWithoutADeterminedResultAreRefusedByName) {
-  EXPECT_EQ(refusal_of(turning(2, 1, 4).text()), "");
-  EXPECT_NE(refusal_of(turning(2, 0, 4).text())
-                .find("'node', clip 'clip': a layer overrides rotations with a weight and by layer"),
-            std::string::npos);
+  EXPECT_EQ(refusal_of(turning(2, 1, 4)), "");
+  EXPECT_TRUE(says(refusal_of(turning(2, 0, 4)),
+                   "'node', clip 'clip': a layer overrides rotations with a weight and by layer"));
   FbxText mixed = turning(0, 0);
   mixed.layer(53, property("RotationAccumulationMode", {1}));
   mixed.curve_node(95, 53, 20, "Lcl Rotation", property("d|X", {10}));
-  EXPECT_NE(refusal_of(mixed.text()).find("a layer adds angles by channel above"), std::string::npos);
+  EXPECT_TRUE(says(refusal_of(mixed), "a layer adds angles by channel above"));
   FbxText bypass = layered(property("BlendModeBypass", {131584}), 100);
-  EXPECT_EQ(refusal_of(bypass.text()), "") << "switches and enumerations";
+  EXPECT_EQ(refusal_of(bypass), "") << "switches and enumerations";
   bypass = layered(property("BlendModeBypass", {1 << 14}), 100);
-  EXPECT_NE(refusal_of(bypass.text()).find("layer 'layer52' does not apply its blend mode"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of(bypass), "layer 'layer52' does not apply its blend mode"));
   FbxText nan = layered("", 100);
   nan.curve_node(90, 52, 52, "Weight", property("d|Weight", {std::nan("")}));
-  EXPECT_NE(refusal_of(nan.text()).find("layer 'layer52' has a weight that is no number"), std::string::npos);
+  EXPECT_TRUE(says(refusal_of(nan), "layer 'layer52' has a weight that is no number"));
 }
 
 // A curve from (0, 1) over (0.25, 3) to (1, 2) that goes on by `kind` in both directions.
@@ -272,7 +267,7 @@ TEST(FbxAnimation, CurvesGoOnBeyondTheirKeys) {
   const Character unknown = read(going_on("Q"));
   EXPECT_EQ(x_at(unknown, 4), 2);
   ASSERT_EQ(unknown.notes.size(), 1u);
-  EXPECT_NE(unknown.notes[0].find("go on in an unknown way"), std::string::npos);
+  EXPECT_TRUE(says(unknown.notes[0], "go on in an unknown way"));
 }
 
 // A file can ask for 10^18 repetitions of keys that are one tick apart.
@@ -291,10 +286,9 @@ TEST(FbxAnimation, RefusesWhatItCannotShow) {
   FbxText pivot = sliding({0, 1}, {0, 4}, {kLinear, kLinear});
   pivot.curve_node(90, 51, 20, "RotationPivot", "");
   pivot.curve(91, 90, "d|X", {0, 1}, {0, 4}, {kLinear, kLinear});
-  EXPECT_NE(refusal_of(pivot.text()).find("animates its RotationPivot"), std::string::npos);
-  EXPECT_NE(refusal_of(sliding({0, 1}, {0}, {}).text()).find("2 times and 1 values"), std::string::npos);
-  EXPECT_NE(refusal_of(sliding({0, 1}, {0, 1}, {kLinear}).text()).find("do not fit its 2 keys"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of(pivot), "animates its RotationPivot"));
+  EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0}, {})), "2 times and 1 values"));
+  EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0, 1}, {kLinear})), "do not fit its 2 keys"));
 }
 
 TEST(FbxAnimation, KeysThatAreNoneAreLeftOutWithANote) {

@@ -19,8 +19,7 @@ void require_new_head(std::string_view text) {
   if (at == head.npos)
     throw InputError(
         "is no FBX file, whatever its name says: it neither begins as a binary one does nor names an "
-        "FBXVersion; "
-        "give it the extension of its own format");
+        "FBXVersion; give it the extension of its own format");
   const std::size_t digits = head.find_first_not_of(" \t", at + kName.size());
   const std::size_t end = std::min(head.find_first_of(" \t\r\n;", digits), head.size());
   WrittenNumber version{};

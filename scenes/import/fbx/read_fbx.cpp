@@ -290,8 +290,7 @@ class Builder {
 
   // The keys of a channel are copied for each of its shapes, which a small file can make many.
   void count_copied(const Layered<1>& driven) {
-    copied_keys_ += driven.base.axis[0].keys.size();
-    for (const Layer<1>& layer : driven.above) copied_keys_ += layer.values.axis[0].keys.size();
+    for_each_curve(driven, [this](const Curve& curve) { copied_keys_ += curve.keys.size(); });
     if (copied_keys_ > limits_.keys)
       throw InputError("has more than " + std::to_string(limits_.keys) +
                        " animation keys of blend shapes; resample it");

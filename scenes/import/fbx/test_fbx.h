@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/character/pose.h"
 #include "scenes/import/fbx/read_fbx.h"
 
@@ -59,6 +60,7 @@ struct FbxText {
         array("Vertices", points) + array("PolygonVertexIndex", polygons) + body);
     for (const int model : models) connect(id, model);
   }
+  // Adds a mesh of kPoints.
   void triangle(int id, int model) { mesh(id, {model}, {1, 0, 0, 0, 1, 0, 0.5, 0.25, 1}, {0, 1, -3}); }
   void skin(int id, int geometry) {
     add("Deformer", id, "skin", "Skin", "");
@@ -110,6 +112,16 @@ struct FbxText {
   }
 };
 
+inline const Vec3 kPoints[3] = {{1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}};
+
+// The model 20 with the triangle 10.
+inline FbxText triangle_file(const std::string& properties = {}) {
+  FbxText file;
+  file.model(20, "node", 0, properties, "Mesh");
+  file.triangle(10, 20);
+  return file;
+}
+
 inline Character read(const FbxText& file) {
   const std::string text = file.text();
   Character character = read_fbx(text, {});
@@ -124,6 +136,10 @@ inline std::string refusal_of(const std::string& bytes, const CharacterLimits& l
   });
 }
 
+inline std::string refusal_of(const FbxText& file, const CharacterLimits& limits = {}) {
+  return refusal_of(file.text(), limits);
+}
+
 inline std::vector<Vec3> vertices_at(const Character& character, double seconds) {
   std::vector<Vec3> out;
   if (character.animations.empty())
@@ -132,6 +148,11 @@ inline std::vector<Vec3> vertices_at(const Character& character, double seconds)
     skin(character, pose_at(character, character.animations[0], seconds),
          weights_at(character, character.animations[0], seconds), out);
   return out;
+}
+
+inline void expect_at(const Vec3& was, const Vec3& expected, const std::string& what = {}) {
+  EXPECT_LT((was - expected).norm(), 1e-9)
+      << what << ": " << was.transpose() << " instead of " << expected.transpose();
 }
 
 // The maps of the transform's formula, written out a second time so that tests do not depend on the reader.

@@ -49,30 +49,8 @@ void spoil_member(json& root, Random& random) {
   std::vector<json*> members;
   collect(root, members);
   json& member = *members[random() % members.size()];
-  static const json kValues = {-1,
-                               0,
-                               1,
-                               2,
-                               5,
-                               0.5,
-                               1e300,
-                               1e-300,
-                               -1e18,
-                               255,
-                               65536,
-                               5121,
-                               5126,
-                               "x",
-                               nullptr,
-                               true,
-                               json::array(),
-                               json::object(),
-                               "VEC3",
-                               "MAT4",
-                               2147483647,
-                               4294967296,
-                               1000000,
-                               18446744073709551615u};
+  static const json kValues = json::parse(R"([-1, 0, 1, 2, 5, 0.5, 1e300, 1e-300, -1e18, 255, 65536, 5121,
+      5126, "x", null, true, [], {}, "VEC3", "MAT4", 2147483647, 4294967296, 1000000, 18446744073709551615])");
   if (random() % 8 == 0 && member.is_structured() && !member.empty()) {
     if (member.is_object())
       member.erase(std::next(member.begin(), static_cast<std::ptrdiff_t>(random() % member.size())).key());

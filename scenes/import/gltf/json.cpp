@@ -22,50 +22,28 @@ struct Rule {
   Kind kind;
   std::size_t length = 0;  // of a list of numbers; 0: any length
 };
-const std::map<std::string_view, Rule> kRules = {{"scene", {Kind::whole}},
-                                                 {"mesh", {Kind::whole}},
-                                                 {"skin", {Kind::whole}},
-                                                 {"node", {Kind::whole}},
-                                                 {"bufferView", {Kind::whole}},
-                                                 {"buffer", {Kind::whole}},
-                                                 {"byteOffset", {Kind::whole}},
-                                                 {"byteLength", {Kind::whole}},
-                                                 {"byteStride", {Kind::whole}},
-                                                 {"componentType", {Kind::whole}},
-                                                 {"count", {Kind::whole}},
-                                                 {"input", {Kind::whole}},
-                                                 {"output", {Kind::whole}},
-                                                 {"sampler", {Kind::whole}},
-                                                 {"mode", {Kind::whole}},
-                                                 {"indices", {Kind::whole}},
-                                                 {"inverseBindMatrices", {Kind::whole}},
-                                                 {"children", {Kind::wholes}},
-                                                 {"joints", {Kind::wholes}},
-                                                 {"nodes", {Kind::wholes}},
-                                                 {"attributes", {Kind::wholes_by_name}},
-                                                 {"matrix", {Kind::numbers, 16}},
-                                                 {"rotation", {Kind::numbers, 4}},
-                                                 {"scale", {Kind::numbers, 3}},
-                                                 {"translation", {Kind::numbers, 3}},
-                                                 {"weights", {Kind::numbers}},
-                                                 {"targets", {Kind::by_name_list}},
-                                                 {"uri", {Kind::text}},
-                                                 {"type", {Kind::text}},
-                                                 {"path", {Kind::text}},
-                                                 {"interpolation", {Kind::text}},
-                                                 {"name", {Kind::text}},
-                                                 {"filter", {Kind::text}},
-                                                 {"normalized", {Kind::flag}},
-                                                 {"fallback", {Kind::flag}},
-                                                 {"sparse", {Kind::object}},
-                                                 {"values", {Kind::object}},
-                                                 {"target", {Kind::object}},
-                                                 {"extensions", {Kind::object}},
-                                                 {kMeshopt, {Kind::object}},
-                                                 {kDraco, {Kind::object}},
-                                                 {"primitives", {Kind::objects}},
-                                                 {"channels", {Kind::objects}},
-                                                 {"samplers", {Kind::objects}}};
+std::map<std::string_view, Rule> make_rules() {
+  std::map<std::string_view, Rule> rules{{"matrix", {Kind::numbers, 16}},
+                                         {"rotation", {Kind::numbers, 4}},
+                                         {"scale", {Kind::numbers, 3}},
+                                         {"translation", {Kind::numbers, 3}}};
+  const auto add = [&](Kind kind, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) rules[name] = {kind};
+  };
+  add(Kind::whole,
+      {"scene", "mesh", "skin", "node", "bufferView", "buffer", "byteOffset", "byteLength", "byteStride",
+       "componentType", "count", "input", "output", "sampler", "mode", "indices", "inverseBindMatrices"});
+  add(Kind::wholes, {"children", "joints", "nodes"});
+  add(Kind::wholes_by_name, {"attributes"});
+  add(Kind::numbers, {"weights"});
+  add(Kind::by_name_list, {"targets"});
+  add(Kind::text, {"uri", "type", "path", "interpolation", "name", "filter"});
+  add(Kind::flag, {"normalized", "fallback"});
+  add(Kind::object, {"sparse", "values", "target", "extensions", kMeshopt, kDraco});
+  add(Kind::objects, {"primitives", "channels", "samplers"});
+  return rules;
+}
+const std::map<std::string_view, Rule> kRules = make_rules();
 // Members that this reader ignores and that tinygltf would only copy.
 constexpr std::array kUnread = {"extras", "min", "max", "camera", "skeleton", "material"};
 

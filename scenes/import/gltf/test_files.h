@@ -8,6 +8,7 @@
 
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
+#include "scenes/base/test_says.h"
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/import/gltf/read_gltf.h"
@@ -185,5 +186,20 @@ struct TubeFile : TestFile {
     animate(kUpper, "rotation", {0, 1}, accessor(std::vector<float>{0, 0, 0, 1, 0, 0, half, half}, "VEC4"));
   }
 };
+
+// A member of a file, the value that spoils the member, and words of the refusal that names what is wrong.
+struct Spoiled {
+  const char *where, *value, *words;
+};
+
+// Spoils one member of the file at a time. `within` is the JSON pointer to which the members are relative.
+inline void expect_refusals(const TubeFile& whole, const std::string& within,
+                            std::initializer_list<Spoiled> members) {
+  for (const auto& [where, value, words] : members) {
+    TubeFile file = whole;
+    file.root[json::json_pointer(within + where)] = json::parse(value);
+    EXPECT_TRUE(says(refusal(file), words)) << where << " = " << value;
+  }
+}
 
 }  // namespace cscd::scenes::gltf
