@@ -58,11 +58,11 @@ Shape resized_shape(const Scene& scene, std::size_t triangles) {
   return shape;
 }
 
-std::vector<Pose> poses_at(const Scene& scene, std::span<const std::size_t> frames) {
+std::vector<BonePose> poses_at(const Scene& scene, std::span<const std::size_t> frames) {
   const Shape shape = make_shape(scene.shape, scene.shape_parameters);
   EffectSequence skeleton(calls_of(scene, Pace::substep), shape, scene.substeps);
   SceneState state(shape);
-  std::vector<Pose> poses;
+  std::vector<BonePose> poses;
   std::size_t at = 0;
   for (const std::size_t frame : frames) {
     if (frame >= scene.frames || frame < at)
@@ -74,7 +74,7 @@ std::vector<Pose> poses_at(const Scene& scene, std::span<const std::size_t> fram
   return poses;
 }
 
-std::vector<Vec3> carried(const Scene& scene, const Shape& shape, const Pose& pose) {
+std::vector<Vec3> carried(const Scene& scene, const Shape& shape, const BonePose& pose) {
   SceneState state(shape);
   if (pose.frame == 0) return std::move(state.positions);
   state.bones = pose.bones;

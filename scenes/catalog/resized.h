@@ -12,7 +12,7 @@
 namespace cscd::scenes {
 
 // The bones of a scene in one frame.
-struct Pose {
+struct BonePose {
   std::size_t frame = 0;
   std::vector<Bone> bones;
   std::vector<Eigen::Matrix3d> rotations;  // [bones]; rotation of each bone from its reference pose
@@ -28,9 +28,9 @@ Shape resized_shape(const Scene& scene, std::size_t triangles);
 
 // Returns the poses in these frames, which must ascend. Throws InputError for a scene whose surface acts
 // back on its steps (contact_response), and for a frame that the scene does not have.
-std::vector<Pose> poses_at(const Scene& scene, std::span<const std::size_t> frames);
+std::vector<BonePose> poses_at(const Scene& scene, std::span<const std::size_t> frames);
 
 // Returns the positions, [vertices], to which the scene's surface effects move `shape` in a pose.
-std::vector<Vec3> carried(const Scene& scene, const Shape& shape, const Pose& pose);
+std::vector<Vec3> carried(const Scene& scene, const Shape& shape, const BonePose& pose);
 
 }  // namespace cscd::scenes

@@ -20,9 +20,9 @@ TEST(Resized, SceneAtItsOwnSizeIsTheSceneBitByBit) {
   run_scene(scene, [&](ClipHeader header) -> FrameSink& { return clip.emplace(std::move(header)); });
   const Shape shape = resized_shape(scene, triangle_count(scene));
   const std::size_t frames[] = {0, 2, 5};
-  const std::vector<Pose> poses = poses_at(scene, frames);
+  const std::vector<BonePose> poses = poses_at(scene, frames);
   ASSERT_EQ(poses.size(), 3u);
-  for (const Pose& pose : poses) {
+  for (const BonePose& pose : poses) {
     EXPECT_TRUE(std::ranges::equal(carried(scene, shape, pose), clip->frame(pose.frame).positions))
         << "frame " << pose.frame;
     for (std::size_t b = 0; b < pose.bones.size(); ++b)
@@ -48,7 +48,7 @@ TEST(Resized, FinerSurfacesFollowTheSameMotion) {
   for (const char* name : {"rope", "urchin"}) {
     const Scene scene = load_scene(name);
     const std::size_t frames[] = {30};
-    const Pose pose = poses_at(scene, frames).front();
+    const BonePose pose = poses_at(scene, frames).front();
     const auto middle = [&](std::size_t triangles) {
       Vec3 sum = Vec3::Zero();
       const std::vector<Vec3> positions = carried(scene, resized_shape(scene, triangles), pose);

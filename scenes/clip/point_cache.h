@@ -14,8 +14,8 @@ namespace cscd::scenes {
 //   /bones/parent         int32   [bones], -1 for a root                            (optional)
 //   /bones/head, tail     float64 [frames, bones, 3]                                 (with parent)
 //   /predicted            float64 [frames - 1, vertices, 3]: ends of the intervals   (optional)
-//   attribute `up` of /    text, "x" to "z" or "-x" to "-z": the axis that points up    (optional)
 //   /bones/predicted_head, predicted_tail float64 [frames - 1, bones, 3]         (with predicted and parent)
+//   attribute up of /     text, "x" to "z" or "-x" to "-z": the axis that points up (optional)
 // Positions are used exactly as stored. All errors are InputError and name the file, the dataset and the
 // element.
 

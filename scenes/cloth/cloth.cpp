@@ -44,7 +44,8 @@ Cloth::Cloth(const TriangleMesh& mesh, std::span<const Vec3> rest, const ClothOp
 }
 
 void Cloth::step(std::vector<Vec3>& positions, double h, std::span<const Led> led,
-                 std::span<const MovingBall> balls, std::optional<double> volume, const MovingSurface* body) {
+                 std::span<const BallObstacle> balls, std::optional<double> volume,
+                 const MovingSurface* body) {
   predict(positions, h, led);
   if (options_.thickness > 0) find_close_vertices(positions);
   restore(positions, edges_, options_.stretch_compliance / (h * h));
@@ -153,11 +154,11 @@ void Cloth::push_apart(std::vector<Vec3>& positions) {
   }
 }
 
-void Cloth::keep_outside(std::vector<Vec3>& positions, std::span<const MovingBall> balls) const {
+void Cloth::keep_outside(std::vector<Vec3>& positions, std::span<const BallObstacle> balls) const {
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (inverse_mass_[v] == 0) continue;
     Vec3& place = positions[v];
-    for (const MovingBall& ball : balls) {
+    for (const BallObstacle& ball : balls) {
       const Vec3 from = place - ball.end;
       const double distance = from.norm(), depth = ball.radius - distance;
       if (depth <= 0 || distance == 0) continue;

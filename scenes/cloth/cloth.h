@@ -24,7 +24,7 @@ struct ClothOptions {
 };
 
 // A ball that moves, at the start and the end of a step. No vertex gets into it.
-struct MovingBall {
+struct BallObstacle {
   double radius;
   Vec3 start, end;
 };
@@ -70,7 +70,7 @@ class Cloth {
   // Where somebody has moved vertices since the last step, such as a response to contacts, the cloth goes on
   // from there, and the move counts as motion during one frame.
   void step(std::vector<Vec3>& positions, double h, std::span<const Led> led,
-            std::span<const MovingBall> balls, std::optional<double> volume,
+            std::span<const BallObstacle> balls, std::optional<double> volume,
             const MovingSurface* body = nullptr);
 
   double rest_volume() const { return rest_volume_; }
@@ -85,7 +85,7 @@ class Cloth {
   void restore_volume(std::vector<Vec3>& positions, double volume, double softness);
   void find_close_vertices(const std::vector<Vec3>& positions);
   void push_apart(std::vector<Vec3>& positions);
-  void keep_outside(std::vector<Vec3>& positions, std::span<const MovingBall> balls) const;
+  void keep_outside(std::vector<Vec3>& positions, std::span<const BallObstacle> balls) const;
   void keep_off(std::vector<Vec3>& positions, const MovingSurface& body) const;
   void limit_speed(std::vector<Vec3>& positions) const;
   Vec3 rubbed(const Vec3& slip, double depth) const;

@@ -274,7 +274,7 @@ TEST(Cloth, StaysOutOfABallAndAboveTheFloor) {
                .friction = 0.3,
                .floor = -8});
   std::vector<Vec3> positions = shape.positions;
-  const MovingBall ball{4, Vec3(0.1, 0.2, -5), Vec3(0.1, 0.2, -5)};
+  const BallObstacle ball{4, Vec3(0.1, 0.2, -5), Vec3(0.1, 0.2, -5)};
   for (int i = 0; i < 1600; ++i) cloth.step(positions, 1.0 / 16, {}, {&ball, 1}, std::nullopt);
   double lowest = 0;
   for (const Vec3& position : positions) {

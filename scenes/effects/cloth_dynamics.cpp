@@ -193,7 +193,7 @@ class ClothDynamics final : public Effect {
   std::vector<Ball> balls_;
   std::vector<Grip> grips_;
   std::optional<KeyCurve> volume_;
-  std::vector<MovingBall> moving_;
+  std::vector<BallObstacle> moving_;
   std::vector<Cloth::Led> led_;
   std::vector<Vec3> positions_;  // [vertices of the cloth]
   int frame_ = 0;                // the frame that the last step was a part of

@@ -19,7 +19,7 @@ std::size_t last_frame(std::size_t start, double step) {
 }
 
 // The bones at all frames that the subject needs.
-std::vector<scenes::Pose> poses_of(const scenes::Scene& scene, const ScaleSubject& subject) {
+std::vector<scenes::BonePose> poses_of(const scenes::Scene& scene, const ScaleSubject& subject) {
   std::set<std::size_t> frames;
   for (const std::size_t start : subject.starts) {
     frames.insert(start);
@@ -34,13 +34,13 @@ struct Moments {
 };
 
 Moments posed_moments(const scenes::Scene& scene, const scenes::Shape& shape, const ScaleSubject& subject) {
-  const std::vector<scenes::Pose> poses = poses_of(scene, subject);
+  const std::vector<scenes::BonePose> poses = poses_of(scene, subject);
   Moments out;
   std::map<std::size_t, std::size_t> moment_at;  // by frame
   const auto moment = [&](std::size_t frame) {
     const auto [place, added] = moment_at.try_emplace(frame, out.moments.size());
     if (added) {
-      const auto pose = std::ranges::find(poses, frame, &scenes::Pose::frame);
+      const auto pose = std::ranges::find(poses, frame, &scenes::BonePose::frame);
       out.moments.push_back({scenes::carried(scene, shape, *pose),
                              subject.bones > 0 ? resampled_chain(pose->bones, subject.bones) : pose->bones});
     }
