@@ -1,8 +1,8 @@
 #include "baselines/selfccd.h"
 
-#include <algorithm>
 #include <optional>
 
+#include "core/base/sort_unique.h"
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 
@@ -41,8 +41,7 @@ class Representatives : public FeatureAssignment {
           });
         }
     }
-    std::sort(orphans_.begin(), orphans_.end());
-    orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
+    sort_unique(orphans_);
   }
 
   void append(std::span<const TrianglePair> block, std::vector<CarriedPairs>& out) const override {

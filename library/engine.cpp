@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "core/base/error.h"
@@ -50,10 +49,6 @@ std::vector<Triangle> triangles_of(const Faces& faces) {
 
 std::vector<Vec3> copy_of(std::span<const Vec3> positions) {
   return {positions.begin(), positions.end()};
-}
-
-bool is_same(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 const ElementaryTest& elementary() {
@@ -163,7 +158,7 @@ void SelfCollision::Engine::write(const Motion& motion, Answer& out) const {
 // A solver that looks for a free step asks about one start many times. From a start that crosses itself
 // none is free, which is known after the first.
 bool SelfCollision::Engine::is_free(const Motion& motion) {
-  if (is_same(motion.start(), crossing_start_)) {
+  if (same_bits(motion.start(), crossing_start_)) {
     check_finite(motion.end(), "end positions");
     return false;
   }

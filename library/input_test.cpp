@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/number_text.h"
+#include "core/base/test_refusal.h"
 
 #include "cscd/cscd.h"
 
@@ -33,19 +34,9 @@ const MatrixXi kFaces{{0, 1, 2}, {3, 4, 5}};
 const MatrixXd kStart{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1}, {2, 1, 1}, {1, 2, 1}};
 const MatrixXd kEnd{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {2, 1, -1}, {1, 2, -1}};
 
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 void expect_refused(const std::string& part, const std::function<void()>& call) {
-  const std::string text = error_of(call);
+  const std::string text = test::refusal<std::invalid_argument>(call);
   EXPECT_NE(text.find(part), std::string::npos) << text;
-  EXPECT_EQ(text.find('\n'), std::string::npos) << text;
 }
 
 void expect_time(SelfCollision body, const SelfCollision::Positions& start,
@@ -265,6 +256,24 @@ TEST(Input, MessagesNameNumbersAsTheyAre) {
 TEST(Input, PositionsThatWereNeverFilledInAreRefused) {
   expect_refused("all vertices are in one place",
                  [] { SelfCollision(kFaces, MatrixXd::Constant(6, 3, 0.5)); });
+}
+
+// From where a step ended that is known to be free, positions are checked in another way.
+TEST(Input, WrongEndsOfStepsFromAFreeStartAreRefused) {
+  SelfCollision body(kFaces, kStart);
+  EXPECT_TRUE(body.is_free(kStart, kStart));
+  MatrixXd broken = kStart;
+  broken(1, 1) = std::nan("");
+  expect_refused("end positions: vertex 1", [&] { body.is_free(kStart, broken); });
+  EXPECT_TRUE(body.is_free(kStart, kStart)) << "an object outlives wrong calls";
+  expect_refused("7 rows for 6 vertices", [&] { body.is_free(kStart, MatrixXd::Zero(7, 3)); });
+}
+
+TEST(Input, ASecondObstacleIsNamedByItsNumber) {
+  Options options;
+  for (int i = 0; i < 2; ++i) options.obstacles.emplace_back(kFaces, kStart.array() + 50);
+  options.obstacles[1].faces[1][2] = 6;
+  expect_refused("obstacle 1, faces", [&] { SelfCollision(kFaces, kStart, options); });
 }
 
 TEST(Input, AnObjectThatHasBeenMovedFromSaysSo) {

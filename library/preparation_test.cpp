@@ -3,6 +3,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/base/test_refusal.h"
 #include "core/mesh/test_shapes.h"
 #include "library/test_steps.h"
 
@@ -111,18 +112,14 @@ TEST(SelfCollision, AnswersTheSameWithLabels) {
 
 TEST(SelfCollision, RefusesLabelsThatCannotBeParts) {
   const Tube tube;
-  const auto refusal = [&](std::vector<int> labels) {
+  const auto refusal_of = [&](std::vector<int> labels) {
     SelfCollision::Options options;
     options.labels = std::move(labels);
-    try {
-      SelfCollision(tube.faces, tube.rest, options);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal<std::invalid_argument>([&] { SelfCollision(tube.faces, tube.rest, options); });
   };
   const auto count = static_cast<std::size_t>(tube.rest.rows());
-  EXPECT_EQ(refusal({1, 2}), "labels: 2 for " + std::to_string(count) + " vertices; give one label a vertex");
+  EXPECT_EQ(refusal_of({1, 2}),
+            "labels: 2 for " + std::to_string(count) + " vertices; give one label a vertex");
   const Shape fine = uneven_tube(12, 90, 15, [](double) { return 0.8; });
   SelfCollision::Options each;
   each.labels.resize(fine.positions.size());

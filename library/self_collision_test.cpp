@@ -219,56 +219,5 @@ TEST(SelfCollision, AnswersPathsThatAreNoLines) {
   }
 }
 
-TEST(SelfCollision, SaysWhatIsWrongWithItsInput) {
-  FaceRows faces(1, 3);
-  faces << 0, 1, 2;
-  const Rows triangle = Rows::Identity(3, 3);
-  const auto message = [](const auto& call) -> std::string {
-    try {
-      call();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
-  };
-  const auto has = [](const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  };
-  FaceRows wrong = faces;
-  wrong(0, 2) = 3;
-  EXPECT_TRUE(has(message([&] { SelfCollision(wrong, triangle); }), "3"));
-  Rows nan = triangle;
-  nan(1, 1) = std::nan("");
-  EXPECT_TRUE(has(message([&] { SelfCollision(faces, nan); }), "reference positions"));
-  SelfCollision body(faces, triangle);
-  EXPECT_TRUE(has(message([&] { body.is_free(nan, triangle); }), "start positions"));
-  EXPECT_TRUE(has(message([&] { body.is_free(triangle, Rows::Zero(4, 3)); }), "4 rows for 3 vertices"));
-  EXPECT_TRUE(has(message([&] { body.largest_step(triangle, triangle, 0); }), "safety"));
-  EXPECT_TRUE(has(message([&] { body.candidates(triangle, triangle, -1); }), "radius"));
-  SelfCollision::Options options;
-  options.threads = 0;
-  EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "threads"));
-  options = {};
-  options.exclude.vertex_pairs = {{0, 7}};
-  EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "vertex 7"));
-  options = {};
-  options.exclude.group = {0, 1};
-  EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "2 entries for 3 vertices"));
-  EXPECT_TRUE(body.is_free(triangle, triangle)) << "an object outlives wrong calls";
-  // Also from where a step ended that is known to be free, where positions are checked in another way.
-  EXPECT_TRUE(has(message([&] { body.is_free(triangle, nan); }), "end positions: vertex 1"));
-  EXPECT_TRUE(body.is_free(triangle, triangle));
-  EXPECT_TRUE(has(message([&] { body.place_obstacle(0, triangle); }), "obstacle 0: there are 0"));
-  options = {};
-  options.obstacles = {{faces, Rows(triangle.array() + 5)}, {wrong, triangle}};
-  EXPECT_TRUE(has(message([&] { SelfCollision(faces, triangle, options); }), "obstacle 1, faces"));
-  options.obstacles.pop_back();
-  SelfCollision beside(faces, triangle, options);
-  EXPECT_TRUE(has(message([&] { beside.move_obstacle(0, triangle, nan); }), "obstacle 0, end positions"));
-  EXPECT_TRUE(has(message([&] { beside.place_obstacle(0, Rows::Zero(4, 3)); }), "4 rows for 3 vertices"));
-  EXPECT_TRUE(has(message([&] { beside.candidates(triangle, nan, 1); }), "end positions"));
-  EXPECT_TRUE(beside.is_free(triangle, triangle));
-}
-
 }  // namespace
 }  // namespace cscd

@@ -17,8 +17,8 @@
 #include "core/detect/exclusions.h"
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
+#include "core/detect/test_feature_pairs.h"
 #include "core/elementary/catalogue.h"
-#include "core/mesh/adjacency.h"
 #include "scenes/random/random_interval.h"
 
 #include "cscd/cscd.h"
@@ -115,18 +115,11 @@ void for_each_feature_pair(const TriangleMesh& mesh, const Motion& motion, const
   for (const Edge& e : mesh.edges()) edge.push_back(box_of(motion, e));
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
     vertex.push_back(box_of(motion, std::array{VertexId{static_cast<std::int32_t>(v)}}));
-  for (std::size_t v = 0; v < vertex.size(); ++v) {
-    const VertexId id{static_cast<std::int32_t>(v)};
-    if (mesh.triangles_at(id).empty()) continue;  // a vertex without a triangle is no feature
-    for (std::size_t t = 0; t < face.size(); ++t)
-      if (!contains(mesh.triangles()[t], id))
-        take(FeaturePair::of(id, TriangleId{static_cast<std::int32_t>(t)}), vertex[v], face[t]);
+  for (const FeaturePair& pair : all_feature_pairs(mesh)) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const bool edges = pair.kind == FeaturePair::Kind::edge_edge;
+    take(pair, edges ? edge[a] : vertex[a], edges ? edge[b] : face[b]);
   }
-  for (std::size_t e = 0; e < edge.size(); ++e)
-    for (std::size_t f = e + 1; f < edge.size(); ++f)
-      if (!share_vertex(mesh.edges()[e], mesh.edges()[f]))
-        take(FeaturePair::of(EdgeId{static_cast<std::int32_t>(e)}, EdgeId{static_cast<std::int32_t>(f)}),
-             edge[e], edge[f]);
 }
 
 // Returns the vertices of the first feature and then those of the second.

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "core/base/test_refusal.h"
 #include "library/test_steps.h"
 
 // Holds the answers at a thickness to a search of all feature pairs.
@@ -136,12 +137,9 @@ TEST(Thickness, ExtremeLengthsAreAnswered) {
 TEST(Thickness, IsRefusedWhereItIsNoLength) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const auto refused = [](const Options& options, const std::string& text) {
-    try {
-      SelfCollision(kTwoFaces, kApart, options);
-      ADD_FAILURE() << text;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
-    }
+    const std::string said =
+        refusal<std::invalid_argument>([&] { SelfCollision(kTwoFaces, kApart, options); });
+    EXPECT_NE(said.find(text), std::string::npos) << said;
   };
   for (const double wrong : {nan, inf, -inf, -1.0, -std::numeric_limits<double>::denorm_min()}) {
     refused(thick(wrong), "thickness is");

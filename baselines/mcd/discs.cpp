@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <compare>
 
+#include "core/base/sort_unique.h"
+
 namespace cscd::mcd {
 namespace {
 
@@ -116,8 +118,7 @@ std::vector<NodePair> neighbours(const TriangleMesh& mesh, const Tree& tree) {
       if (b.size() > 1) b.pop_back();
     }
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   return pairs;
 }
 

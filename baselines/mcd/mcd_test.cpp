@@ -10,6 +10,7 @@
 #include "baselines/plain.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
+#include "core/radial/exact_orientation.h"
 
 namespace cscd::mcd {
 namespace {
@@ -27,32 +28,19 @@ std::vector<Vec3> shaken(std::vector<Vec3> positions, double by, std::mt19937_64
   return positions;
 }
 
-using Exact3 = std::array<mpq_class, 3>;
+using test::Exact3;
 
 Exact3 exact_normal(const Motion& motion, const Triangle& corner, const mpq_class& t) {
-  Exact3 side[2];
-  for (std::size_t s = 0; s < 2; ++s)
-    for (int k = 0; k < 3; ++k) {
-      const auto at = [&](VertexId v) -> mpq_class {
-        return (1 - t) * mpq_class(motion[v].start[k]) + t * mpq_class(motion[v].end[k]);
-      };
-      side[s][static_cast<std::size_t>(k)] = at(corner[s + 1]) - at(corner[0]);
-    }
-  const auto& [a, b] = side;
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  using test::operator-;
+  const Exact3 a = test::at(motion[corner[0]], t);
+  return test::cross(test::at(motion[corner[1]], t) - a, test::at(motion[corner[2]], t) - a);
 }
 
 // Returns whether the normal is inside the cone, decided in rational arithmetic.
 bool inside(const Exact3& n, const NormalCone& cone) {
-  mpq_class along = 0, square = 0, axis_square = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const mpq_class axis = cone.axis[static_cast<int>(k)];
-    along += n[k] * axis;
-    square += n[k] * n[k];
-    axis_square += axis * axis;
-  }
-  const mpq_class cosine = cone.cosine;
-  return along > 0 && along * along >= cosine * cosine * square * axis_square;
+  const Exact3 axis = test::exact(cone.axis);
+  const mpq_class along = test::dot(n, axis), cosine = cone.cosine;
+  return along > 0 && along * along >= cosine * cosine * test::dot(n, n) * test::dot(axis, axis);
 }
 
 TEST(NormalCones, HoldEveryNormalBelowThemAtAllTimes) {

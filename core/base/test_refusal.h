@@ -7,12 +7,12 @@
 
 namespace cscd::test {
 
-// Returns the text of the InputError that `act` throws, which has to be one line; empty where it throws none.
-template <class Act>
+// Returns the text of the error that `act` throws, which has to be one line; empty where it throws none.
+template <class Error = InputError, class Act>
 std::string refusal(const Act& act) {
   try {
     act();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     return error.what();
   }

@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "core/detect/test_feature_pairs.h"
 #include "core/elementary/catalogue.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/question/filter.h"
@@ -118,27 +119,6 @@ TEST(Compose, ExpandsAPairOfTrianglesIntoTheFeaturePairsThatShareNoVertex) {
   }
 }
 
-// Returns every feature pair of a mesh whose features share no vertex.
-std::vector<FeaturePair> all_feature_pairs(const TriangleMesh& mesh) {
-  std::vector<FeaturePair> pairs;
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const VertexId vertex{static_cast<std::int32_t>(v)};
-      const TriangleId triangle{static_cast<std::int32_t>(t)};
-      const Triangle& c = mesh.corners(triangle);
-      if (std::find(c.begin(), c.end(), vertex) == c.end())
-        pairs.push_back(FeaturePair::of(vertex, triangle));
-    }
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
-    for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
-      const EdgeId one{static_cast<std::int32_t>(e)}, other{static_cast<std::int32_t>(f)};
-      const Edge &a = mesh.ends(one), &b = mesh.ends(other);
-      if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
-        pairs.push_back(FeaturePair::of(one, other));
-    }
-  return pairs;
-}
-
 // Rule any-carrier: all triangle pairs carry all feature pairs, each is tested once, however often it is
 // carried and in however many blocks.
 TEST(Compose, TestsEachFeaturePairOnceOverManyBlocks) {
@@ -156,7 +136,7 @@ TEST(Compose, TestsEachFeaturePairOnceOverManyBlocks) {
   ContactSet out;
   const Report report = run(mesh, x, mirrored(x), pairs, out, kRecorder);
   EXPECT_EQ(report.cull.pctp, pairs.size());
-  const std::size_t expected = all_feature_pairs(mesh).size();
+  const std::size_t expected = test::all_feature_pairs(mesh).size();
   EXPECT_EQ(g_asked.size(), expected);
   EXPECT_EQ(report.pairs.elementary_tests, expected);
   EXPECT_GE(report.pairs.feature_pairs, expected);
@@ -173,22 +153,14 @@ struct Crumple {
     std::uniform_real_distribution<double> unit(-1, 1);
     for (Vec3& p : end) p += Vec3(unit(random), unit(random), unit(random));
   }
-  ContactSet contacts_by_asking_about_every_pair() const {
-    ContactSet set;
-    for (const FeaturePair& pair : all_feature_pairs(mesh)) {
-      const Motion motion(shape.positions, end);
-      const Answer answer = ask(*find_elementary_test("exact"), mesh, motion, pair);
-      if (answer.verdict != Verdict::apart) set.contacts.push_back({pair, answer.verdict, answer.time});
-    }
-    set.sort();
-    return set;
-  }
 };
 
 TEST(Compose, FindsWhatAskingAboutEveryFeaturePairFinds) {
   for (unsigned seed = 1; seed <= 2; ++seed) {
     const Crumple c(seed);
-    const ContactSet expected = c.contacts_by_asking_about_every_pair();
+    ContactSet expected =
+        test::contacts_by_asking(c.mesh, Motion(c.shape.positions, c.end), *find_elementary_test("exact"));
+    expected.sort();
     EXPECT_GT(expected.contacts.size(), 50u);
     std::vector<TrianglePair> pairs = all_pairs(c.mesh);
     std::mt19937 random(seed);
@@ -199,7 +171,7 @@ TEST(Compose, FindsWhatAskingAboutEveryFeaturePairFinds) {
                                   *find_elementary_test("exact"), {relative_boxes});
         EXPECT_EQ(digest(out), digest(expected));
         EXPECT_EQ(report.pairs.relative_dropped > 0, relative_boxes);
-        EXPECT_LT(report.pairs.elementary_tests, all_feature_pairs(c.mesh).size());
+        EXPECT_LT(report.pairs.elementary_tests, test::all_feature_pairs(c.mesh).size());
       }
       std::shuffle(pairs.begin(), pairs.end(), random);
       for (TrianglePair& pair : pairs)

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/number_text.h"
+#include "core/base/sort_unique.h"
 #include "core/geometry/unit_scale.h"
 
 namespace cscd {
@@ -20,11 +21,6 @@ template <class Id>
 std::uint64_t key(Id a, Id b) {
   const auto i = static_cast<std::uint64_t>(a), j = static_cast<std::uint64_t>(b);
   return i < j ? i << 32 | j : j << 32 | i;
-}
-
-void sort(std::vector<std::uint64_t>& keys) {
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 }
 
 bool has(const std::vector<std::uint64_t>& keys, std::uint64_t wanted) {
@@ -49,7 +45,7 @@ void append(std::span<const std::pair<Id, Id>> pairs, std::size_t count, const s
                          std::to_string(count - 1));
     keys.push_back(key(a, b));
   }
-  sort(keys);
+  sort_unique(keys);
 }
 
 // Returns whether every vertex of one side is excluded from every vertex of the other.
@@ -89,8 +85,7 @@ Exclusions::Groups Exclusions::groups_of(std::vector<std::int32_t> group, std::s
     named.insert(named.end(), {a, b});
   }
   if (named.empty()) return {};
-  std::ranges::sort(named);
-  named.erase(std::unique(named.begin(), named.end()), named.end());
+  sort_unique(named);
   if (named.size() > kMostGroups)
     throw InputError("groups_that_ignore_each_other: " + std::to_string(named.size()) +
                      " different groups; give at most " + std::to_string(kMostGroups));
@@ -151,7 +146,7 @@ void Exclusions::exclude_rings(const TriangleMesh& mesh, int rings) {
       throw InputError("rings: " + std::to_string(rings) + " rings hold more than " +
                        std::to_string(kMostPairs) + " pairs of vertices; give fewer rings");
   }
-  sort(vertex_pairs_);
+  sort_unique(vertex_pairs_);
 }
 
 void Exclusions::exclude_near(std::span<const Vec3> reference, double distance) {

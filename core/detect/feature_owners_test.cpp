@@ -3,26 +3,11 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "core/mesh/adjacency.h"
+#include "core/detect/test_feature_pairs.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
 namespace {
-
-std::vector<FeaturePair> all_that_may_touch(const TriangleMesh& mesh) {
-  std::vector<FeaturePair> pairs;
-  const auto ids = [](std::size_t count) { return static_cast<std::int32_t>(count); };
-  for (std::int32_t v = 0; v < ids(mesh.vertex_count()); ++v)
-    for (std::int32_t t = 0; t < ids(mesh.triangle_count()); ++t)
-      if (!mesh.triangles_at(VertexId{v}).empty() && !contains(mesh.corners(TriangleId{t}), VertexId{v}))
-        pairs.push_back(FeaturePair::of(VertexId{v}, TriangleId{t}));
-  for (std::int32_t e = 0; e < ids(mesh.edge_count()); ++e)
-    for (std::int32_t f = e + 1; f < ids(mesh.edge_count()); ++f)
-      if (!share_vertex(mesh.ends(EdgeId{e}), mesh.ends(EdgeId{f})))
-        pairs.push_back(FeaturePair::of(EdgeId{e}, EdgeId{f}));
-  std::ranges::sort(pairs);
-  return pairs;
-}
 
 // A closed surface, an open one with a vertex that no triangle has, and triangles that occur twice.
 // Mutations: the edges of the second triangle stand in the place of the first one's; a feature that is left
@@ -48,7 +33,7 @@ TEST(FeatureOwners, OwnEveryFeaturePairOnce) {
         ++pairs;
       }
     std::ranges::sort(owned);
-    EXPECT_EQ(owned, all_that_may_touch(mesh));
+    EXPECT_EQ(owned, test::all_feature_pairs(mesh));
     EXPECT_GT(4 * nothing, pairs);
   }
 }

@@ -103,23 +103,16 @@ TEST(Inclusion, LosesNothingFarFromTheOrigin) {
     for (int i = 0; i < 1000; ++i) {
       const double u = make.uniform(0.05, 0.45), v = make.uniform(0.05, 0.45), t = make.uniform(0.05, 0.95);
       const Vec3 offset = far * make.vector();
-      const auto move = [&](test::FourMovingPoints p) {
-        for (MovingPoint& x : p) x = {x.start + offset, x.end + offset};
-        return p;
+      const auto far_off = [&](const test::FourMovingPoints& p) { return test::moved(p, offset, offset); };
+      const auto check = [](const Answer& answer, const auto& truth) {
+        if (!truth) return;
+        ASSERT_NE(answer.verdict, Verdict::apart);
+        ASSERT_LE(answer.time, truth->hi);
       };
-      const auto vf = query_of<MovingVertexFace>(move(test::vertex_meets_face(make, t, u, v)));
-      const auto ee = query_of<MovingEdgeEdge>(move(test::edge_meets_edge(make, t, u, v)));
-      const auto vf_truth = exact::first_contact(vf), ee_truth = exact::first_contact(ee);
-      if (vf_truth) {
-        const Answer answer = inclusion_vertex_face(vf, {1e-6, 20'000});
-        ASSERT_NE(answer.verdict, Verdict::apart);
-        ASSERT_LE(answer.time, vf_truth->hi);
-      }
-      if (ee_truth) {
-        const Answer answer = inclusion_edge_edge(ee, {1e-6, 20'000});
-        ASSERT_NE(answer.verdict, Verdict::apart);
-        ASSERT_LE(answer.time, ee_truth->hi);
-      }
+      const auto vf = query_of<MovingVertexFace>(far_off(test::vertex_meets_face(make, t, u, v)));
+      const auto ee = query_of<MovingEdgeEdge>(far_off(test::edge_meets_edge(make, t, u, v)));
+      check(inclusion_vertex_face(vf, {1e-6, 20'000}), exact::first_contact(vf));
+      check(inclusion_edge_edge(ee, {1e-6, 20'000}), exact::first_contact(ee));
     }
   }
 }

@@ -1,7 +1,6 @@
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -18,6 +17,7 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 using test::still;
+using test::text;
 
 Answer newton(const MovingVertexFace& q) {
   return newton_vertex_face(q);
@@ -40,20 +40,15 @@ struct RefereeComparison {
     contacts += truth.has_value();
     undecided += answer.verdict == Verdict::undecided;
     if (!truth && answer.verdict == Verdict::contact && false_alarms++ == 0)
-      first_false_alarm = text(points, answer.time);
-    if (truth && answer.verdict == Verdict::apart && misses++ == 0) first_miss = text(points, truth->lo);
+      first_false_alarm = text(points, "touch at ", answer.time);
+    if (truth && answer.verdict == Verdict::apart && misses++ == 0)
+      first_miss = text(points, "touch at ", truth->lo);
     if (truth && answer.verdict == Verdict::contact)
       largest_time_error = std::max(largest_time_error, std::abs(answer.time - truth->lo));
     // The time of `undecided` is a lower bound, up to the rounding of double precision.
     if (truth && answer.verdict == Verdict::undecided) {
-      EXPECT_LE(answer.time, truth->hi + 1e-6) << text(points, truth->lo);
+      EXPECT_LE(answer.time, truth->hi + 1e-6) << text(points, "touch at ", truth->lo);
     }
-  }
-  static std::string text(const FourMovingPoints& points, double time) {
-    std::ostringstream out;
-    for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
-    out << "touch at " << time;
-    return out.str();
   }
   void expect_spotless() const {
     EXPECT_EQ(misses, 0) << first_miss;

@@ -8,6 +8,7 @@
 #include "core/detect/plain_culler.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/mesh/mean_edge.h"
 #include "core/mesh/test_shapes.h"
 
 // The rows of the engine on steps with a thickness, held against all close pairs that boxes leave.
@@ -32,8 +33,7 @@ struct ThickTube {
       const Vec3 bent(10 + reach * std::sin(angle), 10 - reach * std::cos(angle), p.z());
       end.push_back((bend == 0 ? p : bent) + Vec3(dice(), dice(), dice()));
     }
-    for (const Edge& e : mesh.edges()) edge += (shape.positions[+e[0]] - shape.positions[+e[1]]).norm();
-    edge /= static_cast<double>(mesh.edge_count());
+    edge = mean_edge(mesh, shape.positions);
   }
   StrategyInput setup(bool first_only = false) const {
     return {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact"), 1, first_only};

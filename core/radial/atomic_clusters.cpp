@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/base/sort_unique.h"
+
 // The triangles of one bone form an atomic cluster (Wong et al., I3D 2014, section 4.1). Here the triangles
 // of a bone are also split by the connected components of the mesh, because the paper assumes a single
 // component. Grouping n triangles takes time n log n.
@@ -20,14 +22,12 @@ void find_neighbours(const TriangleMesh& mesh, AtomicClusters& atomic) {
     around.clear();
     for (const TriangleId t : mesh.triangles_at(EdgeId{static_cast<std::int32_t>(e)}))
       around.push_back(atomic.of_triangle[+t]);
-    std::sort(around.begin(), around.end());
-    around.erase(std::unique(around.begin(), around.end()), around.end());
+    sort_unique(around);
     for (const std::int32_t a : around)
       for (const std::int32_t b : around)
         if (a != b) pairs.emplace_back(a, b);
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  sort_unique(pairs);
   atomic.neighbours.assign(atomic.clusters.size(), {});
   for (const auto& [a, b] : pairs) atomic.neighbours[static_cast<std::size_t>(a)].push_back(b);
 }
@@ -43,8 +43,7 @@ AtomicClusters make_atomic_clusters(const TriangleMesh& mesh, std::span<const Bo
   std::vector<Key> keys;
   keys.reserve(mesh.triangle_count());
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) keys.push_back(key(t));
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  sort_unique(keys);
 
   std::vector<BoneId> bones;
   for (const Key& k : keys) bones.push_back(k.first);

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "core/mesh/mean_edge.h"
 #include "core/mesh/test_shapes.h"
 #include "core/radial/nearest_point.h"
 
@@ -187,9 +188,7 @@ TEST(DistanceField, TooFineAGridIsMadeCoarser) {
 TEST(ResolutionOfMeanEdge, MakesCellsAsLongAsTheMeanEdge) {
   const Shape shape = test::icosphere(3);
   const TriangleMesh mesh = shape.mesh();
-  double mean = 0;
-  for (const Edge& e : mesh.edges())
-    mean += (shape.positions[+e[0]] - shape.positions[+e[1]]).norm() / static_cast<double>(mesh.edge_count());
+  const double mean = mean_edge(mesh, shape.positions);
   const int cells = resolution_of_mean_edge(mesh, shape.positions);
   const double longest = surface_box(mesh, shape.positions).sizes().maxCoeff();
   EXPECT_LE(longest / cells, mean);

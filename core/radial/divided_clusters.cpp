@@ -4,6 +4,8 @@
 #include <map>
 #include <tuple>
 
+#include "core/base/sort_unique.h"
+
 namespace cscd::radial {
 namespace {
 
@@ -25,10 +27,7 @@ std::vector<std::vector<std::size_t>> joints_of_bones(const Rig& rig) {
     joints[bone].push_back(joint);
     joints[+rig.parent[bone]].push_back(joint);
   }
-  for (std::vector<std::size_t>& own : joints) {
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-  }
+  for (std::vector<std::size_t>& own : joints) sort_unique(own);
   return joints;
 }
 

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/elementary/question/test_queries.h"
 #include "core/geometry/bernstein.h"
 #include "core/radial/exact_orientation.h"
 
 namespace cscd::radial {
 namespace {
 
+using test::still;
 using Corners = MovingPoint[3];
 
 class Dice {
@@ -52,6 +54,14 @@ MovingPoint near_plane(const Corners& corner, Dice& dice) {
           pick(corner[0].end, corner[1].end, corner[2].end)};
 }
 
+// Returns the cubic whose sign is the orientation towards q.
+BernsteinCubic orientation_cubic(const Corners& corner, const MovingPoint& q) {
+  const auto edge = [](const MovingPoint& from, const MovingPoint& to) -> MovingVector {
+    return {to.start - from.start, to.end - from.end};
+  };
+  return triple_product(edge(corner[0], corner[1]), edge(corner[0], corner[2]), edge(q, corner[0]));
+}
+
 int tally(Orientation orientation, int (&count)[3]) {
   return ++count[orientation == Orientation::positive ? 0 : orientation == Orientation::negative ? 1 : 2];
 }
@@ -81,11 +91,7 @@ TEST(PointObserver, CoefficientsOfOneSignWellAboveTheBoundAreCertain) {
   for (int i = 0; i < 3000; ++i) {
     const Corners corner = {dice.moving(1, 0.4), dice.moving(1, 0.4), dice.moving(1, 0.4)};
     const MovingPoint q = dice.moving(1, 0.4);
-    const auto edge = [&](const MovingPoint& from, const MovingPoint& to) -> MovingVector {
-      return {to.start - from.start, to.end - from.end};
-    };
-    const BernsteinCubic f =
-        triple_product(edge(corner[0], corner[1]), edge(corner[0], corner[2]), edge(q, corner[0]));
+    const BernsteinCubic f = orientation_cubic(corner, q);
     const auto [low, high] = std::minmax({f.c[0], f.c[1], f.c[2], f.c[3]});
     const Orientation found = orientation(corner, Observer::point(q));
     if (low > 1e-12) {
@@ -114,11 +120,7 @@ TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
       ++certain;
       EXPECT_EQ(claimed, truth) << "case " << i;
     }
-    const auto edge = [&](const MovingPoint& from, const MovingPoint& to) -> MovingVector {
-      return {to.start - from.start, to.end - from.end};
-    };
-    BernsteinCubic f =
-        triple_product(edge(corner[0], corner[1]), edge(corner[0], corner[2]), edge(q, corner[0]));
+    BernsteinCubic f = orientation_cubic(corner, q);
     f.error = 0;
     const Orientation naive = test::from_sign(certain_sign(f));
     wrong_without_bound += naive != Orientation::uncertain && naive != truth;
@@ -131,10 +133,7 @@ TEST(Orientation, RuleErrorBoundSignsBeneathTheErrorBoundAreUncertain) {
 TEST(Orientation, RuleErrorBoundTangentTrianglesAreUncertainNearAndFar) {
   for (const double offset : {0.0, 1e3, 1e9, 1e15}) {
     const Vec3 o(offset, -offset, offset);
-    const auto still = [&](double x, double y, double z) -> MovingPoint {
-      const Vec3 p = o + Vec3(x, y, z);
-      return {p, p};
-    };
+    const auto still = [&](double x, double y, double z) { return test::still(o + Vec3(x, y, z)); };
     const Corners corner = {still(0, 0, 0), still(8, 0, 0), still(0, 8, 0)};
     EXPECT_EQ(orientation(corner, Observer::point(still(-8, -8, 0))), Orientation::uncertain);
     EXPECT_EQ(orientation(corner, Observer::segment(still(-8, -8, 0), still(-8, 16, 0))),
@@ -145,7 +144,6 @@ TEST(Orientation, RuleErrorBoundTangentTrianglesAreUncertainNearAndFar) {
 }
 
 TEST(Orientation, TrianglesWithoutAreaAtAnyTimeAreUncertain) {
-  const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const MovingPoint below = still(0, 0, -1), beside = still(5, 5, -1);
   const Corners line = {still(0, 0, 0), still(1, 0, 0), still(2, 0, 0)};
   const Corners flips = {still(0, 0, 0), still(1, 0, 0), {{0, 1, 0}, {0, -1, 0}}};
@@ -227,7 +225,6 @@ TEST(SegmentObserver, IsNoStricterThanItsTwoEndsWhereTheseSeeTheTriangle) {
 // fact it projects to a hundred-thousandth of the bone's length, where the viewing position lies in the
 // triangle's plane.
 TEST(SegmentObserver, OfALengthWhoseSquareOverflowsProvesNothingWrong) {
-  const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const Observer bone = Observer::segment(still(0, 0, 0), still(1e155, 0, 0));
   const Corners corner = {still(1e150, 0, 0), still(1e150, 1e70, 0), still(1e150, 0, 1e70)};
   ASSERT_EQ(test::sampled_sign(corner, bone, 1, 2), 0);
@@ -250,7 +247,6 @@ TEST(SegmentObserver, OfLengthZeroIsThePoint) {
 // the dot product is +30, -15 and +7.5. Mutation: viewing_range looks at corner[0] alone, so the triangle is
 // positive or negative, depending on which corner comes first.
 TEST(SegmentObserver, RuleThreeVerticesAllThreeVerticesDecide) {
-  const auto still = [](double x, double y, double z) -> MovingPoint { return {{x, y, z}, {x, y, z}}; };
   const MovingPoint vertices[3] = {still(0, 1, 1), still(5, 0.25, 4), still(10, -0.5, 1)};
   const Observer bone = Observer::segment(still(0, 0, 0), still(10, 0, 0));
   const int expected[3] = {1, 1, -1};

@@ -45,6 +45,13 @@ class KnownStartsTest : public testing::Test {
     compose(std::make_unique<PlainCuller<Kdop16>>(setup), setup)->detect({motion}, out);
     return out;
   }
+  // Begins a step, whose end is finite.
+  bool begin(const Motion& motion) {
+    bool finite = false;
+    const bool known = starts_.begin(motion, finite);
+    EXPECT_TRUE(finite || !known);
+    return known;
+  }
   // What crosses in a pose, searched from nothing.
   std::vector<CrossingPair> truth(std::span<const Vec3> pose) {
     return EmbeddingTest(mesh_, shape_.positions)
@@ -62,13 +69,11 @@ TEST_F(KnownStartsTest, TheEndOfAStepInWhichNothingTouchesIsKnown) {
   starts_.search(far_, nullptr, nullptr);
   EXPECT_TRUE(starts_.embedded());
   EXPECT_FALSE(starts_.knows(near_));
-  bool finite = false;
   const Motion motion(far_, near_);
-  EXPECT_TRUE(starts_.begin(motion, finite));
-  EXPECT_TRUE(finite);
+  EXPECT_TRUE(begin(motion));
   EXPECT_TRUE(starts_.knows(far_)) << "the start of the step that has begun";
   starts_.learn_end(motion, nullptr, kWhether, {});
-  EXPECT_TRUE(starts_.begin(Motion(near_, inside_), finite));
+  EXPECT_TRUE(begin(Motion(near_, inside_)));
   EXPECT_TRUE(starts_.embedded());
   EXPECT_EQ(starts_.searches(), 1u);
 }
@@ -80,14 +85,13 @@ TEST_F(KnownStartsTest, BothEndsOfAStepWithContactsAreKnownWhereTheyAreAll) {
   const Motion motion(near_, inside_);
   const ContactSet found = contacts_of(motion);
   ASSERT_FALSE(found.contacts.empty());
-  bool finite = false;
-  ASSERT_TRUE(starts_.begin(motion, finite));
+  ASSERT_TRUE(begin(motion));
   starts_.learn_end(motion, nullptr, kAll, found);
   EXPECT_TRUE(starts_.embedded());
-  ASSERT_TRUE(starts_.begin(Motion(near_, far_), finite)) << "a shorter step from the same start";
+  ASSERT_TRUE(begin(Motion(near_, far_))) << "a shorter step from the same start";
   starts_.abandon(Motion(near_, far_));
   ASSERT_FALSE(truth(inside_).empty());
-  ASSERT_TRUE(starts_.begin(Motion(inside_, near_), finite));
+  ASSERT_TRUE(begin(Motion(inside_, near_)));
   EXPECT_EQ(starts_.crossings().pairs, truth(inside_));
   EXPECT_EQ(starts_.searches(), 1u);
 }
@@ -95,11 +99,10 @@ TEST_F(KnownStartsTest, BothEndsOfAStepWithContactsAreKnownWhereTheyAreAll) {
 TEST_F(KnownStartsTest, AnEndIsFollowedFromTheStartOfItsStepAlone) {
   starts_.search(near_, nullptr, nullptr);
   const Motion motion(near_, inside_);
-  bool finite = false;
-  ASSERT_TRUE(starts_.begin(motion, finite));
+  ASSERT_TRUE(begin(motion));
   starts_.learn_end(motion, nullptr, kAll, contacts_of(motion));
   starts_.search(far_, nullptr, nullptr);
-  EXPECT_FALSE(starts_.begin(Motion(inside_, near_), finite));
+  EXPECT_FALSE(begin(Motion(inside_, near_)));
 }
 
 TEST_F(KnownStartsTest, TheEndAfterContactsIsNotKnownWhereSomeMayBeMissing) {
@@ -107,8 +110,7 @@ TEST_F(KnownStartsTest, TheEndAfterContactsIsNotKnownWhereSomeMayBeMissing) {
   const Motion motion(near_, inside_);
   ContactSet found = contacts_of(motion);
   found.contacts.resize(1);
-  bool finite = false;
-  ASSERT_TRUE(starts_.begin(motion, finite));
+  ASSERT_TRUE(begin(motion));
   starts_.learn_end(motion, nullptr, kWhether, found);
   EXPECT_FALSE(starts_.knows(inside_));
   EXPECT_TRUE(starts_.knows(near_)) << "the start is the known pose again";
@@ -128,26 +130,24 @@ TEST_F(KnownStartsTest, TheStartOfAStepInWhichNothingTouchesStaysKnown) {
   starts_.search(far_, nullptr, nullptr);
   Scripted detector;
   EXPECT_TRUE(starts_.follow_to(far_, nullptr, detector, kWhether));  // so that starts are kept
-  bool finite = false;
   for (const std::vector<Vec3>& end : {near_, pose(4), near_}) {
     const Motion motion(far_, end);
-    ASSERT_TRUE(starts_.begin(motion, finite));
+    ASSERT_TRUE(begin(motion));
     starts_.learn_end(motion, nullptr, kWhether, {});
     EXPECT_TRUE(starts_.knows(end));
   }
-  ASSERT_TRUE(starts_.begin(Motion(far_, inside_), finite));
+  ASSERT_TRUE(begin(Motion(far_, inside_)));
   starts_.learn_end(Motion(far_, inside_), nullptr, kWhether, contacts_of(Motion(far_, inside_)));
   EXPECT_TRUE(starts_.knows(far_));
-  EXPECT_FALSE(starts_.begin(Motion(near_, far_), finite)) << "it is no more the pose before";
-  EXPECT_FALSE(starts_.begin(Motion(inside_, far_), finite)) << "what crosses there is not known";
+  EXPECT_FALSE(begin(Motion(near_, far_))) << "it is no more the pose before";
+  EXPECT_FALSE(begin(Motion(inside_, far_))) << "what crosses there is not known";
   EXPECT_EQ(starts_.searches(), 1u);
 }
 
 TEST_F(KnownStartsTest, AnUncertainStepTeachesNothing) {
   starts_.search(far_, nullptr, nullptr);
   const Motion motion(far_, near_);
-  bool finite = false;
-  ASSERT_TRUE(starts_.begin(motion, finite));
+  ASSERT_TRUE(begin(motion));
   starts_.learn_end(motion, nullptr, kNothing, {});
   EXPECT_FALSE(starts_.knows(near_));
   Scripted detector;
@@ -158,12 +158,11 @@ TEST_F(KnownStartsTest, AnUncertainStepTeachesNothing) {
 TEST_F(KnownStartsTest, AnAbandonedStepTeachesNothing) {
   starts_.search(far_, nullptr, nullptr);
   const Motion motion(far_, near_);
-  bool finite = false;
-  ASSERT_TRUE(starts_.begin(motion, finite));
+  ASSERT_TRUE(begin(motion));
   starts_.abandon(motion);
   EXPECT_TRUE(starts_.knows(far_));
   EXPECT_FALSE(starts_.knows(near_));
-  EXPECT_FALSE(starts_.begin(Motion(near_, far_), finite)) << "it starts elsewhere";
+  EXPECT_FALSE(begin(Motion(near_, far_))) << "it starts elsewhere";
 }
 
 // A way may be long, and its contacts are as many as one likes: no more is asked than whether there are any.

@@ -80,22 +80,32 @@ constexpr Strategy kWatched{.name = "watched",
                             .sees_start = true,
                             .knows_distance = true};
 
+// Two octahedra, the second of which moves as paths say.
+struct TwoOctahedra {
+  test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
+  TriangleMesh mesh = shape.mesh();
+
+  TrueMotion motion(const VertexPaths& paths,
+                    const TrueMotionOptions& options = true_motion_options(1)) const {
+    return {
+        paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")}, kWatched, options};
+  }
+};
+
 // Features of surfaces that cross need not be close, and signs say nothing of such a start.
 // Mutation: a part that ends with nothing close starts the next one embedded, whatever crosses.
 TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
-  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
-  const TriangleMesh mesh = shape.mesh();
+  const TwoOctahedra two;
   for (const bool crosses : {false, true}) {
-    const Sliding paths(shape.positions, crosses ? 1.0 : 3.0, crosses ? 1.01 : 3.01);
+    const Sliding paths(two.shape.positions, crosses ? 1.0 : 3.0, crosses ? 1.01 : 3.01);
     const std::vector<Vec3> start = paths.pose(0);
-    const Crossings at_rest = EmbeddingTest(mesh, start).find_all(start, 1000);
+    const Crossings at_rest = EmbeddingTest(two.mesh, start).find_all(start, 1000);
     ASSERT_EQ(at_rest.total > 0, crosses);
-    const RestCrossings left_out(mesh, at_rest);
+    const RestCrossings left_out(two.mesh, at_rest);
     TrueMotionOptions options = true_motion_options(1);
     options.coarse = 1e-3;
     options.left_out = &left_out;
-    TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
-                      kWatched, options);
+    TrueMotion motion = two.motion(paths, options);
     ASSERT_FALSE(motion.crossing_at(0));
     told_embedded = 0;
     const TrueAnswer answer = motion.answer(0, 1);
@@ -108,16 +118,13 @@ TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
 // A jump brings the second octahedron from x = 3 into the first one. Mutation: the pose after a jump at the
 // very end is not searched.
 TEST(TrueMotion, SearchesThePoseAfterEveryJump) {
-  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
-  const TriangleMesh mesh = shape.mesh();
+  const TwoOctahedra two;
   for (const double at : {0.25, 0.5, 1.0}) {
-    Stepping paths(shape.positions, 3, 3.01);
+    Stepping paths(two.shape.positions, 3, 3.01);
     paths.jumps = {at};
     for (const double later : {0.0, -200.0}) {  // -200 times 0.01
       paths.later = later;
-      TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
-                        kWatched, true_motion_options(1));
-      const TrueAnswer answer = motion.answer(0, 1);
+      const TrueAnswer answer = two.motion(paths).answer(0, 1);
       EXPECT_EQ(answer.verdict, later < 0 ? TrueVerdict::intersects_at_start : TrueVerdict::clear) << at;
       EXPECT_EQ(answer.jumps, 1u);
       if (later < 0) {
@@ -129,28 +136,22 @@ TEST(TrueMotion, SearchesThePoseAfterEveryJump) {
 
 // Mutations: what is not known of places is taken for clear, at the end of a span or behind a jump.
 TEST(TrueMotion, DecidesNothingWherePlacesAreNotKnown) {
-  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
-  const TriangleMesh mesh = shape.mesh();
+  const TwoOctahedra two;
   for (const bool jumps : {false, true})
     for (const double unknown_from : {0.0, 0.3, 1.0}) {
-      Stepping paths(shape.positions, 3, 3.01);
+      Stepping paths(two.shape.positions, 3, 3.01);
       if (jumps) paths.jumps = {1};
       paths.unknown_from = unknown_from;
-      TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
-                        kWatched, true_motion_options(1));
-      EXPECT_EQ(motion.answer(0, 1).verdict, TrueVerdict::undecided);
+      EXPECT_EQ(two.motion(paths).answer(0, 1).verdict, TrueVerdict::undecided);
     }
 }
 
 // Mutation: the deviation is that of the first stretch alone.
 TEST(TrueMotion, LeavesItsLinesByTheMostBetweenAnyTwoJumps) {
-  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
-  const TriangleMesh mesh = shape.mesh();
-  Stepping paths(shape.positions, 3, 3.01);
+  const TwoOctahedra two;
+  Stepping paths(two.shape.positions, 3, 3.01);
   paths.jumps = {0.125, 0.875};
-  TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
-                    kWatched, true_motion_options(1));
-  EXPECT_NEAR(motion.answer(0, 1).deviation, 0.5 * 0.75 * 0.75 / 8, 1e-6);
+  EXPECT_NEAR(two.motion(paths).answer(0, 1).deviation, 0.5 * 0.75 * 0.75 / 8, 1e-6);
 }
 
 // Mutation: the largest of deviations passes over one that is no number.
@@ -162,14 +163,11 @@ TEST(TrueMotion, SaysNothingOfPathsWithoutABound) {
       out[0] = std::numeric_limits<double>::quiet_NaN();
     }
   };
-  const test::Shape shape = test::together(test::octahedron(), test::octahedron(0.8));
-  const TriangleMesh mesh = shape.mesh();
-  const Unknown paths(shape.positions, 3, 4);
+  const TwoOctahedra two;
+  const Unknown paths(two.shape.positions, 3, 4);
   TrueMotionOptions options = true_motion_options(1);
   options.most_parts = 16;
-  TrueMotion motion(paths, {mesh, shape.positions, nullptr, *find_elementary_test("filtered_exact")},
-                    kWatched, options);
-  EXPECT_EQ(motion.answer(0, 1).verdict, TrueVerdict::undecided);
+  EXPECT_EQ(two.motion(paths, options).answer(0, 1).verdict, TrueVerdict::undecided);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "core/base/sort_unique.h"
 #include "core/elementary/exact/static_contact.h"
 
 namespace cscd {
@@ -92,8 +93,7 @@ const Crossings& PoseCrossings::follow(std::span<const Vec3> positions, const Co
   std::vector<CrossingPair> changed;
   for (const Contact& contact : touched.contacts)
     for (const CrossingPair& pair : carriers(mesh, contact.pair)) changed.push_back(pair);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  sort_unique(changed);
   // Pose and crossings are replaced together at the end, where nothing throws any more.
   std::vector<CrossingPair> crossing;
   std::ranges::set_difference(crossings_.pairs, changed, std::back_inserter(crossing));

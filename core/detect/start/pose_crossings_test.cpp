@@ -1,12 +1,12 @@
 #include "core/detect/start/pose_crossings.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
+#include "core/detect/test_feature_pairs.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
@@ -14,30 +14,6 @@ namespace cscd {
 namespace {
 
 constexpr std::size_t kAll = 1'000'000;
-
-// Returns all feature pairs of a mesh that touch on the way, found by asking about every feature pair.
-ContactSet all_contacts(const TriangleMesh& mesh, const Motion& motion) {
-  const ElementaryTest& exact = *find_elementary_test("filtered_exact");
-  ContactSet found;
-  const auto add = [&](const FeaturePair& pair) {
-    const Answer answer = ask(exact, mesh, motion, pair);
-    if (answer.verdict != Verdict::apart) found.contacts.push_back({pair, answer.verdict, answer.time});
-  };
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const Triangle& c = mesh.triangles()[t];
-      const VertexId vertex{static_cast<std::int32_t>(v)};
-      if (std::find(c.begin(), c.end(), vertex) == c.end())
-        add(FeaturePair::of(vertex, TriangleId{static_cast<std::int32_t>(t)}));
-    }
-  for (std::size_t e = 0; e < mesh.edge_count(); ++e)
-    for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
-      const Edge &a = mesh.edges()[e], &b = mesh.edges()[f];
-      if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
-        add(FeaturePair::of(EdgeId{static_cast<std::int32_t>(e)}, EdgeId{static_cast<std::int32_t>(f)}));
-    }
-  return found;
-}
 
 // One octahedron rests and another tumbles through it. Both are a little deformed at every step.
 struct Tumbling {
@@ -60,6 +36,7 @@ struct Tumbling {
 };
 
 TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
+  const ElementaryTest& exact = *find_elementary_test("filtered_exact");
   Tumbling two;
   PoseCrossings followed({two.mesh, two.shape.positions}, kAll);
   EmbeddingTest from_nothing(two.mesh, two.shape.positions);
@@ -68,7 +45,7 @@ TEST(PoseCrossings, FollowWhatTouchedOnTheWay) {
   std::size_t crossing = 0, changed = 0, free = 0;
   for (int step = 0; step < 60; ++step) {
     const std::vector<Vec3> to = two.pose();
-    const ContactSet touched = all_contacts(two.mesh, Motion(from, to));
+    const ContactSet touched = test::contacts_by_asking(two.mesh, Motion(from, to), exact);
     const std::vector<CrossingPair> before = followed.crossings().pairs;
     const Crossings& got = followed.follow(to, touched);
     const Crossings expected = from_nothing.find_all(to, kAll);

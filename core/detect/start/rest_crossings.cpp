@@ -2,21 +2,20 @@
 
 #include <algorithm>
 
+#include "core/base/sort_unique.h"
+
 namespace cscd {
 namespace {
 
 // Returns all triangles within some rings round one triangle, that triangle included.
 std::vector<TriangleId> within_rings(const TriangleMesh& mesh, TriangleId center, int rings) {
   std::vector<TriangleId> inside{center};
-  std::size_t begin = 0;
   for (int ring = 0; ring < rings; ++ring) {
     const std::size_t end = inside.size();
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = 0; i < end; ++i)
       for (const VertexId vertex : mesh.corners(inside[i]))
         for (const TriangleId next : mesh.triangles_at(vertex)) inside.push_back(next);
-    std::sort(inside.begin(), inside.end());
-    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
-    begin = 0;
+    sort_unique(inside);
   }
   return inside;
 }

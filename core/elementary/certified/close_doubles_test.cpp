@@ -5,8 +5,6 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 #include <map>
-#include <sstream>
-#include <string>
 
 #include "core/elementary/certified/approximate.h"
 #include "core/elementary/certified/filtered_exact.h"
@@ -72,13 +70,6 @@ TEST(Approximate, SlopesAreDerivatives) {
   EXPECT_EQ(f.slope.value, -12);
 }
 
-std::string text(const FourMovingPoints& points, double r) {
-  std::ostringstream out;
-  out << std::hexfloat << "r = " << r << "\n";
-  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
-  return out.str();
-}
-
 // Compares answers with the referee's, and counts the stages that gave them.
 struct CloseFamily {
   int apart = 0, close = 0;
@@ -92,9 +83,9 @@ struct CloseFamily {
     filtered_exact_close(std::span(&query, 1), std::span(&r, 1), std::span(&answer, 1));
     ++(truth ? close : apart);
     ++stages[filtered_exact_close_stage(query, r)];
-    ASSERT_EQ(answer.verdict, truth ? Verdict::contact : Verdict::apart) << text(points, r);
+    ASSERT_EQ(answer.verdict, truth ? Verdict::contact : Verdict::apart) << test::text(points, "r = ", r);
     if (truth) {
-      ASSERT_EQ(answer.time, truth->lo) << text(points, r);
+      ASSERT_EQ(answer.time, truth->lo) << test::text(points, "r = ", r);
     }
   }
   void add_both(const FourMovingPoints& points, double r) {
@@ -105,11 +96,6 @@ struct CloseFamily {
   int all() const { return apart + close; }
 };
 
-FourMovingPoints moved(FourMovingPoints points, const Vec3& start, const Vec3& end) {
-  for (MovingPoint& p : points) p = {p.start + start, p.end + end};
-  return points;
-}
-
 TEST(FilteredExactClose, AnswersAsTheRefereeInGeneralPosition) {
   QueryMaker make(1);
   CloseFamily slow, fast, far;
@@ -117,7 +103,7 @@ TEST(FilteredExactClose, AnswersAsTheRefereeInGeneralPosition) {
     FourMovingPoints points = make.any();
     const double r = std::exp(make.uniform(-5, -1));
     ASSERT_NO_FATAL_FAILURE(fast.add_both(points, r));
-    ASSERT_NO_FATAL_FAILURE(far.add_both(moved(points, {1e3, 2e3, -1e3}, {1e5, 1e2, 0}), r));
+    ASSERT_NO_FATAL_FAILURE(far.add_both(test::moved(points, {1e3, 2e3, -1e3}, {1e5, 1e2, 0}), r));
     for (MovingPoint& p : points) p.end = p.start + 0.1 * make.vector();
     ASSERT_NO_FATAL_FAILURE(slow.add_both(points, r));
   }
@@ -198,8 +184,7 @@ TEST(FilteredExactClose, AnswersAsTheRefereeAtAnySize) {
   for (const double size : {0x1p-1060, 0x1p-500, 0x1p-120, 0x1p-60, 0x1p60, 0x1p200, 0x1p1000}) {
     CloseFamily family;
     for (int i = 0; i < 40; ++i) {
-      FourMovingPoints points = i % 2 == 0 ? make.any() : make.lattice(2);
-      for (MovingPoint& p : points) p = {size * p.start, size * p.end};
+      const FourMovingPoints points = test::scaled(i % 2 == 0 ? make.any() : make.lattice(2), size);
       ASSERT_NO_FATAL_FAILURE(family.add_both(points, size * make.uniform(0.1, 1)));
     }
     EXPECT_GT(family.close, 20);

@@ -103,9 +103,7 @@ TEST(TimeInPairs, SaysNothingThatIsNotCertain) {
   QueryMaker make(6);
   Count vf, ee;
   for (int i = 0; i < 30'000; ++i) {
-    FourMovingPoints p = make.lattice(4);
-    const double scale = i % 3 ? 1 : 0.1;
-    for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
+    const FourMovingPoints p = test::scaled(make.lattice(4), i % 3 ? 1 : 0.1);
     vf.add<MovingVertexFace>(p);
     ee.add<MovingEdgeEdge>(p);
   }

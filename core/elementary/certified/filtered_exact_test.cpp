@@ -4,8 +4,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
-#include <sstream>
-#include <string>
 
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/elementary/certified/exact_lanes.h"
@@ -19,19 +17,13 @@ namespace {
 using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
+using test::text;
 
 Answer ask(const MovingVertexFace& q) {
   return filtered_exact_vertex_face(q);
 }
 Answer ask(const MovingEdgeEdge& q) {
   return filtered_exact_edge_edge(q);
-}
-
-std::string text(const FourMovingPoints& points) {
-  std::ostringstream out;
-  out.precision(17);
-  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
-  return out.str();
 }
 
 bool same(const Answer& a, const Answer& b) {
@@ -89,14 +81,17 @@ class FilteredExact : public testing::Test {
     expect_same_of_all<MovingVertexFace>(all);
     expect_same_of_all<MovingEdgeEdge>(all);
   }
+  void expect_both_answers() const {
+    vf_.expect_both_answers();
+    ee_.expect_both_answers();
+  }
   QueryMaker make_{11};
   Family vf_, ee_;
 };
 
 TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
   compare(10'000, [&](int) { return make_.any(); });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
   // None of these queries needs exact arithmetic.
   for (const Family* family : {&vf_, &ee_})
     EXPECT_EQ(family->stages.at(ExactStage::filter) + family->stages.at(ExactStage::doubles), 10'000);
@@ -104,8 +99,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
 
 TEST_F(FilteredExact, AgreesWithTheRefereeOnLattices) {
   for (const int n : {1, 2, 3, 4, 9}) compare(2000, [&](int) { return make_.lattice(n); });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
   for (const Family* family : {&vf_, &ee_}) {
     EXPECT_GT(family->stages.at(ExactStage::integers), 1000);
     EXPECT_FALSE(family->stages.contains(ExactStage::referee));
@@ -116,14 +110,10 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnLattices) {
 // places hold rounded bits.
 TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
   compare(8000, [&](int i) {
-    FourMovingPoints p = make_.lattice(1 + i % 4);
     const Vec3 shift = i % 3 == 0 ? Vec3(1e6, -3e5, 0.1) : Vec3::Zero();
-    const double scale = i % 2 ? 0.1 : 1.0 / 3;
-    for (MovingPoint& x : p) x = {scale * x.start + shift, scale * x.end + shift};
-    return p;
+    return test::moved(test::scaled(make_.lattice(1 + i % 4), i % 2 ? 0.1 : 1.0 / 3), shift, shift);
   });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
 }
 
 // The features touch exactly on a lattice. Then one coordinate is moved by one ulp or a few.
@@ -135,9 +125,8 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
     for (int ulps = 1 << make_.below(4); ulps > 0; --ulps) c = std::nextafter(c, away);
   };
   // Moves the points away from 0, so that an ulp of a coordinate is not tiny.
-  const auto apart_from_zero = [](FourMovingPoints p) {
-    for (MovingPoint& x : p) x = {x.start + Vec3(17, 33, 65), x.end + Vec3(17, 33, 65)};
-    return p;
+  const auto apart_from_zero = [](const FourMovingPoints& p) {
+    return test::moved(p, {17, 33, 65}, {17, 33, 65});
   };
   int tried = 0;
   while (vf_.queries < 4000 && tried++ < 100'000 && !HasFatalFailure()) {
@@ -154,8 +143,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
   }
   EXPECT_EQ(vf_.queries, 4000);
   EXPECT_EQ(ee_.queries, 4000);
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
 }
 
 // Coordinates of a lattice are moved by single doubles, which takes zeros to the smallest doubles. The bits
@@ -170,8 +158,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
             (*end)[axis] = std::nextafter((*end)[axis], i % 2 ? 1e9 : -1e9);
     return p;
   });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
   for (Family* family : {&vf_, &ee_}) {
     EXPECT_GT(family->stages.at(ExactStage::integers), 300);
     EXPECT_LT(family->stages[ExactStage::referee], family->queries / 100);
@@ -203,8 +190,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
       for (MovingPoint& x : p) x.end = -x.start + thin * make_.vector();
     return p;
   });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
 }
 
 // The coordinates span the range of doubles. Neither underflow nor overflow may decide a query.
@@ -212,13 +198,10 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAtExtremesOfRange) {
   for (const double scale : {0x1p-1070, 1e-320, 1e-300, 0x1p-700, 1e-110, 1e110, 1e150, 1e300, 0x1p1019}) {
     vf_ = ee_ = {};
     compare(600, [&](int i) {
-      FourMovingPoints p = i % 3 ? make_.lattice(3) : test::vertex_meets_face(make_, 0.5, 0.25, 0.25);
-      for (MovingPoint& x : p) x = {scale * x.start, scale * x.end};
-      return p;
+      return test::scaled(i % 3 ? make_.lattice(3) : test::vertex_meets_face(make_, 0.5, 0.25, 0.25), scale);
     });
     SCOPED_TRACE(scale);
-    vf_.expect_both_answers();
-    ee_.expect_both_answers();
+    expect_both_answers();
     for (const Family* family : {&vf_, &ee_}) EXPECT_FALSE(family->stages.contains(ExactStage::referee));
   }
 }
@@ -228,14 +211,13 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
     FourMovingPoints p = make_.lattice(2);
     if (i % 2 == 0) {
       const Vec3 by(scales[make_.below(7)], scales[make_.below(7)], scales[make_.below(7)]);
-      for (MovingPoint& x : p) x = {x.start.cwiseProduct(by), x.end.cwiseProduct(by)};
+      p = test::mapped(p, [&](const Vec3& x) -> Vec3 { return x.cwiseProduct(by); });
     } else {
       for (MovingPoint& x : p) x.start *= scales[make_.below(7)], x.end *= scales[make_.below(7)];
     }
     return p;
   });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
 }
 
 // Some vectors are subnormal beside others that are not. The digits that such a vector loses between the
@@ -250,24 +232,20 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
   for (const double large : {1e-20, 1e25, 1e50, 1e140})
     for (const double small : {0x1p-1074, 0x1p-1070, 1e-310, 1e-295})
       compare(100, [&](int i) {
-        FourMovingPoints p = make_.lattice(4);
-        for (MovingPoint& x : p) x = {large * x.start, large * x.end};
+        FourMovingPoints p = test::scaled(make_.lattice(4), large);
         const auto one = static_cast<std::size_t>(i % 4),
                    other = (one + 1 + static_cast<std::size_t>(i / 4 % 3)) % 4;
         p[one] = {small / large * p[one].start, small / large * p[one].end};
         p[other] = {Vec3::Zero(), Vec3::Zero()};
         return p;
       });
-  vf_.expect_both_answers();
-  ee_.expect_both_answers();
+  expect_both_answers();
 }
 
 // The brute-force referee shares no algorithm with filtered_exact or the referee.
 TEST_F(FilteredExact, AgreesWithBruteForceOnSmallIntegers) {
   const auto check = [](const FourMovingPoints& p, const Answer& answer, const brute::Predicate& predicate) {
-    const brute::Four points{brute::moving(p[0]), brute::moving(p[1]), brute::moving(p[2]),
-                             brute::moving(p[3])};
-    const auto expected = brute::first_contact(points, predicate);
+    const auto expected = brute::first_contact(brute::moving(p), predicate);
     ASSERT_EQ(answer.verdict, expected ? Verdict::contact : Verdict::apart) << text(p);
     if (!expected) return;
     ASSERT_LE(mpq_class(answer.time), expected->upper) << text(p);
@@ -292,11 +270,7 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
     EXPECT_TRUE(same(ee, ask(MovingEdgeEdge{{q[1], q[0]}, {q[2], q[3]}})));
     EXPECT_TRUE(same(ee, ask(MovingEdgeEdge{{q[0], q[1]}, {q[3], q[2]}})));
 
-    const auto mapped = [&](auto&& map) {
-      FourMovingPoints result = q;
-      for (MovingPoint& p : result) p = {map(p.start), map(p.end)};
-      return result;
-    };
+    const auto mapped = [&](const auto& map) { return test::mapped(q, map); };
     std::vector<FourMovingPoints> alike{
         mapped([](const Vec3& p) { return Vec3(0x1p-900 * p); }),
         mapped([](const Vec3& p) { return Vec3(0x1p900 * p); }),
@@ -311,8 +285,7 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
       EXPECT_TRUE(same(ee, ask(query_of<MovingEdgeEdge>(p))));
     }
 
-    FourMovingPoints reversed = q;
-    for (MovingPoint& p : reversed) std::swap(p.start, p.end);
+    const FourMovingPoints reversed = test::reversed(q);
     EXPECT_EQ(vf.verdict, ask(query_of<MovingVertexFace>(reversed)).verdict);
     EXPECT_EQ(ee.verdict, ask(query_of<MovingEdgeEdge>(reversed)).verdict);
     if (HasFailure()) return;
@@ -323,8 +296,8 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
 // bits than the integers hold.
 TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
   constexpr double tiny = 0x1p-1074, far = 0x1p900;
-  const auto still = [](double x, double y, double z) { return MovingPoint{{x, y, z}, {x, y, z}}; };
-  const MovingPoint a = still(-far, -far, -far), b = still(far, -far, far), c = still(0, far, 0);
+  const MovingPoint a = test::still(-far, -far, -far), b = test::still(far, -far, far),
+                    c = test::still(0, far, 0);
   const MovingVertexFace crosses{{{tiny, 0, 2 * tiny}, {tiny, 0, 0}}, {a, b, c}},
       stays{{{tiny, 0, 3 * tiny}, {tiny, 0, 2 * tiny}}, {a, b, c}};
   for (const MovingVertexFace& query : {crosses, stays})

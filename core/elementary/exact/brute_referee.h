@@ -162,6 +162,9 @@ inline bool on_segment(const Poly* event, const SignOf& sign) {
 }
 
 using Four = std::array<PolyPoint, 4>;
+inline Four moving(const std::array<MovingPoint, 4>& p) {
+  return {moving(p[0]), moving(p[1]), moving(p[2]), moving(p[3])};
+}
 
 struct Predicate {
   std::vector<Poly> (*events)(const Four&);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <optional>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "core/elementary/exact/brute_referee.h"
@@ -20,6 +18,7 @@ using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
 using test::still;
+using test::text;
 using Result = std::optional<TimeEnclosure>;
 
 void expect_at(const Result& result, double time) {
@@ -58,13 +57,6 @@ Real distance(const MovingEdgeEdge& q, Real t) {
   return least;
 }
 
-std::string text(const FourMovingPoints& points, double r) {
-  std::ostringstream out;
-  out << "r = " << r << "\n";
-  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
-  return out.str();
-}
-
 // At no sampled time before the answer's are the features closer than r, beyond rounding, and at its time
 // they are.
 template <class Query>
@@ -91,7 +83,7 @@ TEST(Closeness, IsNeverContradictedByDistancesAtManyTimes) {
                                     : i % 3 == 1 ? test::vertex_meets_face(make, 0.5, 0.3, 0.3)
                                                  : make.lattice(2);
     const double r = i % 3 == 2 ? 0.5 * make.below(5) : std::exp(make.uniform(-6, 0.5));
-    SCOPED_TRACE(text(points, r));
+    SCOPED_TRACE(text(points, "r = ", r));
     compare_with_samples(query_of<MovingVertexFace>(points), r, 300);
     compare_with_samples(query_of<MovingEdgeEdge>(points), r, 300);
     close += first_closeness(query_of<MovingEdgeEdge>(points), r).has_value();
@@ -106,9 +98,8 @@ TEST(Closeness, AgreesWithBruteForceOnSmallIntegers) {
   for (int i = 0; i < 150; ++i) {
     const FourMovingPoints points = make.lattice(1 + i % 3);
     const double r = std::array{0.0, 0.5, 1.0, 1.5, 3.0}[static_cast<std::size_t>(make.below(5))];
-    SCOPED_TRACE(text(points, r));
-    const brute::Four four{brute::moving(points[0]), brute::moving(points[1]), brute::moving(points[2]),
-                           brute::moving(points[3])};
+    SCOPED_TRACE(text(points, "r = ", r));
+    const brute::Four four = brute::moving(points);
     for (const bool vertex_face : {true, false}) {
       const Result result = vertex_face ? first_closeness(query_of<MovingVertexFace>(points), r)
                                         : first_closeness(query_of<MovingEdgeEdge>(points), r);
@@ -126,7 +117,7 @@ TEST(Closeness, AtDistanceZeroIsContact) {
   QueryMaker make{3};
   for (int i = 0; i < 10'000; ++i) {
     const FourMovingPoints points = make.lattice(1 + i % 3);
-    SCOPED_TRACE(text(points, 0));
+    SCOPED_TRACE(text(points));
     const auto compare = [](const auto& query) {
       const Result close = first_closeness(query, 0), touching = first_contact(query);
       ASSERT_EQ(close.has_value(), touching.has_value());
@@ -212,23 +203,22 @@ TEST(Closeness, DoesNotDependOnTheOrderOfPoints) {
   for (int i = 0; i < 500; ++i) {
     const FourMovingPoints p = i % 2 == 0 ? make.lattice(2) : make.any();
     const double r = i % 2 == 0 ? 0.5 * (1 + make.below(3)) : make.uniform(0.01, 0.5);
+    SCOPED_TRACE(text(p, "r = ", r));
     const auto same = [&](const Result& a, const Result& b) {
-      ASSERT_EQ(a.has_value(), b.has_value()) << text(p, r);
+      ASSERT_EQ(a.has_value(), b.has_value());
       if (a) {
-        EXPECT_EQ(a->lo, b->lo) << text(p, r);
+        EXPECT_EQ(a->lo, b->lo);
       }
     };
-    const Result face = first_closeness(MovingVertexFace{p[0], {p[1], p[2], p[3]}}, r);
+    const Result face = first_closeness(query_of<MovingVertexFace>(p), r);
     same(face, first_closeness(MovingVertexFace{p[0], {p[2], p[1], p[3]}}, r));
     same(face, first_closeness(MovingVertexFace{p[0], {p[3], p[1], p[2]}}, r));
-    const Result edge = first_closeness(MovingEdgeEdge{{p[0], p[1]}, {p[2], p[3]}}, r);
+    const Result edge = first_closeness(query_of<MovingEdgeEdge>(p), r);
     same(edge, first_closeness(MovingEdgeEdge{{p[1], p[0]}, {p[2], p[3]}}, r));
     same(edge, first_closeness(MovingEdgeEdge{{p[3], p[2]}, {p[0], p[1]}}, r));
-    FourMovingPoints back = p;
-    for (MovingPoint& x : back) std::swap(x.start, x.end);
-    EXPECT_EQ(face.has_value(), first_closeness(query_of<MovingVertexFace>(back), r).has_value())
-        << text(p, r);
-    EXPECT_EQ(edge.has_value(), first_closeness(query_of<MovingEdgeEdge>(back), r).has_value()) << text(p, r);
+    const FourMovingPoints back = test::reversed(p);
+    EXPECT_EQ(face.has_value(), first_closeness(query_of<MovingVertexFace>(back), r).has_value());
+    EXPECT_EQ(edge.has_value(), first_closeness(query_of<MovingEdgeEdge>(back), r).has_value());
   }
 }
 

@@ -4,28 +4,24 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
-#include <sstream>
 #include <string>
 
 #include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/question/test_queries.h"
 
 namespace cscd {
 namespace {
 
 using exact::first_contact;
 using exact::TimeEnclosure;
+using test::against_triangle;
+using test::FourMovingPoints;
+using test::query_of;
+using test::still;
 using Result = std::optional<TimeEnclosure>;
 
-MovingPoint still(double x, double y, double z) {
-  return {{x, y, z}, {x, y, z}};
-}
 MovingPoint moving(Vec3 from, Vec3 to) {
   return {from, to};
-}
-
-// A vertex and the triangle (0,0,0), (4,0,0), (0,4,0) at rest.
-MovingVertexFace against_triangle(MovingPoint vertex) {
-  return {vertex, {still(0, 0, 0), still(4, 0, 0), still(0, 4, 0)}};
 }
 
 // An edge cd and the edge from (0,0,0) to (4,0,0) at rest.
@@ -47,47 +43,47 @@ void expect_contact_around(const Result& result, const mpq_class& time) {
 }
 
 TEST(ExactVertexFace, CrossesTheInterior) {
-  expect_contact_at(first_contact(against_triangle(moving({1, 1, 1}, {1, 1, -3}))), 0.25);
-  expect_contact_around(first_contact(against_triangle(moving({1, 1, 1}, {1, 1, -2}))), mpq_class(1, 3));
-  EXPECT_FALSE(first_contact(against_triangle(moving({3, 3, 1}, {3, 3, -3}))));
-  EXPECT_FALSE(first_contact(against_triangle(moving({1, 1, 3}, {1, 1, 1}))));
+  expect_contact_at(first_contact(against_triangle({1, 1, 1}, {1, 1, -3})), 0.25);
+  expect_contact_around(first_contact(against_triangle({1, 1, 1}, {1, 1, -2})), mpq_class(1, 3));
+  EXPECT_FALSE(first_contact(against_triangle({3, 3, 1}, {3, 3, -3})));
+  EXPECT_FALSE(first_contact(against_triangle({1, 1, 3}, {1, 1, 1})));
 }
 
 TEST(ExactVertexFace, TouchesCornersAndEdges) {
   for (const Vec3& on :
        {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(1, 3, 0)}) {
     const Vec3 up(0.5, -0.25, 1);
-    expect_contact_at(first_contact(against_triangle(moving(on + up, on - up))), 0.5);
+    expect_contact_at(first_contact(against_triangle(on + up, on - up)), 0.5);
     // A vertex that passes one unit in the last place beyond misses.
     const Vec3 out = on + 0x1p-51 * (on - Vec3(1, 1, 0));
-    EXPECT_FALSE(first_contact(against_triangle(moving(out + Vec3(0, 0, 1), out - Vec3(0, 0, 1)))));
+    EXPECT_FALSE(first_contact(against_triangle(out + Vec3(0, 0, 1), out - Vec3(0, 0, 1))));
   }
 }
 
 TEST(ExactVertexFace, TouchesExactlyAtTheEndsOfTheInterval) {
-  expect_contact_at(first_contact(against_triangle(moving({1, 1, 0}, {1, 1, 5}))), 0);
-  expect_contact_at(first_contact(against_triangle(moving({1, 1, 5}, {1, 1, 0}))), 1);
-  EXPECT_FALSE(first_contact(against_triangle(moving({1, 1, 0x1p-1074}, {1, 1, 5}))));
-  EXPECT_FALSE(first_contact(against_triangle(moving({1, 1, 5}, {1, 1, 0x1p-1074}))));
+  expect_contact_at(first_contact(against_triangle({1, 1, 0}, {1, 1, 5})), 0);
+  expect_contact_at(first_contact(against_triangle({1, 1, 5}, {1, 1, 0})), 1);
+  EXPECT_FALSE(first_contact(against_triangle({1, 1, 0x1p-1074}, {1, 1, 5})));
+  EXPECT_FALSE(first_contact(against_triangle({1, 1, 5}, {1, 1, 0x1p-1074})));
 }
 
 TEST(ExactVertexFace, AtRest) {
-  expect_contact_at(first_contact(against_triangle(still(1, 1, 0))), 0);
-  expect_contact_at(first_contact(against_triangle(still(2, 2, 0))), 0);
-  EXPECT_FALSE(first_contact(against_triangle(still(1, 1, 0x1p-1074))));
-  EXPECT_FALSE(first_contact(against_triangle(still(2, std::nextafter(2.0, 3.0), 0))));
+  expect_contact_at(first_contact(against_triangle({1, 1, 0}, {1, 1, 0})), 0);
+  expect_contact_at(first_contact(against_triangle({2, 2, 0}, {2, 2, 0})), 0);
+  EXPECT_FALSE(first_contact(against_triangle({1, 1, 0x1p-1074}, {1, 1, 0x1p-1074})));
+  EXPECT_FALSE(
+      first_contact(against_triangle({2, std::nextafter(2.0, 3.0), 0}, {2, std::nextafter(2.0, 3.0), 0})));
 }
 
 TEST(ExactVertexFace, CoplanarThroughout) {
-  expect_contact_at(first_contact(against_triangle(moving({-1, 1, 0}, {3, 1, 0}))), 0.25);
-  expect_contact_around(first_contact(against_triangle(moving({-1, 1, 0}, {2, 1, 0}))), mpq_class(1, 3));
-  expect_contact_at(first_contact(against_triangle(moving({8, 0, 0}, {0, 0, 0}))),
+  expect_contact_at(first_contact(against_triangle({-1, 1, 0}, {3, 1, 0})), 0.25);
+  expect_contact_around(first_contact(against_triangle({-1, 1, 0}, {2, 1, 0})), mpq_class(1, 3));
+  expect_contact_at(first_contact(against_triangle({8, 0, 0}, {0, 0, 0})),
                     0.5);  // the vertex moves along the line of an edge
-  EXPECT_FALSE(first_contact(against_triangle(moving({-1, 1, 0}, {-1, 9, 0}))));
+  EXPECT_FALSE(first_contact(against_triangle({-1, 1, 0}, {-1, 9, 0})));
   // The vertex passes through the corner (0,4,0) exactly, then misses the corner by little.
-  expect_contact_at(first_contact(against_triangle(moving({-1, 4, 0}, {1, 4, 0}))), 0.5);
-  EXPECT_FALSE(
-      first_contact(against_triangle(moving({-1, std::nextafter(4, 5), 0}, {1, std::nextafter(4, 5), 0}))));
+  expect_contact_at(first_contact(against_triangle({-1, 4, 0}, {1, 4, 0})), 0.5);
+  EXPECT_FALSE(first_contact(against_triangle({-1, std::nextafter(4, 5), 0}, {1, std::nextafter(4, 5), 0})));
 }
 
 TEST(ExactVertexFace, CoplanarThroughoutInATurningPlane) {
@@ -152,7 +148,7 @@ TEST(ExactVertexFace, LeavesOneUlpBeforeOrAfterTouching) {
   // The vertex is inside as long as x = 1 - 2t >= 0, and in the plane at t = z. It leaves the triangle at
   // t = 1/2, one ulp after or before it is in the plane.
   constexpr double ulp = 0x1p-53;
-  const auto passing = [](double z) { return against_triangle(moving({1, 1, z}, {-1, 1, z - 1})); };
+  const auto passing = [](double z) { return against_triangle({1, 1, z}, {-1, 1, z - 1}); };
   expect_contact_at(first_contact(passing(0.5 - ulp)), 0.5 - ulp);
   expect_contact_at(first_contact(passing(0.5)), 0.5);
   EXPECT_FALSE(first_contact(passing(0.5 + ulp)));
@@ -269,9 +265,9 @@ struct Lattice {
   int in(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
   Vec3 point(int reach) { return Vec3(in(-reach, reach), in(-reach, reach), in(-reach, reach)); }
 
-  std::array<MovingPoint, 4> query(Family family) {
+  FourMovingPoints query(Family family) {
     const int reach = family == Family::tight ? 1 : 2;
-    std::array<MovingPoint, 4> points;
+    FourMovingPoints points;
     for (MovingPoint& p : points) p = {point(reach), point(reach)};
     if (family == Family::flat)
       for (MovingPoint& p : points) p.start.z() = p.end.z() = 0;
@@ -283,27 +279,9 @@ struct Lattice {
   }
 };
 
-MovingVertexFace as_vertex_face(const std::array<MovingPoint, 4>& p) {
-  return {p[0], {p[1], p[2], p[3]}};
-}
-MovingEdgeEdge as_edge_edge(const std::array<MovingPoint, 4>& p) {
-  return {{p[0], p[1]}, {p[2], p[3]}};
-}
-
-std::string describe(const std::array<MovingPoint, 4>& points) {
-  std::ostringstream text;
-  for (const MovingPoint& p : points)
-    text << "(" << p.start.transpose() << ") -> (" << p.end.transpose() << ")  ";
-  return text.str();
-}
-
-brute::Four as_polynomials(const std::array<MovingPoint, 4>& p) {
-  return {brute::moving(p[0]), brute::moving(p[1]), brute::moving(p[2]), brute::moving(p[3])};
-}
-
-void compare_with_brute_force(const std::array<MovingPoint, 4>& query, const Result& result,
+void compare_with_brute_force(const FourMovingPoints& query, const Result& result,
                               const brute::Predicate& predicate) {
-  const brute::Four points = as_polynomials(query);
+  const brute::Four points = brute::moving(query);
   const auto events = predicate.events(points);
   const auto expected = brute::first_contact(points, predicate);
   ASSERT_EQ(result.has_value(), expected.has_value());
@@ -330,8 +308,9 @@ TEST(ExactReferee, AgreesWithBruteForceOnSmallIntegers) {
     for (int i = 0; i < cases; ++i) {
       const auto query = lattice.query(static_cast<Family>(f));
       SCOPED_TRACE("seed " + std::to_string(seed) + " family " + std::to_string(f) + " case " +
-                   std::to_string(i) + ": " + describe(query));
-      const Result vf = first_contact(as_vertex_face(query)), ee = first_contact(as_edge_edge(query));
+                   std::to_string(i) + ": " + test::text(query));
+      const Result vf = first_contact(query_of<MovingVertexFace>(query)),
+                   ee = first_contact(query_of<MovingEdgeEdge>(query));
       compare_with_brute_force(query, vf, brute::kVertexTriangle);
       compare_with_brute_force(query, ee, brute::kEdgeEdge);
       touching[0] += vf.has_value();
@@ -358,8 +337,9 @@ TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
   Lattice lattice{std::mt19937_64(seed)};
   for (int i = 0; i < 4000; ++i) {
     const auto q = lattice.query(static_cast<Family>(i % static_cast<int>(Family::count_)));
-    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " + describe(q));
-    const Result vf = first_contact(as_vertex_face(q)), ee = first_contact(as_edge_edge(q));
+    SCOPED_TRACE("seed " + std::to_string(seed) + " case " + std::to_string(i) + ": " + test::text(q));
+    const Result vf = first_contact(query_of<MovingVertexFace>(q)),
+                 ee = first_contact(query_of<MovingEdgeEdge>(q));
 
     expect_same(vf, first_contact(MovingVertexFace{q[0], {q[2], q[3], q[1]}}));
     expect_same(vf, first_contact(MovingVertexFace{q[0], {q[3], q[1], q[2]}}));
@@ -368,25 +348,20 @@ TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
     expect_same(ee, first_contact(MovingEdgeEdge{{q[1], q[0]}, {q[2], q[3]}}));
     expect_same(ee, first_contact(MovingEdgeEdge{{q[0], q[1]}, {q[3], q[2]}}));
 
-    const auto mapped = [&](auto&& map) {
-      auto result = q;
-      for (MovingPoint& p : result) p = {map(p.start), map(p.end)};
-      return result;
-    };
+    const auto mapped = [&](const auto& map) { return test::mapped(q, map); };
     const Vec3 shift(1 << 20, -12345.5, 0x1p-20);
     for (const auto& same : {mapped([&](const Vec3& p) { return Vec3(p + shift); }),
                              mapped([](const Vec3& p) { return Vec3(0x1p-900 * p); }),
                              mapped([](const Vec3& p) { return Vec3(0x1p900 * p); }),
                              mapped([](const Vec3& p) { return Vec3(-p); }),
                              mapped([](const Vec3& p) { return Vec3(p.y(), p.z(), p.x()); })}) {
-      expect_same(vf, first_contact(as_vertex_face(same)));
-      expect_same(ee, first_contact(as_edge_edge(same)));
+      expect_same(vf, first_contact(query_of<MovingVertexFace>(same)));
+      expect_same(ee, first_contact(query_of<MovingEdgeEdge>(same)));
     }
 
-    auto reversed = q;
-    for (MovingPoint& p : reversed) std::swap(p.start, p.end);
-    const Result vf_back = first_contact(as_vertex_face(reversed)),
-                 ee_back = first_contact(as_edge_edge(reversed));
+    const FourMovingPoints reversed = test::reversed(q);
+    const Result vf_back = first_contact(query_of<MovingVertexFace>(reversed)),
+                 ee_back = first_contact(query_of<MovingEdgeEdge>(reversed));
     EXPECT_EQ(vf.has_value(), vf_back.has_value());
     EXPECT_EQ(ee.has_value(), ee_back.has_value());
     // The first contact of the reversed motion is the last contact, which is not before the first.

@@ -9,16 +9,16 @@
 
 #include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_queries.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd {
 
 namespace {
 
+using test::still;
+
 // The referee, asked about features at rest. It decides without any floating-point filter.
-MovingPoint still(const Vec3& p) {
-  return {p, p};
-}
 bool referee_vertex_triangle(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c) {
   return exact::first_contact(MovingVertexFace{still(v), {still(a), still(b), still(c)}}).has_value();
 }

@@ -11,6 +11,7 @@ namespace {
 using test::FourMovingPoints;
 using test::query_of;
 using test::QueryMaker;
+using test::still;
 
 // The queries that each part of the filter drops.
 struct Dropped {
@@ -52,10 +53,9 @@ TEST(Filter, KeepsWhatTouchesWithinRounding) {
   QueryMaker make(2);
   for (const double scale : {1.0, 1e-90, 1e-140, 1e95, 1e140}) {
     for (const double offset : {0.0, 1e3, 1e8}) {
-      const auto place = [&](FourMovingPoints p) {
+      const auto place = [&](const FourMovingPoints& p) {
         const Vec3 by = offset * Vec3(1, -0.7, 0.3);
-        for (MovingPoint& x : p) x = {scale * (x.start + by), scale * (x.end + by)};
-        return p;
+        return test::scaled(test::moved(p, by, by), scale);
       };
       const auto params = [&](int i, double& t, double& u, double& v) {
         t = i % 3 == 0 ? 0 : i % 3 == 1 ? 1 : make.uniform(0, 1);
@@ -74,10 +74,6 @@ TEST(Filter, KeepsWhatTouchesWithinRounding) {
       });
     }
   }
-}
-
-MovingPoint still(double x, double y, double z) {
-  return {{x, y, z}, {x, y, z}};
 }
 
 // Rule certain-sign. A volume that is zero throughout excludes nothing; a volume that stays away from zero

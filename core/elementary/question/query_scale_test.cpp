@@ -25,8 +25,8 @@ void expect_in_range(int seed) {
   for (int exponent = -400; exponent <= 400; exponent += 5) {
     test::FourMovingPoints points = make.lattice(4);
     points[0].start = Vec3(3, -4, 1);
-    for (MovingPoint& p : points) p = {std::ldexp(1, exponent) * p.start, std::ldexp(1, exponent) * p.end};
-    const Query query = test::query_of<Query>(points), brought = in_range(query);
+    const Query query = test::query_of<Query>(test::scaled(points, std::ldexp(1, exponent)));
+    const Query brought = in_range(query);
     const std::vector<double> before = coordinates(query), after = coordinates(brought);
     const double largest = largest_coordinates(brought).maxCoeff();
     const bool stays = exponent >= -66 && exponent <= 61;
@@ -53,8 +53,8 @@ TEST(QueryScale, ScalesEachAxisToUnit) {
   for (int i = 0; i < 200; ++i) {
     test::FourMovingPoints points = make.lattice(4);
     points[1].end = Vec3(4, 3, -2);
-    for (MovingPoint& p : points)
-      for (Vec3* end : {&p.start, &p.end}) *end = end->cwiseProduct(Vec3(0x1p-300, 0x1p7, 0x1p200));
+    const Vec3 by(0x1p-300, 0x1p7, 0x1p200);
+    points = test::mapped(points, [&](const Vec3& p) -> Vec3 { return p.cwiseProduct(by); });
     const auto query = test::query_of<MovingEdgeEdge>(points), unit = axes_scaled_to_unit(query);
     const std::vector<double> before = coordinates(query), after = coordinates(unit);
     for (int axis = 0; axis < 3; ++axis) {

@@ -6,6 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <sstream>
+#include <string>
+#include <utility>
 
 #include "core/geometry/feature_motion.h"
 
@@ -26,8 +29,39 @@ inline MovingEdgeEdge query_of(const FourMovingPoints& p) {
   return {{p[0], p[1]}, {p[2], p[3]}};
 }
 
+// The points with map() applied to where they start and where they end.
+template <class Map>
+FourMovingPoints mapped(FourMovingPoints points, const Map& map) {
+  for (MovingPoint& p : points) p = {map(p.start), map(p.end)};
+  return points;
+}
+inline FourMovingPoints scaled(const FourMovingPoints& points, double factor) {
+  return mapped(points, [&](const Vec3& p) -> Vec3 { return factor * p; });
+}
+inline FourMovingPoints moved(FourMovingPoints points, const Vec3& start, const Vec3& end) {
+  for (MovingPoint& p : points) p = {p.start + start, p.end + end};
+  return points;
+}
+inline FourMovingPoints reversed(FourMovingPoints points) {
+  for (MovingPoint& p : points) std::swap(p.start, p.end);
+  return points;
+}
+
+// The points to the last bit, and what else belongs to the query.
+template <class... More>
+std::string text(const FourMovingPoints& points, const More&... more) {
+  std::ostringstream out;
+  out.precision(17);
+  for (const MovingPoint& p : points) out << p.start.transpose() << " -> " << p.end.transpose() << "\n";
+  ((out << more), ...);
+  return out.str();
+}
+
+inline MovingPoint still(const Vec3& p) {
+  return {p, p};
+}
 inline MovingPoint still(double x, double y, double z) {
-  return {{x, y, z}, {x, y, z}};
+  return still(Vec3(x, y, z));
 }
 
 // A vertex that moves, and a face that does not.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/detect/test_feature_pairs.h"
 #include "core/fast/certify/test_certificates.h"
 
 namespace cscd::fast {
@@ -22,6 +23,18 @@ void for_each_pair_of_lanes(const CertifiedBody& scene, const Visit& visit) {
         for (std::size_t j = 0; patches[q].lanes >> j != 0; ++j)
           visit(scene.tree.triangles[p][i], scene.tree.triangles[q][j], (needed >> j & 1) != 0);
       }
+}
+
+// Both drop the same pairs, in all nodes.
+void expect_same(const CertifiedBody& scene, const Certificates& found, const Certificates& expected) {
+  for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
+    for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
+      const Certificates::Shared one = found.shared(p, q), other = expected.shared(p, q);
+      ASSERT_TRUE(one.p == other.p && one.q == other.q) << p << " and " << q;
+    }
+  for (std::size_t a = 0; a < scene.tree.nodes.size(); ++a)
+    for (std::size_t b = a; b < scene.tree.nodes.size(); ++b)
+      ASSERT_EQ(found.skip(a, b), expected.skip(a, b)) << a << " and " << b;
 }
 
 struct Case {
@@ -78,22 +91,13 @@ TEST(Certificates, RuleOneFieldAFeaturePairIsDroppedOnlyByOneFieldAllRoundIt) {
       ++dropped;
       EXPECT_TRUE(scene.one_field(at, also_at)) << +at[0] << " and " << +also_at[0];
     };
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const TriangleId triangle{static_cast<std::int32_t>(t)};
-      const Triangle& corners = mesh.corners(triangle);
-      for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-        const VertexId vertex{static_cast<std::int32_t>(v)};
-        if (std::find(corners.begin(), corners.end(), vertex) == corners.end())
-          look(mesh.triangles_at(vertex), std::span(&triangle, 1));
-      }
+    for (const FeaturePair& pair : test::all_feature_pairs(mesh)) {
+      const TriangleId face[] = {TriangleId{pair.b}};
+      if (pair.kind == FeaturePair::Kind::vertex_face)
+        look(mesh.triangles_at(VertexId{pair.a}), face);
+      else
+        look(mesh.triangles_at(EdgeId{pair.a}), mesh.triangles_at(EdgeId{pair.b}));
     }
-    for (std::size_t e = 0; e < mesh.edge_count(); ++e)
-      for (std::size_t f = e + 1; f < mesh.edge_count(); ++f) {
-        const EdgeId one{static_cast<std::int32_t>(e)}, other{static_cast<std::int32_t>(f)};
-        const Edge &a = mesh.ends(one), &b = mesh.ends(other);
-        if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1])
-          look(mesh.triangles_at(one), mesh.triangles_at(other));
-      }
     EXPECT_GT(dropped, 100'000u);
   }
 }
@@ -290,14 +294,7 @@ class FreshBesideUsed {
     Certificates fresh(scene_.mesh, scene_.tree, scene_.covers);
     fresh.use_covers(covers);
     look(fresh, mirrored);
-    for (std::size_t p = 0; p < scene_.tree.patches.size(); ++p)
-      for (std::size_t q = 0; q < scene_.tree.patches.size(); ++q) {
-        const Certificates::Shared found = scene_.certificates.shared(p, q), expected = fresh.shared(p, q);
-        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
-      }
-    for (std::size_t a = 0; a < scene_.tree.nodes.size(); ++a)
-      for (std::size_t b = a; b < scene_.tree.nodes.size(); ++b)
-        ASSERT_EQ(scene_.certificates.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene_, scene_.certificates, fresh));
     const RadialCounts &found = scene_.certificates.counts(), &expected = fresh.counts();
     ASSERT_EQ(found.positive, expected.positive);
     ASSERT_EQ(found.negative, expected.negative);
@@ -368,15 +365,10 @@ TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
     look(used, all);
     Certificates fresh = scene.with_caps(), other = scene.with_caps();
     look(fresh, all), look(other, !all);
+    ASSERT_NO_FATAL_FAILURE(expect_same(scene, used, fresh));
     for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
-      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q) {
-        const Certificates::Shared found = used.shared(p, q), expected = fresh.shared(p, q);
-        ASSERT_TRUE(found.p == expected.p && found.q == expected.q) << p << " and " << q;
-        different += found.p != other.shared(p, q).p;
-      }
-    for (std::size_t a = 0; a < scene.tree.nodes.size(); ++a)
-      for (std::size_t b = a; b < scene.tree.nodes.size(); ++b)
-        ASSERT_EQ(used.skip(a, b), fresh.skip(a, b)) << a << " and " << b;
+      for (std::size_t q = 0; q < scene.tree.patches.size(); ++q)
+        different += used.shared(p, q).p != other.shared(p, q).p;
   }
   EXPECT_GT(different, 100u);
 }

@@ -16,14 +16,14 @@ const ElementaryTest& exact() {
   return *find_elementary_test("exact");
 }
 
-// Counts the contacts between triangles of the star of a vertex.
-std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, VertexId vertex) {
+// Counts the feature pairs of triangles of the star of a vertex that touch, or come within r.
+std::size_t contacts_in_star(const TriangleMesh& mesh, const Motion& motion, VertexId vertex, double r = 0) {
   std::size_t contacts = 0;
   const std::span<const TriangleId> star = mesh.triangles_at(vertex);
   for (std::size_t i = 0; i < star.size(); ++i)
     for (std::size_t j = i + 1; j < star.size(); ++j)
       for_each_carried(mesh, TrianglePair{star[i], star[j]}, [&](const FeaturePair& pair) {
-        contacts += ask(exact(), mesh, motion, pair).verdict != Verdict::apart;
+        contacts += ask_close(exact(), mesh, motion, pair, r).verdict != Verdict::apart;
       });
   return contacts;
 }
@@ -76,13 +76,7 @@ TEST(Stars, FeaturesOfAFlatStarKeepItsHeight) {
       const double r = std::exp2(1 - 6 * static_cast<double>(random()) * 0x1p-32);
       const bool kept = stars.flat(vertex, local, local.in_local(r));
       settled += kept;
-      std::size_t found = 0;
-      const std::span<const TriangleId> star = body.mesh.triangles_at(vertex);
-      for (std::size_t i = 0; i < star.size(); ++i)
-        for (std::size_t j = i + 1; j < star.size(); ++j)
-          for_each_carried(body.mesh, TrianglePair{star[i], star[j]}, [&](const FeaturePair& pair) {
-            found += ask_close(exact(), body.mesh, body.motion(), pair, r).verdict != Verdict::apart;
-          });
+      const std::size_t found = contacts_in_star(body.mesh, body.motion(), vertex, r);
       close += found > 0 && stars.flat(vertex, local);
       if (kept) {
         EXPECT_EQ(found, 0u) << "seed " << seed << ", vertex " << v << ", r " << r;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/sort_unique.h"
 #include "core/fast/prepare/covers.h"
 
 // Patches grow one beside the other. What is left over between them is joined. Then small patches are emptied
@@ -23,8 +24,7 @@ std::vector<VertexId> vertices_of(const TriangleMesh& mesh, std::span<const Tria
   std::vector<VertexId> vertices;
   for (const TriangleId t : triangles)
     vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  sort_unique(vertices);
   return vertices;
 }
 
