@@ -22,7 +22,7 @@
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
 #include "scenes/catalog/plain_name.h"
-#include "scenes/catalog/scene_cache.h"
+#include "scenes/catalog/scene.h"
 
 namespace cscd::bench {
 namespace {

@@ -5,7 +5,6 @@
 #include <exception>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 

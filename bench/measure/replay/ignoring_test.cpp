@@ -2,7 +2,6 @@
 #include <random>
 
 #include "bench/measure/replay/contestant.h"
-#include "bench/measure/replay/replay.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/detect/start/crossings.h"

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/thickness.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 
 #include "bench/cli/output/progress.h"
 #include "bench/measure/replay/contestant.h"

@@ -13,8 +13,6 @@
 #include "bench/measure/replay/timing.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
-#include "bench/query/input/thickness.h"
-#include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/mean_edge.h"
