@@ -78,11 +78,7 @@ std::string slug(const std::string& text) {
 
 std::string machine_of(const ordered_json& entry) {
   const ordered_json& environment = entry.at("environment");
-  const auto text = [&](const char* key) {
-    const ordered_json value = environment.value(key, ordered_json("unknown"));
-    return value.is_string() ? value.get<std::string>() : value.dump();
-  };
-  return slug(text("cpu")) + "-" + text("cores") + "core";
+  return slug(environment_text(environment, "cpu")) + "-" + environment_text(environment, "cores") + "core";
 }
 
 ordered_json read_entry(const fs::path& path) {

@@ -55,9 +55,9 @@ double milliseconds_per(const std::string& unit, const std::string& where) {
 
 }  // namespace
 
-std::string environment_text(const Record& record, const char* key) {
-  if (!record.environment.contains(key)) return "unknown";
-  const ordered_json& value = record.environment[key];
+std::string environment_text(const ordered_json& environment, const char* key) {
+  if (!environment.contains(key)) return "unknown";
+  const ordered_json& value = environment[key];
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 

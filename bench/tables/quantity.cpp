@@ -198,10 +198,6 @@ std::string short_text(double value) {
   return text;
 }
 
-bool is_marked(const Record& record, const std::string& strategy) {
-  return shortfall(record, strategy).has_value();
-}
-
 Measured measure(const ordered_json& definition, const Record& record) {
   const std::string quantity = definition.at("quantity"), strategy = definition.value("strategy", ""),
                     statistic = definition.value("statistic", "mean"),
@@ -213,7 +209,7 @@ Measured measure(const ordered_json& definition, const Record& record) {
     Measured out = is_ratio ? ratio(amount, amount_of(record, over_quantity, over, statistic),
                                     over + ": " + over_quantity)
                             : measured(amount, definition.value("scale", 1.0));
-    out.marked = quantity.starts_with("ms.") && (is_marked(record, strategy) || is_marked(record, over));
+    out.marked = quantity.starts_with("ms.") && (shortfall(record, strategy) || shortfall(record, over));
     return out;
   } catch (const Missing& missing) {
     return {{}, {}, missing.reason};
