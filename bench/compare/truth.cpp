@@ -18,16 +18,6 @@ bool has_own_test(const Record& record, const std::string& row) {
                      [&](const nlohmann::ordered_json& own) { return own.value("strategy", "") == row; });
 }
 
-const VerifiedStrategy* verified(const Record& record, const std::string& row) {
-  for (const VerifiedStrategy& strategy : record.verification.strategies)
-    if (strategy.name == row) return &strategy;
-  return nullptr;
-}
-
-bool contains(const std::vector<std::size_t>& intervals, std::size_t interval) {
-  return std::find(intervals.begin(), intervals.end(), interval) != intervals.end();
-}
-
 // "3 intervals (4, 7, 9)"; at most five are listed.
 std::string listed(const std::vector<std::size_t>& intervals) {
   std::string out =
@@ -44,8 +34,10 @@ bool has_contact(const StrategyRecord& row, std::size_t place) {
 
 // Whether rows of first_contact promise nothing on an interval, because its start is not embedded.
 bool promises_nothing(const Record& record, std::size_t interval) {
-  return contains(record.verification.unembedded, interval) ||
-         contains(record.verification.excused, interval);
+  const auto among = [&](const std::vector<std::size_t>& intervals) {
+    return std::ranges::find(intervals, interval) != intervals.end();
+  };
+  return among(record.verification.unembedded) || among(record.verification.excused);
 }
 
 void compare_verification(const Record& before, const Record& after, Findings& out) {
@@ -54,7 +46,7 @@ void compare_verification(const Record& before, const Record& after, Findings& o
     for (const std::string& failure : row.failures)
       out.push_back({scene, row.name, "verification failed: " + failure, true});
   for (const VerifiedStrategy& row : before.verification.strategies) {
-    const VerifiedStrategy* now = verified(after, row.name);
+    const VerifiedStrategy* now = after.verification.strategy(row.name);
     if (!row.failures.empty() && now != nullptr && now->failures.empty())
       out.push_back({scene, row.name, "verification succeeds, which failed in OLD", false});
   }
@@ -83,7 +75,7 @@ void compare_accuracy(const Record& before, const Record& after, Findings& out) 
     compare("largest error of a time", a.largest_time_error, b.largest_time_error);
   }
   for (const VerifiedStrategy& row : new_v.strategies) {
-    const VerifiedStrategy* old_row = verified(before, row.name);
+    const VerifiedStrategy* old_row = old_v.strategy(row.name);
     if (old_row == nullptr || old_row->contacts_found == row.contacts_found) continue;
     if (old_row->contacts_expected != row.contacts_expected) {
       out.push_back({scene, row.name,

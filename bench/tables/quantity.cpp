@@ -116,10 +116,8 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
 
 Amount verification_amount(const VerificationRecord& verification, const std::string& strategy,
                            const std::string& what) {
-  const auto row =
-      std::find_if(verification.strategies.begin(), verification.strategies.end(),
-                   [&](const VerifiedStrategy& candidate) { return candidate.name == strategy; });
-  if (row == verification.strategies.end()) throw Missing{strategy + ": not verified in this record"};
+  const VerifiedStrategy* row = verification.strategy(strategy);
+  if (row == nullptr) throw Missing{strategy + ": not verified in this record"};
   if (row->contacts_expected == 0) throw Missing{"no contact on the verified intervals"};
   if (what == "recall")
     return exactly(static_cast<double>(row->contacts_found) / static_cast<double>(row->contacts_expected));

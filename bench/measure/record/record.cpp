@@ -21,9 +21,13 @@ bool VerificationRecord::ok() const {
                      [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
 }
 
+const VerifiedStrategy* VerificationRecord::strategy(std::string_view name) const {
+  const auto row = std::ranges::find(strategies, name, &VerifiedStrategy::name);
+  return row == strategies.end() ? nullptr : &*row;
+}
+
 const StrategyRecord* Record::strategy(std::string_view name) const {
-  const auto row = std::find_if(strategies.begin(), strategies.end(),
-                                [&](const StrategyRecord& strategy) { return strategy.name == name; });
+  const auto row = std::ranges::find(strategies, name, &StrategyRecord::name);
   return row == strategies.end() ? nullptr : &*row;
 }
 

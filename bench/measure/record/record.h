@@ -105,6 +105,7 @@ struct VerificationRecord {
   double seconds = 0;
 
   bool ok() const;
+  const VerifiedStrategy* strategy(std::string_view name) const;  // null when it was not verified
 };
 
 struct SceneRecord {

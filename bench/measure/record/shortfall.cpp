@@ -18,9 +18,8 @@ std::optional<Shortfall> shortfall(const VerificationRecord& verification, const
 }
 
 std::optional<Shortfall> shortfall(const Record& record, std::string_view strategy) {
-  for (const VerifiedStrategy& row : record.verification.strategies)
-    if (row.name == strategy) return shortfall(record.verification, row);
-  return std::nullopt;
+  const VerifiedStrategy* row = record.verification.strategy(strategy);
+  return row == nullptr ? std::nullopt : shortfall(record.verification, *row);
 }
 
 std::string shortfall_text(const Shortfall& lacking) {
