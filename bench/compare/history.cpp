@@ -118,7 +118,7 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
         if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) ||
             !wanted(choice.stage, stage))
           continue;
-        auto course = std::find_if(courses.begin(), courses.end(), [&, &stage = stage](const Course& c) {
+        auto course = std::ranges::find_if(courses, [&, &stage = stage](const Course& c) {
           return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage &&
                  c.measured == measured;
         });
@@ -208,7 +208,7 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
   if (entries.empty())
     throw InputError("history " + folder.string() +
                      ": holds no entry; add one with scripts/compare-commits --keep or cscd history --keep");
-  std::stable_sort(entries.begin(), entries.end(), [](const ordered_json& a, const ordered_json& b) {
+  std::ranges::stable_sort(entries, [](const ordered_json& a, const ordered_json& b) {
     return a.at("committed").get<std::string>() < b.at("committed").get<std::string>();
   });
   std::vector<Course> courses;
@@ -250,8 +250,8 @@ std::string courses_text(const std::vector<Course>& courses, bool every_point) {
            (course.ms.size() == 1 ? " commit, " : " commits, ") + std::to_string(course.changes.size()) +
            (course.changes.size() == 1 ? " change\n" : " changes\n");
     for (std::size_t i = 0; i < course.ms.size(); ++i) {
-      const bool is_change = std::any_of(course.changes.begin(), course.changes.end(),
-                                         [&](const ChangePoint& change) { return change.first == i; });
+      const bool is_change =
+          std::ranges::any_of(course.changes, [&](const ChangePoint& change) { return change.first == i; });
       if (every_point || is_change) out += point_text(course, i);
     }
   }

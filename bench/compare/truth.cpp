@@ -14,8 +14,9 @@ constexpr std::string_view kComplete = "complete", kFirstContact = "first_contac
                            kAllFromEmbedded = "all_from_embedded";
 
 bool has_own_test(const Record& record, const std::string& row) {
-  return std::any_of(record.verification.own_tests.begin(), record.verification.own_tests.end(),
-                     [&](const nlohmann::ordered_json& own) { return own.value("strategy", "") == row; });
+  return std::ranges::any_of(record.verification.own_tests, [&](const nlohmann::ordered_json& own) {
+    return own.value("strategy", "") == row;
+  });
 }
 
 // "3 intervals (4, 7, 9)"; at most five are listed.

@@ -32,16 +32,15 @@ struct Amount {
 double summary(const std::vector<double>& samples, const std::string& statistic) {
   if (statistic == "mean") return mean(samples);
   if (statistic == "median") return median(samples);
-  if (statistic == "min") return *std::min_element(samples.begin(), samples.end());
-  if (statistic == "max") return *std::max_element(samples.begin(), samples.end());
+  if (statistic == "min") return std::ranges::min(samples);
+  if (statistic == "max") return std::ranges::max(samples);
   throw std::logic_error("unknown statistic " + statistic);
 }
 
 const StrategyRecord& strategy_of(const Record& record, const std::string& name) {
   if (const StrategyRecord* strategy = record.strategy(name)) return *strategy;
   const auto rows = strategies();
-  const bool built =
-      std::any_of(rows.begin(), rows.end(), [&](const Strategy& row) { return row.name == name; });
+  const bool built = std::ranges::any_of(rows, [&](const Strategy& row) { return row.name == name; });
   throw Missing{name + (built ? ": not run in this record" : ": not in this build")};
 }
 

@@ -17,8 +17,8 @@ using nlohmann::ordered_json;
 
 bool VerificationRecord::ok() const {
   if (truth && !truth->ok()) return false;
-  return std::all_of(strategies.begin(), strategies.end(),
-                     [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
+  return std::ranges::all_of(strategies,
+                             [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
 }
 
 const VerifiedStrategy* VerificationRecord::strategy(std::string_view name) const {
@@ -34,9 +34,8 @@ const StrategyRecord* Record::strategy(std::string_view name) const {
 void append_counts(const Report& report, const ContactSet& found, CountColumns& columns) {
   const nlohmann::json counts = counts_json(report);
   for (const auto& [key, value] : counts.items()) columns[key].push_back(value.get<std::uint64_t>());
-  const auto undecided = static_cast<std::uint64_t>(
-      std::count_if(found.contacts.begin(), found.contacts.end(),
-                    [](const Contact& contact) { return contact.verdict == Verdict::undecided; }));
+  const auto undecided = static_cast<std::uint64_t>(std::ranges::count_if(
+      found.contacts, [](const Contact& contact) { return contact.verdict == Verdict::undecided; }));
   columns["contacts"].push_back(found.contacts.size() - undecided);
   columns["undecided"].push_back(undecided);
 }

@@ -75,8 +75,7 @@ int plants_found(Prepared (*flawed)(const StrategyInput&), std::uint64_t seeds) 
                                 spoilt = {record_of(seed, flawed, is_verified)};
       const bool differs = sound[0].strategies[0].digests != spoilt[0].strategies[0].digests;
       const std::vector<TruthFinding> findings = compare_truth(sound, spoilt);
-      EXPECT_EQ(std::any_of(findings.begin(), findings.end(), [](const auto& f) { return f.is_lost; }),
-                differs)
+      EXPECT_EQ(std::ranges::any_of(findings, [](const auto& f) { return f.is_lost; }), differs)
           << "seed " << seed << (is_verified ? ", verified" : ", counted");
       changed += differs;
     }

@@ -164,7 +164,7 @@ struct Subject {
 // How many of the reference's contacts of the earliest time the answer lacks.
 std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& answer) {
   const auto attaining_first = [&](const ContactSet& set) {
-    return std::count_if(set.contacts.begin(), set.contacts.end(), [&](const Contact& contact) {
+    return std::ranges::count_if(set.contacts, [&](const Contact& contact) {
       return contact.time == reference.contacts.front().time;
     });
   };

@@ -87,8 +87,7 @@ TruthRecord held_against(const OutsideTruth& outside, const TriangleMesh& mesh, 
 void keep_shared(const ContactSet& truth, ContactSet& answer) {
   ContactSet shared;
   for (const Contact& contact : truth.contacts)
-    if (std::any_of(answer.contacts.begin(), answer.contacts.end(),
-                    [&](const Contact& said) { return said.pair == contact.pair; }))
+    if (std::ranges::any_of(answer.contacts, [&](const Contact& said) { return said.pair == contact.pair; }))
       shared.contacts.push_back(contact);
   answer = std::move(shared);
 }
