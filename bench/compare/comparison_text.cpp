@@ -7,7 +7,6 @@
 
 #include "bench/cli/output/markdown.h"
 #include "bench/compare/comparison.h"
-#include "bench/compare/times.h"
 #include "bench/measure/record/shortfall.h"
 #include "core/base/number_text.h"
 

@@ -13,6 +13,7 @@
 #include "bench/compare/times.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -246,9 +247,8 @@ std::string courses_text(const std::vector<Course>& courses, bool every_point) {
     out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
            std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
            std::to_string(course.measured.at("rows").size()) +
-           " rows in turns: " + std::to_string(course.ms.size()) +
-           (course.ms.size() == 1 ? " commit, " : " commits, ") + std::to_string(course.changes.size()) +
-           (course.changes.size() == 1 ? " change\n" : " changes\n");
+           " rows in turns: " + many(course.ms.size(), "commit") + ", " +
+           many(course.changes.size(), "change") + "\n";
     for (std::size_t i = 0; i < course.ms.size(); ++i) {
       const bool is_change =
           std::ranges::any_of(course.changes, [&](const ChangePoint& change) { return change.first == i; });

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bench/compare/side.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -21,8 +22,7 @@ bool has_own_test(const Record& record, const std::string& row) {
 
 // "3 intervals (4, 7, 9)"; at most five are listed.
 std::string listed(const std::vector<std::size_t>& intervals) {
-  std::string out =
-      std::to_string(intervals.size()) + (intervals.size() == 1 ? " interval (" : " intervals (");
+  std::string out = many(intervals.size(), "interval") + " (";
   for (std::size_t i = 0; i < std::min<std::size_t>(intervals.size(), 5); ++i)
     out += (i > 0 ? ", " : "") + std::to_string(intervals[i]);
   return out + (intervals.size() > 5 ? ", ...)" : ")");
