@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <fstream>
 #include <span>
-#include <sstream>
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
@@ -84,9 +83,7 @@ std::string machine_of(const ordered_json& entry) {
 
 ordered_json read_entry(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  const ordered_json entry = ordered_json::parse(text.str(), nullptr, false);
+  const ordered_json entry = ordered_json::parse(file, nullptr, false);
   if (entry.is_discarded() || !entry.is_object() || entry.value("schema", "") != kHistorySchema)
     throw InputError("history " + path.string() + ": is no entry of schema " + std::string(kHistorySchema) +
                      "; remove it, or write it anew with `cscd history --keep`");

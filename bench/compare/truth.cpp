@@ -4,6 +4,7 @@
 #include <set>
 
 #include "bench/compare/side.h"
+#include "bench/measure/record/shortfall.h"
 #include "core/base/number_text.h"
 
 namespace cscd::bench {
@@ -153,8 +154,7 @@ Judged judged(const Record& before, const StrategyRecord& old_row, const Record&
               const StrategyRecord& new_row) {
   if (has_own_test(before, new_row.name) || has_own_test(after, new_row.name)) return Judged::not_by_answers;
   if (old_row.guarantee == kComplete && new_row.guarantee == kComplete) return Judged::as_complete;
-  return new_row.guarantee == kFirstContact || new_row.guarantee == kAllFromEmbedded ? Judged::from_embedded
-                                                                                     : Judged::not_by_answers;
+  return needs_embedded_start(new_row.guarantee) ? Judged::from_embedded : Judged::not_by_answers;
 }
 
 void compare_rows(const Record& before, const Record& after, Findings& out) {

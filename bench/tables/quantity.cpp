@@ -12,9 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A row of this guarantee relies on a test of the start, whose time is a stage of this name.
-constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact",
-                           kAllFromEmbedded = "all_from_embedded";
+// The stage in which what needs an embedded start has the start tested.
+constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
 
@@ -96,8 +95,7 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
   std::vector<std::vector<double>> sums;
   for (const std::string& stage : split(stages, '+')) {
     const auto column = strategy.ms.find(stage);
-    if (column == strategy.ms.end() && stage == kStartTest &&
-        (strategy.guarantee == kFirstContact || strategy.guarantee == kAllFromEmbedded))
+    if (column == strategy.ms.end() && stage == kStartTest && needs_embedded_start(strategy.guarantee))
       throw Missing{"this record does not have the time of the test of the start"};
     if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_fallback().name)
       throw Missing{"this record does not have the time of looking at the start"};

@@ -157,10 +157,8 @@ StrategyRecord strategy_from(const ordered_json& s) {
   out.threads = s.value("threads", 1);
   out.lead = s.value("lead", std::size_t{0});
   const ordered_json& preparation = s.at("preparation");
-  if (preparation.contains("distance_and_heat_ms"))
-    out.preparation.distance_and_heat_ms = preparation["distance_and_heat_ms"].get<std::vector<double>>();
-  if (preparation.contains("decomposition_ms"))
-    out.preparation.decomposition_ms = preparation["decomposition_ms"].get<std::vector<double>>();
+  out.preparation.distance_and_heat_ms = preparation.value("distance_and_heat_ms", std::vector<double>());
+  out.preparation.decomposition_ms = preparation.value("decomposition_ms", std::vector<double>());
   if (preparation.contains("atomic_clusters"))
     out.preparation.atomic_clusters = preparation["atomic_clusters"];
   const ordered_json& footprint = s.at("footprint");

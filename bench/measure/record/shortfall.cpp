@@ -1,14 +1,11 @@
 #include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {
-namespace {
 
 bool needs_embedded_start(const std::string& guarantee) {
   return guarantee == to_string(Guarantee::first_contact) ||
          guarantee == to_string(Guarantee::all_from_embedded);
 }
-
-}  // namespace
 
 std::optional<Shortfall> shortfall(const VerificationRecord& verification, const VerifiedStrategy& row) {
   const Shortfall lacking{row.contacts_expected, row.contacts_found, verification.intervals.size(),

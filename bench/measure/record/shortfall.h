@@ -28,6 +28,9 @@ std::optional<Shortfall> shortfall(const VerificationRecord& verification, const
 // "kept 374 of 599 contacts; promise void on 34 of 45 intervals", as far as either is so.
 std::string shortfall_text(const Shortfall& lacking);
 
+// Whether rows of a guarantee, by its name, promise something only from an embedded start.
+bool needs_embedded_start(const std::string& guarantee);
+
 // The footnote to all marks of these records, one line for each scene; empty where there is no mark.
 std::string shortfall_note(std::span<const Record> records);
 
