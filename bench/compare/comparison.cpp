@@ -65,7 +65,7 @@ void compare_with_none(const std::string& scene, std::span<const Record> before,
 void compare_all_times(const Side& before, const Side& after, Comparison& out) {
   std::vector<std::string> scenes;
   for (const std::string& scene : out.scenes)
-    if (std::none_of(out.refusals.begin(), out.refusals.end(), [&](const Refusal& refusal) {
+    if (std::ranges::none_of(out.refusals, [&](const Refusal& refusal) {
           return refusal.scene == scene && refusal.what == "times";
         }))
       scenes.push_back(scene);
@@ -88,11 +88,10 @@ ordered_json interval_json(const Estimate& ratio) {
 
 ComparisonVerdict Comparison::verdict() const {
   const auto is_worse = [](const auto& finding) { return finding.change == Change::worse; };
-  if (std::any_of(truth.begin(), truth.end(), [](const TruthFinding& finding) { return finding.is_lost; }))
+  if (std::ranges::any_of(truth, [](const TruthFinding& finding) { return finding.is_lost; }))
     return ComparisonVerdict::less_true;
-  if (std::any_of(counters.begin(), counters.end(), is_worse) ||
-      std::any_of(footprint.begin(), footprint.end(), is_worse) ||
-      std::any_of(times.begin(), times.end(), is_worse))
+  if (std::ranges::any_of(counters, is_worse) || std::ranges::any_of(footprint, is_worse) ||
+      std::ranges::any_of(times, is_worse))
     return ComparisonVerdict::worse;
   return refusals.empty() ? ComparisonVerdict::nothing_worse : ComparisonVerdict::not_comparable;
 }

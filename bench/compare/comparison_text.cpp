@@ -7,7 +7,6 @@
 
 #include "bench/cli/output/markdown.h"
 #include "bench/compare/comparison.h"
-#include "bench/compare/times.h"
 #include "bench/measure/record/shortfall.h"
 #include "core/base/number_text.h"
 
@@ -53,8 +52,7 @@ bool is_reported(const TimeFinding& time) {
 template <class Finding>
 std::string tally(const std::vector<Finding>& findings) {
   const auto count = [&](Change change) {
-    return std::count_if(findings.begin(), findings.end(),
-                         [&](const Finding& finding) { return finding.change == change; });
+    return std::ranges::count_if(findings, [&](const Finding& finding) { return finding.change == change; });
   };
   std::string out =
       std::to_string(count(Change::worse)) + " worse, " + std::to_string(count(Change::better)) + " better";
@@ -151,13 +149,12 @@ std::string power_line(const Comparison& c) {
   }
   if (detectable.empty()) return "";
   return "A whole query slower by " + percent(median(detectable)) +
-         " would show in 4 of 5 such comparisons (" +
-         percent(*std::min_element(detectable.begin(), detectable.end())) + " to " +
-         percent(*std::max_element(detectable.begin(), detectable.end())) +
+         " would show in 4 of 5 such comparisons (" + percent(std::ranges::min(detectable)) + " to " +
+         percent(std::ranges::max(detectable)) +
          ", by row and scene). The noise floor, what as many processes of OLD differ by among themselves, "
          "is " +
-         percent(median(floors)) + " (" + percent(*std::min_element(floors.begin(), floors.end())) + " to " +
-         percent(*std::max_element(floors.begin(), floors.end())) + ").";
+         percent(median(floors)) + " (" + percent(std::ranges::min(floors)) + " to " +
+         percent(std::ranges::max(floors)) + ").";
 }
 
 // What is worse first, and then by how much OLD and NEW differ, as a share.
@@ -292,8 +289,7 @@ const std::vector<std::string> kUnsharedHead = {"row", "OLD, ms", "scenes", "NEW
 std::string plain_table(const std::vector<std::string>& head, const Rows& rows) {
   std::vector<std::size_t> width;
   const auto length = [](const std::string& text) {  // in characters of UTF-8
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+    return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
   };
   for (const std::string& cell : head) width.push_back(length(cell));
   for (const auto& row : rows)

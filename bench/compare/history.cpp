@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <fstream>
 #include <span>
-#include <sstream>
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
@@ -13,6 +12,7 @@
 #include "bench/compare/times.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -78,18 +78,12 @@ std::string slug(const std::string& text) {
 
 std::string machine_of(const ordered_json& entry) {
   const ordered_json& environment = entry.at("environment");
-  const auto text = [&](const char* key) {
-    const ordered_json value = environment.value(key, ordered_json("unknown"));
-    return value.is_string() ? value.get<std::string>() : value.dump();
-  };
-  return slug(text("cpu")) + "-" + text("cores") + "core";
+  return slug(environment_text(environment, "cpu")) + "-" + environment_text(environment, "cores") + "core";
 }
 
 ordered_json read_entry(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  const ordered_json entry = ordered_json::parse(text.str(), nullptr, false);
+  const ordered_json entry = ordered_json::parse(file, nullptr, false);
   if (entry.is_discarded() || !entry.is_object() || entry.value("schema", "") != kHistorySchema)
     throw InputError("history " + path.string() + ": is no entry of schema " + std::string(kHistorySchema) +
                      "; remove it, or write it anew with `cscd history --keep`");
@@ -122,7 +116,7 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
         if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) ||
             !wanted(choice.stage, stage))
           continue;
-        auto course = std::find_if(courses.begin(), courses.end(), [&, &stage = stage](const Course& c) {
+        auto course = std::ranges::find_if(courses, [&, &stage = stage](const Course& c) {
           return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage &&
                  c.measured == measured;
         });
@@ -212,7 +206,7 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
   if (entries.empty())
     throw InputError("history " + folder.string() +
                      ": holds no entry; add one with scripts/compare-commits --keep or cscd history --keep");
-  std::stable_sort(entries.begin(), entries.end(), [](const ordered_json& a, const ordered_json& b) {
+  std::ranges::stable_sort(entries, [](const ordered_json& a, const ordered_json& b) {
     return a.at("committed").get<std::string>() < b.at("committed").get<std::string>();
   });
   std::vector<Course> courses;
@@ -250,12 +244,11 @@ std::string courses_text(const std::vector<Course>& courses, bool every_point) {
     out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
            std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
            std::to_string(course.measured.at("rows").size()) +
-           " rows in turns: " + std::to_string(course.ms.size()) +
-           (course.ms.size() == 1 ? " commit, " : " commits, ") + std::to_string(course.changes.size()) +
-           (course.changes.size() == 1 ? " change\n" : " changes\n");
+           " rows in turns: " + many(course.ms.size(), "commit") + ", " +
+           many(course.changes.size(), "change") + "\n";
     for (std::size_t i = 0; i < course.ms.size(); ++i) {
-      const bool is_change = std::any_of(course.changes.begin(), course.changes.end(),
-                                         [&](const ChangePoint& change) { return change.first == i; });
+      const bool is_change =
+          std::ranges::any_of(course.changes, [&](const ChangePoint& change) { return change.first == i; });
       if (every_point || is_change) out += point_text(course, i);
     }
   }

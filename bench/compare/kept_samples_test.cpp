@@ -118,7 +118,7 @@ int found(const std::string& row, const std::string& stage, double factor) {
           for (auto& repetition : strategy.ms.at(stage))
             for (double& ms : repetition) ms *= factor;
     });
-    count += std::any_of(comparison.times.begin(), comparison.times.end(), [&](const TimeFinding& time) {
+    count += std::ranges::any_of(comparison.times, [&](const TimeFinding& time) {
       return time.row == row && time.stage == stage && time.change == Change::worse;
     });
   }

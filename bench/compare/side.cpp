@@ -35,7 +35,7 @@ void add_named(const fs::path& path, std::vector<Record>& records) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path))
     if (entry.is_regular_file() && names_json(entry.path())) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   const std::size_t before = records.size();
   for (const fs::path& file : files) add_file(file, false, records);
   if (records.size() == before)
@@ -53,9 +53,9 @@ double milliseconds_per(const std::string& unit, const std::string& where) {
 
 }  // namespace
 
-std::string environment_text(const Record& record, const char* key) {
-  if (!record.environment.contains(key)) return "unknown";
-  const ordered_json& value = record.environment[key];
+std::string environment_text(const ordered_json& environment, const char* key) {
+  if (!environment.contains(key)) return "unknown";
+  const ordered_json& value = environment[key];
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -65,7 +65,7 @@ std::string layout_of(const Record& record) {
 
 Side side_of(std::vector<Record> records, const std::string& named) {
   if (records.empty()) throw InputError(named + ": names no record; name what `cscd run` wrote");
-  std::stable_sort(records.begin(), records.end(), [](const Record& a, const Record& b) {
+  std::ranges::stable_sort(records, [](const Record& a, const Record& b) {
     return environment_text(a, "date") < environment_text(b, "date");
   });
   Side side;

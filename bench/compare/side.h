@@ -29,8 +29,11 @@ Side read_side(const std::string& named);
 // The same of records that are there.
 Side side_of(std::vector<Record> records, const std::string& named);
 
-// What `environment` says under a key, as text; "unknown" where it says nothing.
-std::string environment_text(const Record& record, const char* key);
+// What an environment says under a key, as text; "unknown" where it says nothing.
+std::string environment_text(const nlohmann::ordered_json& environment, const char* key);
+inline std::string environment_text(const Record& record, const char* key) {
+  return environment_text(record.environment, key);
+}
 
 // Which of several links of the same objects a record was measured with (scripts/compare-commits); "0" where
 // the record does not say.

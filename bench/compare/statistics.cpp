@@ -132,7 +132,7 @@ double median(std::span<const double> samples) {
 
 double quantile(std::span<const double> samples, double share) {
   std::vector<double> sorted(samples.begin(), samples.end());
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   return quantile_of_sorted(sorted, share);
 }
 
@@ -172,7 +172,7 @@ double process_time(const ProcessTimes& times) {
   double sum = 0;
   for (std::size_t i = 0; i < intervals; ++i) {
     for (std::size_t r = 0; r < times.size(); ++r) column[r] = times[r][i];
-    std::sort(column.begin(), column.end());
+    std::ranges::sort(column);
     sum += quantile_of_sorted(column, kDecile);
   }
   return sum / static_cast<double>(intervals);
@@ -248,7 +248,7 @@ std::vector<ChangePoint> change_points(std::span<const CoursePoint> course, doub
     }
   std::vector<std::size_t> cuts = {n};
   while (cuts.back() > 0) cuts.push_back(begin_of[cuts.back()]);
-  std::reverse(cuts.begin(), cuts.end());
+  std::ranges::reverse(cuts);
   std::vector<ChangePoint> out;
   for (std::size_t i = 1; i + 1 < cuts.size(); ++i)
     out.push_back({cuts[i], std::exp(costs.level(cuts[i], cuts[i + 1]) - costs.level(cuts[i - 1], cuts[i]))});

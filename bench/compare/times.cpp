@@ -170,9 +170,8 @@ void for_each_stage(std::span<const Record> before, std::span<const Record> afte
 }
 
 bool has_times(std::span<const Record> records) {
-  return std::any_of(records.begin(), records.end(), [](const Record& record) {
-    return std::any_of(record.strategies.begin(), record.strategies.end(),
-                       [](const StrategyRecord& row) { return !row.ms.empty(); });
+  return std::ranges::any_of(records, [](const Record& record) {
+    return std::ranges::any_of(record.strategies, [](const StrategyRecord& row) { return !row.ms.empty(); });
   });
 }
 

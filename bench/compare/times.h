@@ -42,16 +42,14 @@ struct TimeFinding {
   Change change = Change::same;
   // Why a change that the interval shows is not reported; empty where it is, or where there is none.
   std::string withheld = {};
-  bool of_shortfall =
-      false;  // whether the row answers less than a complete row (bench/measure/record/shortfall.h)
+  bool of_shortfall = false;  // the row answers less than a complete one (bench/measure/record/shortfall.h)
 };
 
 // The whole query of a row where no verdict about its times is possible. A side without such times has none.
 struct UnjudgedTime {
   std::string scene, row;
   std::optional<double> before_ms, after_ms;  // an interval, medians over the processes
-  bool of_shortfall =
-      false;  // whether the row answers less than a complete row (bench/measure/record/shortfall.h)
+  bool of_shortfall = false;                  // as above
 };
 
 // The geometric mean over scenes of what the whole query of a row takes, after over before.

@@ -4,6 +4,8 @@
 #include <set>
 
 #include "bench/compare/side.h"
+#include "bench/measure/record/shortfall.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -14,24 +16,14 @@ constexpr std::string_view kComplete = "complete", kFirstContact = "first_contac
                            kAllFromEmbedded = "all_from_embedded";
 
 bool has_own_test(const Record& record, const std::string& row) {
-  return std::any_of(record.verification.own_tests.begin(), record.verification.own_tests.end(),
-                     [&](const nlohmann::ordered_json& own) { return own.value("strategy", "") == row; });
-}
-
-const VerifiedStrategy* verified(const Record& record, const std::string& row) {
-  for (const VerifiedStrategy& strategy : record.verification.strategies)
-    if (strategy.name == row) return &strategy;
-  return nullptr;
-}
-
-bool contains(const std::vector<std::size_t>& intervals, std::size_t interval) {
-  return std::find(intervals.begin(), intervals.end(), interval) != intervals.end();
+  return std::ranges::any_of(record.verification.own_tests, [&](const nlohmann::ordered_json& own) {
+    return own.value("strategy", "") == row;
+  });
 }
 
 // "3 intervals (4, 7, 9)"; at most five are listed.
 std::string listed(const std::vector<std::size_t>& intervals) {
-  std::string out =
-      std::to_string(intervals.size()) + (intervals.size() == 1 ? " interval (" : " intervals (");
+  std::string out = many(intervals.size(), "interval") + " (";
   for (std::size_t i = 0; i < std::min<std::size_t>(intervals.size(), 5); ++i)
     out += (i > 0 ? ", " : "") + std::to_string(intervals[i]);
   return out + (intervals.size() > 5 ? ", ...)" : ")");
@@ -44,8 +36,10 @@ bool has_contact(const StrategyRecord& row, std::size_t place) {
 
 // Whether rows of first_contact promise nothing on an interval, because its start is not embedded.
 bool promises_nothing(const Record& record, std::size_t interval) {
-  return contains(record.verification.unembedded, interval) ||
-         contains(record.verification.excused, interval);
+  const auto among = [&](const std::vector<std::size_t>& intervals) {
+    return std::ranges::find(intervals, interval) != intervals.end();
+  };
+  return among(record.verification.unembedded) || among(record.verification.excused);
 }
 
 void compare_verification(const Record& before, const Record& after, Findings& out) {
@@ -54,7 +48,7 @@ void compare_verification(const Record& before, const Record& after, Findings& o
     for (const std::string& failure : row.failures)
       out.push_back({scene, row.name, "verification failed: " + failure, true});
   for (const VerifiedStrategy& row : before.verification.strategies) {
-    const VerifiedStrategy* now = verified(after, row.name);
+    const VerifiedStrategy* now = after.verification.strategy(row.name);
     if (!row.failures.empty() && now != nullptr && now->failures.empty())
       out.push_back({scene, row.name, "verification succeeds, which failed in OLD", false});
   }
@@ -83,7 +77,7 @@ void compare_accuracy(const Record& before, const Record& after, Findings& out) 
     compare("largest error of a time", a.largest_time_error, b.largest_time_error);
   }
   for (const VerifiedStrategy& row : new_v.strategies) {
-    const VerifiedStrategy* old_row = verified(before, row.name);
+    const VerifiedStrategy* old_row = old_v.strategy(row.name);
     if (old_row == nullptr || old_row->contacts_found == row.contacts_found) continue;
     if (old_row->contacts_expected != row.contacts_expected) {
       out.push_back({scene, row.name,
@@ -160,8 +154,7 @@ Judged judged(const Record& before, const StrategyRecord& old_row, const Record&
               const StrategyRecord& new_row) {
   if (has_own_test(before, new_row.name) || has_own_test(after, new_row.name)) return Judged::not_by_answers;
   if (old_row.guarantee == kComplete && new_row.guarantee == kComplete) return Judged::as_complete;
-  return new_row.guarantee == kFirstContact || new_row.guarantee == kAllFromEmbedded ? Judged::from_embedded
-                                                                                     : Judged::not_by_answers;
+  return needs_embedded_start(new_row.guarantee) ? Judged::from_embedded : Judged::not_by_answers;
 }
 
 void compare_rows(const Record& before, const Record& after, Findings& out) {

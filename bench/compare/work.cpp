@@ -101,7 +101,7 @@ std::vector<CounterFinding> compare_counters(const Record& before, const Record&
           finding.intervals_that_differ += old_column[i.before] != new_column[i.after];
         }
         if (finding.intervals_that_differ == 0) return;
-        const bool is_cost = std::find(costs.begin(), costs.end(), counter) != costs.end();
+        const bool is_cost = std::ranges::find(costs, ordered_json(counter)) != costs.end();
         if (is_cost && finding.before != finding.after)
           finding.change = finding.after > finding.before ? Change::worse : Change::better;
         out.push_back(std::move(finding));

@@ -14,7 +14,6 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/studies/tally.h"
 #include "bench/measure/studies/workload.h"
-#include "core/base/error.h"
 
 // The study: what accuracy costs in time, elementary test by elementary test (schema cscd.accuracy/1).
 namespace cscd::bench {

@@ -9,7 +9,6 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
-#include "core/base/error.h"
 #include "scenes/random/random_interval.h"
 
 namespace cscd::bench {

@@ -8,7 +8,6 @@
 #include "bench/cli/output/json_text.h"
 #include "bench/cli/output/output.h"
 #include "bench/measure/cells/cells.h"
-#include "bench/measure/cells/join.h"
 #include "bench/measure/record/record.h"
 #include "bench/measure/record/shortfall.h"
 #include "bench/measure/replay/contestant.h"
@@ -22,7 +21,7 @@
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
 #include "scenes/catalog/plain_name.h"
-#include "scenes/catalog/scene_cache.h"
+#include "scenes/catalog/scene.h"
 
 namespace cscd::bench {
 namespace {
@@ -203,7 +202,7 @@ bool work(const RunOptions& options) {
       divide(input, replay_of(options, input, options.request), options.cell_intervals);
   const bool ok = measure_cells(input, cells, worker, options.cells);
   std::printf("worker %s is done; %zu of %zu cells have no result yet\n", options.worker.c_str(),
-              missing_cells(cells, options.cells).size(), cells.size());
+              missing_results(cells, options.cells), cells.size());
   return ok;
 }
 

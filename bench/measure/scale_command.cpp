@@ -69,7 +69,7 @@ class Plan {
         data_(data_json("scale_plan.json").at(options.smoke ? "smoke" : "full")),
         sizes_(or_planned(options.sizes, "sizes")),
         steps_(or_planned(options.steps, "steps")) {
-    std::sort(steps_.begin(), steps_.end());
+    std::ranges::sort(steps_);
     for (const double step : steps_)
       if (step > 1 && step != std::floor(step))
         throw InputError("--steps: " + ordered_json(step).dump() +
@@ -104,7 +104,7 @@ class Plan {
     std::vector<std::size_t> sizes = sizes_;
     if (options_.largest)
       for (const std::size_t size : data_.at("largest")) sizes.push_back(size);
-    std::sort(sizes.begin(), sizes.end());
+    std::ranges::sort(sizes);
     for (const std::size_t size : sizes) subject.triangles = size, add(subject);
   }
   void step(ScaleSubject subject) {

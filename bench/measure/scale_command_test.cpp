@@ -345,30 +345,26 @@ TEST_F(ScaleProgram, TakesPointCachesAtAThicknessAlone) {
 }
 
 TEST_F(ScaleProgram, RefusesInOneLine) {
-  const auto refusal = [](std::vector<std::string> arguments) {
+  const std::pair<std::vector<std::string>, const char*> refusals[] = {
+      {{"--study", "colour"}, "choose among size, step, bones, threads, contacts"},
+      {{"--study", "thickness", "--strategy", "mcd"}, "choose one of base, "},
+      {{"--scene", "step.h5"}, "leave nothing to measure"},
+      {{"--steps", "1,2.5"}, "round it"},
+      {{"--steps", "1,500"}, "does not fit"},
+      {{"--scene", "nosuch"}, "unknown scene"},
+      {{"--strategy", "nosuch"}, "is not known"},
+      {{"--scene", "hand_contact"}, "name a scene without it"},
+      {{"--study", "bones", "--scene", "urchin"}, "leave nothing to measure"},
+      {{"--strategy", "fcl --first"}, "fcl"},
+      {{"--study", "contacts", "--scene", "urchin_contact"}, "leave nothing to measure"},
+      {{"--smoke", "--json", "/nosuch/folder/x.json"}, "/nosuch/folder"}};
+  for (auto [arguments, reason] : refusals) {
     arguments.insert(arguments.begin(), "scale");
     const Outcome outcome = cscd(arguments);
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(std::count(outcome.errors.begin(), outcome.errors.end(), '\n'), 1) << outcome.errors;
-    return outcome.errors;
-  };
-  EXPECT_NE(refusal({"--study", "colour"}).find("choose among size, step, bones, threads, contacts"),
-            std::string::npos);
-  EXPECT_NE(refusal({"--study", "thickness", "--strategy", "mcd"}).find("choose one of base, "),
-            std::string::npos);
-  EXPECT_NE(refusal({"--scene", "step.h5"}).find("leave nothing to measure"), std::string::npos);
-  EXPECT_NE(refusal({"--steps", "1,2.5"}).find("round it"), std::string::npos);
-  EXPECT_NE(refusal({"--steps", "1,500"}).find("does not fit"), std::string::npos);
-  EXPECT_NE(refusal({"--scene", "nosuch"}).find("unknown scene"), std::string::npos);
-  EXPECT_NE(refusal({"--strategy", "nosuch"}).find("is not known"), std::string::npos);
-  EXPECT_NE(refusal({"--scene", "hand_contact"}).find("name a scene without it"), std::string::npos);
-  EXPECT_NE(refusal({"--study", "bones", "--scene", "urchin"}).find("leave nothing to measure"),
-            std::string::npos);
-  EXPECT_NE(refusal({"--strategy", "fcl --first"}).find("fcl"), std::string::npos);
-  EXPECT_NE(refusal({"--study", "contacts", "--scene", "urchin_contact"}).find("leave nothing to measure"),
-            std::string::npos);
-  EXPECT_NE(refusal({"--smoke", "--json", "/nosuch/folder/x.json"}).find("/nosuch/folder"),
-            std::string::npos);
+    EXPECT_EQ(outcome.code, 2) << reason;
+    EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+    EXPECT_NE(outcome.errors.find(reason), std::string::npos) << outcome.errors;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <cstdio>
-#include <filesystem>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/progress.h"

@@ -36,11 +36,10 @@ ClaimVerdict judge(const std::vector<Evidence>& evidence, bool somewhere) {
   return holding > 0 ? ClaimVerdict::partly : ClaimVerdict::not_reproduced;
 }
 
+// The paper's scenes alone: not a scene of the user's own, even if it has that name.
 const Record* record_of(std::span<const Record> records, const std::string& scene, Pipeline pipeline) {
-  const auto record = std::find_if(records.begin(), records.end(), [&](const Record& candidate) {
-    return candidate.scene.name == scene && candidate.scene.path.empty() && candidate.pipeline == pipeline;
-  });
-  return record == records.end() ? nullptr : &*record;
+  const Record* record = find_record(records, scene, pipeline);
+  return record != nullptr && record->scene.path.empty() ? record : nullptr;
 }
 
 // A claim is held against the pipeline `published` where there is such a record of a scene that the claim is

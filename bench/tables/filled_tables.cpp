@@ -11,7 +11,7 @@ using nlohmann::ordered_json;
 
 template <class Name>
 void add_new(std::vector<std::string>& names, const Name& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
 std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::span<const Record> records) {

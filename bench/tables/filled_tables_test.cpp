@@ -179,7 +179,7 @@ TEST(FilledTables, ShippedDefinitionsCoverThePublishedFigures) {
       const std::vector<std::string> keys = split(pointer, '/');
       for (const std::string& key : std::span(keys).subspan(1))
         path += published["scenes"].contains(key) ? ".{scene}" : "." + key;
-      EXPECT_NE(std::find(named.begin(), named.end(), path), named.end()) << path;
+      EXPECT_NE(std::ranges::find(named, path), named.end()) << path;
       ++figures;
     }
   }

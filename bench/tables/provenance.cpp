@@ -4,23 +4,19 @@
 #include <functional>
 
 #include "bench/cli/output/markdown.h"
+#include "bench/compare/side.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
 
-using nlohmann::ordered_json;
-
-std::string environment_text(const ordered_json& environment) {
-  const auto get = [&](const char* key) {
-    const ordered_json value = environment.value(key, ordered_json("unknown"));
-    return value.is_string() ? value.get<std::string>() : value.dump();
-  };
+std::string place_and_program(const Record& record) {
+  const auto get = [&](const char* key) { return environment_text(record, key); };
   std::string out =
       get("cpu") + ", " + get("cores") + " cores; " + get("compiler") + ", " + get("build_type");
-  if (environment.contains("instruction_set")) out += ", " + get("instruction_set");
+  if (record.environment.contains("instruction_set")) out += ", " + get("instruction_set");
   out += "; commit " + get("commit").substr(0, 12);
-  if (environment.value("dirty", false)) out += " with changes";
+  if (record.environment.value("dirty", false)) out += " with changes";
   return out + "; " + get("date").substr(0, 10);
 }
 
@@ -43,7 +39,7 @@ std::vector<std::string> distinct(std::span<const Record> records,
 }  // namespace
 
 std::vector<std::string> environments(std::span<const Record> records) {
-  return distinct(records, [](const Record& record) { return environment_text(record.environment); });
+  return distinct(records, place_and_program);
 }
 
 std::string threads_text(const Record& record) {

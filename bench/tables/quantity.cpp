@@ -12,9 +12,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A row of this guarantee relies on a test of the start, whose time is a stage of this name.
-constexpr std::string_view kStartTest = "embedding", kFirstContact = "first_contact",
-                           kAllFromEmbedded = "all_from_embedded";
+// The stage in which what needs an embedded start has the start tested.
+constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
 
@@ -32,16 +31,15 @@ struct Amount {
 double summary(const std::vector<double>& samples, const std::string& statistic) {
   if (statistic == "mean") return mean(samples);
   if (statistic == "median") return median(samples);
-  if (statistic == "min") return *std::min_element(samples.begin(), samples.end());
-  if (statistic == "max") return *std::max_element(samples.begin(), samples.end());
+  if (statistic == "min") return std::ranges::min(samples);
+  if (statistic == "max") return std::ranges::max(samples);
   throw std::logic_error("unknown statistic " + statistic);
 }
 
 const StrategyRecord& strategy_of(const Record& record, const std::string& name) {
   if (const StrategyRecord* strategy = record.strategy(name)) return *strategy;
   const auto rows = strategies();
-  const bool built =
-      std::any_of(rows.begin(), rows.end(), [&](const Strategy& row) { return row.name == name; });
+  const bool built = std::ranges::any_of(rows, [&](const Strategy& row) { return row.name == name; });
   throw Missing{name + (built ? ": not run in this record" : ": not in this build")};
 }
 
@@ -97,8 +95,7 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
   std::vector<std::vector<double>> sums;
   for (const std::string& stage : split(stages, '+')) {
     const auto column = strategy.ms.find(stage);
-    if (column == strategy.ms.end() && stage == kStartTest &&
-        (strategy.guarantee == kFirstContact || strategy.guarantee == kAllFromEmbedded))
+    if (column == strategy.ms.end() && stage == kStartTest && needs_embedded_start(strategy.guarantee))
       throw Missing{"this record does not have the time of the test of the start"};
     if (column == strategy.ms.end() && stage == kStartSeen && strategy.name == complete_fallback().name)
       throw Missing{"this record does not have the time of looking at the start"};
@@ -116,10 +113,8 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
 
 Amount verification_amount(const VerificationRecord& verification, const std::string& strategy,
                            const std::string& what) {
-  const auto row =
-      std::find_if(verification.strategies.begin(), verification.strategies.end(),
-                   [&](const VerifiedStrategy& candidate) { return candidate.name == strategy; });
-  if (row == verification.strategies.end()) throw Missing{strategy + ": not verified in this record"};
+  const VerifiedStrategy* row = verification.strategy(strategy);
+  if (row == nullptr) throw Missing{strategy + ": not verified in this record"};
   if (row->contacts_expected == 0) throw Missing{"no contact on the verified intervals"};
   if (what == "recall")
     return exactly(static_cast<double>(row->contacts_found) / static_cast<double>(row->contacts_expected));
@@ -198,10 +193,6 @@ std::string short_text(double value) {
   return text;
 }
 
-bool is_marked(const Record& record, const std::string& strategy) {
-  return shortfall(record, strategy).has_value();
-}
-
 Measured measure(const ordered_json& definition, const Record& record) {
   const std::string quantity = definition.at("quantity"), strategy = definition.value("strategy", ""),
                     statistic = definition.value("statistic", "mean"),
@@ -213,7 +204,7 @@ Measured measure(const ordered_json& definition, const Record& record) {
     Measured out = is_ratio ? ratio(amount, amount_of(record, over_quantity, over, statistic),
                                     over + ": " + over_quantity)
                             : measured(amount, definition.value("scale", 1.0));
-    out.marked = quantity.starts_with("ms.") && (is_marked(record, strategy) || is_marked(record, over));
+    out.marked = quantity.starts_with("ms.") && (shortfall(record, strategy) || shortfall(record, over));
     return out;
   } catch (const Missing& missing) {
     return {{}, {}, missing.reason};

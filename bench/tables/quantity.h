@@ -19,9 +19,6 @@ struct Measured {
   bool marked = false;               // a time that stands with kMarkNote where it is printed
 };
 
-// Whether a strategy's times in a record are marked: it did not keep all contacts of the verified intervals,
-// or it promises nothing from some of their starts.
-bool is_marked(const Record& record, const std::string& strategy);
 inline constexpr char kMarkNote[] =
     "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts";
 

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "bench/cli/output/schema.h"
 #include "bench/compare/history.h"
 #include "bench/compare/statistics.h"
+#include "bench/compare/times.h"
 #include "bench/measure/record/record.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"
@@ -124,16 +124,8 @@ std::filesystem::path only_record(const RecordFiles& files, std::string_view sch
   return found->second.front();
 }
 
-// The mean over the timed intervals, and of the repetitions the median.
-double typical(const std::vector<std::vector<double>>& repetitions) {
-  std::vector<double> means;
-  for (const std::vector<double>& intervals : repetitions)
-    means.push_back(std::accumulate(intervals.begin(), intervals.end(), 0.0) /
-                    static_cast<double>(std::max<std::size_t>(1, intervals.size())));
-  return median(means);
-}
-
-json strategy_of(const StrategyRecord& strategy) {
+// Of a stage, the mean over the timed intervals, and of the repetitions the median.
+json strategy_of(const Record& record, const StrategyRecord& strategy) {
   json counts = json::object(), stages;
   for (const char* counter : {"bvot", "pctp", "elementary_tests"})
     if (const auto column = strategy.counts.find(counter); column != strategy.counts.end())
@@ -145,8 +137,8 @@ json strategy_of(const StrategyRecord& strategy) {
     counts["not_positive"] = sum;
   }
   for (const char* stage : {"refit", "rv_update", "traversal", "elementary"})
-    if (const auto column = strategy.ms.find(stage); column != strategy.ms.end() && !column->second.empty())
-      stages[stage] = typical(column->second);
+    if (const auto samples = stage_samples(record, strategy, stage); !samples.empty())
+      stages[stage] = median(samples);
   return {{"name", strategy.name}, {"guarantee", strategy.guarantee}, {"counts", counts}, {"stages", stages}};
 }
 
@@ -209,7 +201,8 @@ void report(const ReportOptions& options) {
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     json strategies = json::array();
-    for (const StrategyRecord& strategy : record.strategies) strategies.push_back(strategy_of(strategy));
+    for (const StrategyRecord& strategy : record.strategies)
+      strategies.push_back(strategy_of(record, strategy));
     // A record made with the paper's code around every method says so.
     rows.push_back({{"scene", record.scene.name},
                     {"pipeline", to_string(record.pipeline)},

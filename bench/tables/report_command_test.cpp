@@ -17,6 +17,12 @@ class ReportPage : public Program {
         run("cscd run --scene small --strategy base,mcd,drvbc,drvbc_fast --repetitions 2 --json small.json");
     ASSERT_EQ(ran.status, 0) << ran.errors;
   }
+  // What a browser makes of a page; status 77 where there is none.
+  Ran in_a_browser(const std::string& page) const {
+    return run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' " + page);
+  }
+  static constexpr char kAccuracy[] =
+      "cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json";
 };
 
 TEST_F(ReportPage, ShowsTheFiguresOfItsRecord) {
@@ -36,9 +42,7 @@ TEST_F(ReportPage, ShowsTheFiguresOfItsRecord) {
 }
 
 TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
-  ASSERT_EQ(
-      run("cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json").status,
-      0);
+  ASSERT_EQ(run(kAccuracy).status, 0);
   expect_refused(run("cscd report a.json -o site"), "a.json holds no record of cscd run");
   expect_refused(run("cscd report small.json a.json a.json -o site"), "a second record of this study");
   expect_refused(run("echo {} > empty.json; cscd report empty.json -o site"), "empty.json");
@@ -55,8 +59,7 @@ TEST_F(ReportPage, ADamagedPageSaysSoInOneLine) {
   std::string page = text("site/index.html");
   page.replace(page.find("id=\"header\">") + 300, 40, std::string(40, '{'));
   put("page.html", page);
-  const Ran ran =
-      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' page.html");
+  const Ran ran = in_a_browser("page.html");
   if (ran.status == 77) GTEST_SKIP() << ran.out;
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.out.find("The page is damaged"), std::string::npos) << ran.out;
@@ -70,17 +73,14 @@ TEST_F(ReportPage, HostileNamesAreText) {
             0);
   EXPECT_EQ(text("site/index.html").find("<img"), std::string::npos);
   EXPECT_NE(text("site/index.html").find("\\u003cimg"), std::string::npos);
-  const Ran ran =
-      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' site/index.html");
+  const Ran ran = in_a_browser("site/index.html");
   if (ran.status == 77) GTEST_SKIP() << ran.out;
   EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
 }
 
 // Everything at once: records of all kinds, a history and replays.
 TEST_F(ReportPage, ABrowserShowsIt) {
-  ASSERT_EQ(
-      run("cscd accuracy --smoke --elementary newton,filtered_exact --hard-queries 20 --json a.json").status,
-      0);
+  ASSERT_EQ(run(kAccuracy).status, 0);
   ASSERT_EQ(
       run("cscd scale --smoke --study size --scene small --strategy drvbc_fast,base --json s.json").status,
       0);
@@ -90,8 +90,7 @@ TEST_F(ReportPage, ABrowserShowsIt) {
             0);
   const Ran made = run("cscd report small.json a.json s.json --history h --view -o site");
   ASSERT_EQ(made.status, 0) << made.errors;
-  const Ran ran =
-      run("'" CSCD_NODE "' '" CSCD_PAGE_TESTS "/check_report.mjs' '" CSCD_PAGE_PACKAGES "' site/index.html");
+  const Ran ran = in_a_browser("site/index.html");
   if (ran.status == 77) GTEST_SKIP() << ran.out;
   EXPECT_EQ(ran.status, 0) << ran.out << ran.errors;
   std::printf("%s", ran.out.c_str());

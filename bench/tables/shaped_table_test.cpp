@@ -151,10 +151,10 @@ TEST(ShapedTables, MarkTimesWhereAPromiseDoesNotHold) {
   Record record = wide_record("rope", Pipeline::vectorised);
   record.verification.strategies = {{"base", "complete", 0, 0, 0, {}},
                                     {"drvbc", "first_contact", 0, 0, 0, {}}};
-  EXPECT_FALSE(is_marked(record, "drvbc"));
+  EXPECT_FALSE(median_query("drvbc", record).marked);
   record.verification.unembedded = {0};
-  EXPECT_TRUE(is_marked(record, "drvbc"));
-  EXPECT_FALSE(is_marked(record, "base"));
+  EXPECT_TRUE(median_query("drvbc", record).marked);
+  EXPECT_FALSE(median_query("base", record).marked);
 }
 
 // Mutation: a column that no figure needs so wide.

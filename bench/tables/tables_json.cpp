@@ -1,7 +1,5 @@
 #include "bench/tables/tables_json.h"
 
-#include <algorithm>
-
 #include "bench/cli/output/data.h"
 #include "bench/tables/provenance.h"
 

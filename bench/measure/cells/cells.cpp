@@ -104,12 +104,10 @@ std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell
   return cells;
 }
 
-std::vector<const RunCell*> missing_cells(std::span<const RunCell> cells, const fs::path& folder) {
-  std::vector<const RunCell*> missing;
+std::size_t missing_results(std::span<const RunCell> cells, const fs::path& folder) {
   std::error_code ignored;
-  for (const RunCell& cell : cells)
-    if (!fs::exists(folder / cell.file_name, ignored)) missing.push_back(&cell);
-  return missing;
+  return static_cast<std::size_t>(std::ranges::count_if(
+      cells, [&](const RunCell& cell) { return !fs::exists(folder / cell.file_name, ignored); }));
 }
 
 bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker, const fs::path& folder) {

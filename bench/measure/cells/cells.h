@@ -30,9 +30,8 @@ Worker parse_worker(const std::string& text);
 // Divides a replay into cells of `cell_intervals` intervals; the last cell may have fewer.
 std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell_intervals);
 
-// The cells that have no result file in the folder.
-std::vector<const RunCell*> missing_cells(std::span<const RunCell> cells,
-                                          const std::filesystem::path& folder);
+// How many of the cells have no result file in the folder.
+std::size_t missing_results(std::span<const RunCell> cells, const std::filesystem::path& folder);
 
 // Measures the worker's cells that have no result file, and says on standard output which cell is done. A
 // result file, a run record, appears whole or not at all. Several workers may measure the same cell: the
@@ -40,5 +39,12 @@ std::vector<const RunCell*> missing_cells(std::span<const RunCell> cells,
 // the folder does not take a result.
 bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker,
                    const std::filesystem::path& folder);
+
+// Joins the results of all cells into one record, as a single run of the whole range would have written it.
+// The record depends on the results alone, and not on who measured them or in which order. Lists by interval
+// are joined, sums and maxima are taken of what is one number a run, and the environment is that of the first
+// cell. `whole` is the replay that was divided. Throws InputError if a result is missing, is not its cell's,
+// or comes from another build or, where there are times, from another machine than the others.
+Record join(const Replay& whole, std::span<const RunCell> cells, const std::filesystem::path& folder);
 
 }  // namespace cscd::bench

@@ -1,10 +1,9 @@
-#include "bench/measure/cells/join.h"
-
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "bench/measure/cells/cells.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

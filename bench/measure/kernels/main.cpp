@@ -5,7 +5,6 @@
 #include <exception>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -137,7 +136,7 @@ void in_turns(benchmark::State& state, const Queries& queries) {
     for (int i = 0; i < 2; ++i) sums[i] += spent[i];
     ratios.push_back(spent[1] / spent[0]);
   }
-  std::sort(ratios.begin(), ratios.end());
+  std::ranges::sort(ratios);
   const double turns = static_cast<double>(ratios.size());
   state.counters["pairs"] = size;
   state.counters["newton_ns"] = sums[0] / turns / size;

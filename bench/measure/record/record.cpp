@@ -17,22 +17,25 @@ using nlohmann::ordered_json;
 
 bool VerificationRecord::ok() const {
   if (truth && !truth->ok()) return false;
-  return std::all_of(strategies.begin(), strategies.end(),
-                     [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
+  return std::ranges::all_of(strategies,
+                             [](const VerifiedStrategy& strategy) { return strategy.failures.empty(); });
+}
+
+const VerifiedStrategy* VerificationRecord::strategy(std::string_view name) const {
+  const auto row = std::ranges::find(strategies, name, &VerifiedStrategy::name);
+  return row == strategies.end() ? nullptr : &*row;
 }
 
 const StrategyRecord* Record::strategy(std::string_view name) const {
-  const auto row = std::find_if(strategies.begin(), strategies.end(),
-                                [&](const StrategyRecord& strategy) { return strategy.name == name; });
+  const auto row = std::ranges::find(strategies, name, &StrategyRecord::name);
   return row == strategies.end() ? nullptr : &*row;
 }
 
 void append_counts(const Report& report, const ContactSet& found, CountColumns& columns) {
   const nlohmann::json counts = counts_json(report);
   for (const auto& [key, value] : counts.items()) columns[key].push_back(value.get<std::uint64_t>());
-  const auto undecided = static_cast<std::uint64_t>(
-      std::count_if(found.contacts.begin(), found.contacts.end(),
-                    [](const Contact& contact) { return contact.verdict == Verdict::undecided; }));
+  const auto undecided = static_cast<std::uint64_t>(std::ranges::count_if(
+      found.contacts, [](const Contact& contact) { return contact.verdict == Verdict::undecided; }));
   columns["contacts"].push_back(found.contacts.size() - undecided);
   columns["undecided"].push_back(undecided);
 }
@@ -154,10 +157,8 @@ StrategyRecord strategy_from(const ordered_json& s) {
   out.threads = s.value("threads", 1);
   out.lead = s.value("lead", std::size_t{0});
   const ordered_json& preparation = s.at("preparation");
-  if (preparation.contains("distance_and_heat_ms"))
-    out.preparation.distance_and_heat_ms = preparation["distance_and_heat_ms"].get<std::vector<double>>();
-  if (preparation.contains("decomposition_ms"))
-    out.preparation.decomposition_ms = preparation["decomposition_ms"].get<std::vector<double>>();
+  out.preparation.distance_and_heat_ms = preparation.value("distance_and_heat_ms", std::vector<double>());
+  out.preparation.decomposition_ms = preparation.value("decomposition_ms", std::vector<double>());
   if (preparation.contains("atomic_clusters"))
     out.preparation.atomic_clusters = preparation["atomic_clusters"];
   const ordered_json& footprint = s.at("footprint");

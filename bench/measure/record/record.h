@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -67,8 +66,7 @@ struct StrategyRecord {
 struct VerifiedStrategy {
   std::string name, guarantee;
   std::uint64_t contacts_expected = 0, contacts_found = 0;  // of the reference's, over the verified intervals
-  std::uint64_t intervals_promised =
-      0;  // verified intervals on which the guarantee says something about a contact
+  std::uint64_t intervals_promised = 0;  // of those verified, on which the guarantee promises a contact
   std::vector<std::string> failures;
 };
 
@@ -106,6 +104,7 @@ struct VerificationRecord {
   double seconds = 0;
 
   bool ok() const;
+  const VerifiedStrategy* strategy(std::string_view name) const;  // null when it was not verified
 };
 
 struct SceneRecord {

@@ -1,14 +1,11 @@
 #include "bench/measure/record/shortfall.h"
 
 namespace cscd::bench {
-namespace {
 
 bool needs_embedded_start(const std::string& guarantee) {
   return guarantee == to_string(Guarantee::first_contact) ||
          guarantee == to_string(Guarantee::all_from_embedded);
 }
-
-}  // namespace
 
 std::optional<Shortfall> shortfall(const VerificationRecord& verification, const VerifiedStrategy& row) {
   const Shortfall lacking{row.contacts_expected, row.contacts_found, verification.intervals.size(),
@@ -18,9 +15,8 @@ std::optional<Shortfall> shortfall(const VerificationRecord& verification, const
 }
 
 std::optional<Shortfall> shortfall(const Record& record, std::string_view strategy) {
-  for (const VerifiedStrategy& row : record.verification.strategies)
-    if (row.name == strategy) return shortfall(record.verification, row);
-  return std::nullopt;
+  const VerifiedStrategy* row = record.verification.strategy(strategy);
+  return row == nullptr ? std::nullopt : shortfall(record.verification, *row);
 }
 
 std::string shortfall_text(const Shortfall& lacking) {

@@ -17,8 +17,7 @@ inline constexpr std::string_view kShortfallMark = "*";
 struct Shortfall {
   std::uint64_t contacts_expected = 0, contacts_found = 0;  // those of the reference, and those of them found
   std::size_t intervals = 0;                                // verified
-  std::size_t void_intervals =
-      0;  // those of them on which the row promises nothing, as the start is not embedded
+  std::size_t void_intervals = 0;  // of these, on which the row promises nothing: starts are not embedded
 };
 
 // Returns nothing where the row found all contacts and promises something on every verified interval, and
@@ -28,6 +27,9 @@ std::optional<Shortfall> shortfall(const VerificationRecord& verification, const
 
 // "kept 374 of 599 contacts; promise void on 34 of 45 intervals", as far as either is so.
 std::string shortfall_text(const Shortfall& lacking);
+
+// Whether rows of a guarantee, by its name, promise something only from an embedded start.
+bool needs_embedded_start(const std::string& guarantee);
 
 // The footnote to all marks of these records, one line for each scene; empty where there is no mark.
 std::string shortfall_note(std::span<const Record> records);

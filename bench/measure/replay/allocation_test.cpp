@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "core/base/error.h"
 #include "core/base/test_allocations.h"
 #include "scenes/clip/clip.h"
 #include "scenes/random/random_interval.h"

@@ -1,6 +1,5 @@
 #include "bench/measure/replay/footprint.h"
 
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <linux/perf_event.h>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include "bench/measure/replay/contestant.h"
+#include "core/base/stopwatch.h"
 
 namespace cscd::bench {
 namespace {
@@ -72,10 +72,10 @@ Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& e
   const bool peak_is_ours = reset_peak();
   const auto resident = status_bytes("VmRSS");
 
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch making;
   Made made{row.strategy->make(measured_setup(input, *row.strategy, elementary, row.first, row.pipeline)),
             {}};
-  made.make_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  made.make_ms = making.milliseconds();
   ContactSet found;
   for (int time = 0; time < 2; ++time) made.prepared.detector->detect(input.step(interval), found);
   if (peak_is_ours) made.footprint.peak_bytes = growth(resident, status_bytes("VmHWM"));

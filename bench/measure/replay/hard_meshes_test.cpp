@@ -6,7 +6,6 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/verify.h"
-#include "core/base/error.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
 #include "scenes/random/random_interval.h"

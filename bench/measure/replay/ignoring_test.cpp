@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "bench/measure/replay/contestant.h"
-#include "bench/measure/replay/replay.h"
+#include "bench/measure/replay/test_trial.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/detect/start/crossings.h"
-#include "scenes/random/random_interval.h"
 
 // Detectors that are measured leave out what the input says is ignored, and nothing else.
 namespace cscd::bench {
@@ -22,7 +20,7 @@ struct Subject {
   std::vector<std::int32_t> group;
   std::vector<std::pair<std::int32_t, std::int32_t>> ignoring;
 
-  explicit Subject(std::uint64_t seed) : input(made(seed)) {
+  explicit Subject(std::uint64_t seed) : input(random_input(seed)) {
     std::mt19937_64 random(seed);
     // Neighbours are often of one group, as triangles of one bone are, and often of two, as at joints.
     for (std::size_t t = 0; t < input.mesh.triangle_count(); ++t)
@@ -46,16 +44,6 @@ struct Subject {
     prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, found);
     found.sort();
     return found;
-  }
-
- private:
-  static Input made(std::uint64_t seed) {
-    auto clip = std::make_unique<scenes::Clip>(std::move(scenes::make_random_interval(seed).clip));
-    TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count);
-    const scenes::FrameView first = clip->load_frame(0);
-    std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-    std::optional<Rig> rig = scenes::rig_of(*clip);
-    return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
   }
 };
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/thickness.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
@@ -21,6 +20,7 @@ namespace cscd::bench {
 namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kTornEvery = 3;  // torn ones beside the whole ones, for what promises to be complete
 
 template <class Query>
 Answer put_off(const Query&) {
@@ -165,7 +165,7 @@ struct Subject {
 // How many of the reference's contacts of the earliest time the answer lacks.
 std::size_t first_pairs_missing(const ContactSet& reference, const ContactSet& answer) {
   const auto attaining_first = [&](const ContactSet& set) {
-    return std::count_if(set.contacts.begin(), set.contacts.end(), [&](const Contact& contact) {
+    return std::ranges::count_if(set.contacts, [&](const Contact& contact) {
       return contact.time == reference.contacts.front().time;
     });
   };
@@ -260,7 +260,7 @@ RandomSummary verify_random(const RandomVerification& plan, std::span<const Stra
     const std::uint64_t seed = plan.first_seed + i;
     const bool by_all_pairs = i % plan.brute_every == 0;
     judge(Subject(seed, false, plan.thick), by_all_pairs, rows, summary);
-    if (i % plan.torn_every == 0) judge(Subject(seed, true, plan.thick), by_all_pairs, rows, summary);
+    if (i % kTornEvery == 0) judge(Subject(seed, true, plan.thick), by_all_pairs, rows, summary);
     if (progress) progress(i + 1);
   }
   return summary;

@@ -29,42 +29,30 @@ constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 
 
 // Returns the command line with every default spelt out, and without the place of the result.
 std::vector<std::string> command_line(const ReplayRequest& options, const Input& input) {
-  std::vector<std::string> words = {"cscd",
-                                    "run",
-                                    "--scene",
-                                    options.scene,
-                                    "--strategy",
-                                    joined(options.strategies, ","),
-                                    "--elementary",
-                                    options.elementary,
-                                    "--pipeline",
-                                    options.pipeline,
-                                    "--frames",
-                                    options.frames,
-                                    "--repetitions",
-                                    std::to_string(options.repetitions),
-                                    "--count-every",
-                                    std::to_string(options.count_every),
-                                    "--time-every",
-                                    std::to_string(options.time_every),
-                                    "--time-contacts",
-                                    std::to_string(options.time_contacts),
-                                    "--verify-every",
-                                    std::to_string(options.verify_every),
-                                    "--seed",
-                                    std::to_string(options.seed),
-                                    "--threads",
-                                    std::to_string(options.threads)};
+  std::vector<std::string> words = {"cscd", "run"};
+  const auto add = [&](const char* name, const std::string& value) {
+    words.insert(words.end(), {name, value});
+  };
+  add("--scene", options.scene);
+  add("--strategy", joined(options.strategies, ","));
+  add("--elementary", options.elementary);
+  add("--pipeline", options.pipeline);
+  add("--frames", options.frames);
+  add("--repetitions", std::to_string(options.repetitions));
+  add("--count-every", std::to_string(options.count_every));
+  add("--time-every", std::to_string(options.time_every));
+  add("--time-contacts", std::to_string(options.time_contacts));
+  add("--verify-every", std::to_string(options.verify_every));
+  add("--seed", std::to_string(options.seed));
+  add("--threads", std::to_string(options.threads));
   if (input.ignored) {
-    for (const auto& [first, second] : input.ignored->names)
-      words.insert(words.end(), {"--ignore", first + ":" + second});
-    if (input.ignored->neighbours)
-      words.insert(words.end(), {"--ignore-neighbours", std::to_string(*input.ignored->neighbours)});
+    for (const auto& [first, second] : input.ignored->names) add("--ignore", first + ":" + second);
+    if (input.ignored->neighbours) add("--ignore-neighbours", std::to_string(*input.ignored->neighbours));
   }
   const ThicknessRequest& near = input.thickness.asked;
-  if (near.thickness.number > 0) words.insert(words.end(), {"--thickness", near.thickness.text});
-  if (near.rings > 0) words.insert(words.end(), {"--exclude-rings", std::to_string(near.rings)});
-  if (near.near_rest.number > 0) words.insert(words.end(), {"--exclude-near-rest", near.near_rest.text});
+  if (near.thickness.number > 0) add("--thickness", near.thickness.text);
+  if (near.rings > 0) add("--exclude-rings", std::to_string(near.rings));
+  if (near.near_rest.number > 0) add("--exclude-near-rest", near.near_rest.text);
   if (input.import) {
     const std::vector<std::string> model = to_arguments(options.model.import);
     words.insert(words.end(), model.begin(), model.end());

@@ -112,6 +112,13 @@ std::vector<Vec3> second_moved(std::vector<Vec3> positions, const Vec3& by) {
   return shifted(std::move(positions), 3, 6, by);
 }
 
+// A triangle in the plane z = 0 whose legs have this length, and a second one.
+std::vector<Vec3> beside_flat(double leg, std::vector<Vec3> second) {
+  const std::vector<Vec3> flat = {{0, 0, 0}, {leg, 0, 0}, {0, leg, 0}};
+  second.insert(second.begin(), flat.begin(), flat.end());
+  return second;
+}
+
 // Mutation: certain_sign compares with >= and an error of zero, so that four zeros share a sign.
 TEST(Rules, CertainSignCoplanarForAllTimeIsNotApart) {
   const std::vector<Vec3> start = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {5, 0.5, 0}, {7, 0.25, 0}, {7, 1.5, 0}};
@@ -123,11 +130,7 @@ TEST(Rules, CertainSignCoplanarForAllTimeIsNotApart) {
 
 // Mutation: exact::first_contact answers "apart" for the zero polynomial.
 TEST(Rules, DegenerateDegenerateFeaturesStillTouch) {
-  const std::vector<Vec3> flat = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-  const auto with = [&](std::vector<Vec3> second) {
-    second.insert(second.begin(), flat.begin(), flat.end());
-    return second;
-  };
+  const auto with = [](std::vector<Vec3> second) { return beside_flat(2, std::move(second)); };
   struct {
     const char* what;
     std::vector<Vec3> start;
@@ -158,11 +161,7 @@ TEST(Rules, DegenerateDegenerateFeaturesStillTouch) {
 
 // Mutation: roots_in_unit_interval leaves out roots at 0 and 1; even roots dropped.
 TEST(Rules, ClosedIntervalRootsAtTheEndsAndDoubleRootsCount) {
-  const std::vector<Vec3> flat = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
-  const auto with = [&](std::vector<Vec3> second) {
-    second.insert(second.begin(), flat.begin(), flat.end());
-    return second;
-  };
+  const auto with = [](std::vector<Vec3> second) { return beside_flat(4, std::move(second)); };
   const auto first_time = [&](const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
     const ContactSet found = contacts_of_two(start, end);
     return found.contacts.empty() ? -1.0 : found.contacts.front().time;

@@ -1,7 +1,6 @@
 #include "bench/measure/replay/timing.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <numeric>
 #include <random>
@@ -15,6 +14,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/base/stopwatch.h"
 #include "core/detect/start/embedding.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/geometry/simd_doubles.h"
@@ -107,14 +107,14 @@ void time_starts(Input& input, std::span<const Contestant> contestants, std::spa
   for (const std::size_t i : timed) {
     scenes::ClipInterval interval = input.clip->load(i);
     stream_positions(interval.motion);
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch testing;
     const bool embedded = test.embedded(interval.motion.start());
-    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+    const double taken = testing.milliseconds();
     expect_verified(embedded, verifier, i, input);
     for (std::size_t c = 0; c < contestants.size(); ++c) {
       const Strategy& strategy = *contestants[c].row.strategy;
       if (needs_embedded_start(strategy.guarantee))
-        append_time("embedding", taken.count(), records[c].ms, repetition);
+        append_time("embedding", taken, records[c].ms, repetition);
       if (&strategy != &complete_fallback() || contestants[c].row.first) continue;
       lead_up(strategy, *contestants[c].timed, input, i);
       interval = input.clip->load(i);
@@ -141,7 +141,7 @@ double stream_positions(const Motion& motion) {
     for (const Vec3& p : points) _mm_clflush(&p);
   _mm_mfence();
 #endif
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch streaming;
   Lane8 sum = {};
   for (const std::span<const Vec3> points : ends) {
     const auto* const first = reinterpret_cast<const std::byte*>(points.data());
@@ -152,7 +152,7 @@ double stream_positions(const Motion& motion) {
     }
   }
   [[maybe_unused]] const volatile double kept = sum[0];  // or nothing would be read
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  return streaming.milliseconds();
 }
 
 WarmUp warm_up(Input& input, std::span<Contestant> contestants, std::span<const std::size_t> counted,

@@ -1,19 +1,13 @@
 #include "bench/measure/replay/verification.h"
 
 #include <algorithm>
-#include <chrono>
-#include <map>
 
 #include "bench/cli/output/progress.h"
 #include "bench/measure/replay/contestant.h"
 #include "bench/measure/strategies/catalogue.h"
+#include "core/base/stopwatch.h"
 
 namespace cscd::bench {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-}  // namespace
 
 // The reference with both tests: a contestant where it takes part in the pipeline `today`, which drops no
 // contact, else made for the occasion.
@@ -88,8 +82,7 @@ TruthRecord held_against(const OutsideTruth& outside, const TriangleMesh& mesh, 
 void keep_shared(const ContactSet& truth, ContactSet& answer) {
   ContactSet shared;
   for (const Contact& contact : truth.contacts)
-    if (std::any_of(answer.contacts.begin(), answer.contacts.end(),
-                    [&](const Contact& said) { return said.pair == contact.pair; }))
+    if (std::ranges::any_of(answer.contacts, [&](const Contact& said) { return said.pair == contact.pair; }))
       shared.contacts.push_back(contact);
   answer = std::move(shared);
 }
@@ -141,13 +134,13 @@ const Report& Verifier::report(std::size_t contestant, std::size_t interval) con
 }
 
 void Verifier::judge(std::span<const std::size_t> intervals) {
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch judging;
   Progress progress("verifying " + input_.name, intervals.size());
   for (const std::size_t interval : intervals) {
     if (!has_judged(interval)) judge_one(interval);
     progress.advance();
   }
-  record_.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+  record_.seconds += judging.milliseconds() / 1000;
 }
 
 void Verifier::judge_one(std::size_t i) {

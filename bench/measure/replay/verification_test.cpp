@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "bench/measure/replay/timing.h"
+#include "bench/measure/replay/test_trial.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
-#include "scenes/random/random_interval.h"
 
 // The harness is tested by strategies that cheat: each must be caught before it gets a time.
 namespace cscd::bench {
@@ -19,15 +18,6 @@ const ElementaryTest& exact_test() {
 }
 const ElementaryTest& newton() {
   return elementary_test_named("newton");
-}
-
-Input random_input(std::uint64_t seed) {
-  auto clip = std::make_unique<scenes::Clip>(scenes::make_random_interval(seed).clip);
-  TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count, "random interval");
-  std::optional<Rig> rig = scenes::rig_of(*clip);
-  const std::span<const Vec3> first = clip->frame(0).positions;
-  std::vector<Vec3> reference(first.begin(), first.end());
-  return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
 }
 
 // Starts embedded, and has contacts at different times.
@@ -96,20 +86,13 @@ struct Outcome {
 };
 
 Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
-  Input input = colliding_input();
   const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&strategy}};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
-  Outcome outcome;
-  Verifier verifier(input, contestants, exact_test(), newton());
-  const std::vector<std::size_t> all = {0};
-  verifier.judge(all);
-  outcome.verified = verifier.record();
-  outcome.records.resize(contestants.size());
-  const WarmUp counted = warm_up(input, contestants, all, verifier, outcome.records);
-  outcome.void_times = counted.unrepeatable;
-  if (!outcome.void_times)
-    outcome.void_times =
-        time_contestants(input, contestants, {all, repetitions, 1}, verifier, counted, outcome.records);
+  Trial trial(colliding_input(), rows, exact_test(), newton());
+  trial.judge();
+  const WarmUp counted = trial.count();
+  Outcome outcome{trial.verifier.record(), counted.unrepeatable, {}};
+  if (!outcome.void_times) outcome.void_times = trial.time(counted, repetitions);
+  outcome.records = std::move(trial.records);
   return outcome;
 }
 
@@ -204,16 +187,13 @@ TEST(Verification, TheFilterMayLeaveOtherPairsForAnotherTest) {
   const ElementaryTest& filtered = elementary_test_named("filtered_exact");
   std::size_t others = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    Input input = random_input(seed);
     const std::array rows = {StrategyRow{&complete_reference()}};
-    std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), filtered);
-    Verifier verifier(input, contestants, exact_test(), filtered);
-    const std::vector<std::size_t> all = {0};
-    verifier.judge(all);
-    std::vector<StrategyRecord> records(1);
-    const WarmUp counted = warm_up(input, contestants, all, verifier, records);
+    Trial trial(random_input(seed), rows, exact_test(), filtered);
+    trial.judge();
+    const WarmUp counted = trial.count();
     EXPECT_FALSE(counted.unrepeatable) << seed;
-    others += counted.reports[0][0].pairs.elementary_tests != verifier.report(0, 0).pairs.elementary_tests;
+    others +=
+        counted.reports[0][0].pairs.elementary_tests != trial.verifier.report(0, 0).pairs.elementary_tests;
   }
   EXPECT_GT(others, 0u);
 }
@@ -221,7 +201,6 @@ TEST(Verification, TheFilterMayLeaveOtherPairsForAnotherTest) {
 // Mutation: rows are not compared, so only intervals that were chosen for it are verified.
 TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
   for (const bool loses_first : {true, false}) {
-    Input input = colliding_input();
     const Strategy saboteur{"saboteur",
                             "test",
                             loses_first ? Guarantee::first_contact : Guarantee::complete,
@@ -229,41 +208,29 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
                             StrategyKind::fixed,
                             loses_first ? sabotage<lose_first> : sabotage<lose_last>};
     const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
-    std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
-    Verifier verifier(input, contestants, exact_test(), exact_test());
-    std::vector<StrategyRecord> records(2);
-    const std::vector<std::size_t> all = {0};
-    const WarmUp counted = warm_up(input, contestants, all, verifier, records);
-    EXPECT_EQ(counted.disagreeing, all);
-    EXPECT_TRUE(verifier.record().ok()) << "nothing was judged yet";
-    verifier.judge(counted.disagreeing);
-    EXPECT_EQ(verifier.record().strategies[1].failures.size(), 1u);
+    Trial trial(colliding_input(), rows, exact_test(), exact_test());
+    const WarmUp counted = trial.count();
+    EXPECT_EQ(counted.disagreeing, trial.all);
+    EXPECT_TRUE(trial.verifier.record().ok()) << "nothing was judged yet";
+    trial.verifier.judge(counted.disagreeing);
+    EXPECT_EQ(trial.verifier.record().strategies[1].failures.size(), 1u);
   }
 }
 
 // Contacts that a row is free to leave out are no disagreement.
 TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
-  Input input = colliding_input();
   const Strategy saboteur{
       "saboteur",         "test", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
       sabotage<lose_last>};
   const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), exact_test());
-  Verifier verifier(input, contestants, exact_test(), exact_test());
-  std::vector<StrategyRecord> records(2);
-  EXPECT_TRUE(
-      warm_up(input, contestants, std::vector<std::size_t>{0}, verifier, records).disagreeing.empty());
+  EXPECT_TRUE(Trial(colliding_input(), rows, exact_test(), exact_test()).count().disagreeing.empty());
 }
 
 TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
-  Input input = colliding_input();
   const std::array rows = {StrategyRow{&complete_reference()}};
-  std::vector<Contestant> contestants = make_contestants(input, rows, exact_test(), newton());
-  const Verifier verifier(input, contestants, exact_test(), newton());
-  std::vector<StrategyRecord> records(1);
-  const std::vector<std::size_t> all = {0};
-  const WarmUp counted = warm_up(input, contestants, all, verifier, records);
-  EXPECT_THROW(time_contestants(input, contestants, {all, 3, 1}, verifier, counted, records), InputError);
+  Trial trial(colliding_input(), rows, exact_test(), newton());
+  const WarmUp counted = trial.count();
+  EXPECT_THROW(trial.time(counted, 3), InputError);
 }
 
 }  // namespace

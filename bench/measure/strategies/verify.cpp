@@ -13,7 +13,7 @@ bool by_pair(const Contact& x, const Contact& y) {
 
 std::vector<Contact> sorted_by_pair(const ContactSet& set) {
   std::vector<Contact> contacts = set.contacts;
-  std::sort(contacts.begin(), contacts.end(), by_pair);
+  std::ranges::sort(contacts, by_pair);
   return contacts;
 }
 
@@ -42,8 +42,8 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
                       std::back_inserter(surplus), by_pair);
   result.found_contacts = expected.size() - missing.size();
   // Both sets come from the same elementary test, so a feature pair must have the same time in both.
-  const auto wrong = std::find_if(found.begin(), found.end(), [&](const Contact& contact) {
-    const auto same = std::lower_bound(expected.begin(), expected.end(), contact, by_pair);
+  const auto wrong = std::ranges::find_if(found, [&](const Contact& contact) {
+    const auto same = std::ranges::lower_bound(expected, contact, by_pair);
     return same != expected.end() && same->pair == contact.pair && same->time != contact.time;
   });
   const auto fail = [&](std::string text) {
@@ -59,8 +59,8 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
     fail("lost " + describe(missing.front()) + " (guarantee " + std::string(to_string(guarantee)) + ")");
   } else if (guarantee == Guarantee::first_contact && starts_embedded && !expected.empty()) {
     const double first = reference.contacts.front().time;
-    const bool kept = std::any_of(answer.contacts.begin(), answer.contacts.end(),
-                                  [&](const Contact& contact) { return contact.time == first; });
+    const bool kept =
+        std::ranges::any_of(answer.contacts, [&](const Contact& contact) { return contact.time == first; });
     if (!kept) fail("lost the first contact: " + describe(reference.contacts.front()));
   }
   return result;

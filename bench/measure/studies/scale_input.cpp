@@ -1,13 +1,13 @@
 #include "bench/measure/studies/scale_input.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "bench/measure/studies/scaling.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "scenes/catalog/resized.h"
 
 namespace cscd::bench {
@@ -87,10 +87,7 @@ Moments recorded_moments(const ScaleSubject& subject) {
 }  // namespace
 
 ScaleInput scale_input(const ScaleSubject& subject) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto milliseconds = [&] {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  };
+  const Stopwatch building;
   if (is_point_cache(subject.scene)) {
     Input input = open_input(subject.scene);
     Moments moments = recorded_moments(subject);
@@ -99,7 +96,7 @@ ScaleInput scale_input(const ScaleSubject& subject) {
         scenes::ClipHeader{header.triangles, header.vertex_count, header.bone_parent, false, header.rest},
         std::move(moments.moments), std::move(moments.intervals));
     input.threads = subject.threads;
-    return {std::move(input), milliseconds()};
+    return {std::move(input), building.milliseconds()};
   }
   const scenes::Scene scene = scenes::load_scene(subject.scene);
   scenes::Shape shape =
@@ -122,7 +119,7 @@ ScaleInput scale_input(const ScaleSubject& subject) {
   if (!rig.parent.empty()) bones = std::move(rig);
   Input input{scene.name, std::move(clip), std::move(mesh), std::move(shape.positions), std::move(bones)};
   input.threads = subject.threads;
-  return {std::move(input), milliseconds()};
+  return {std::move(input), building.milliseconds()};
 }
 
 std::vector<std::size_t> spread_starts(std::size_t frames, std::size_t count, double longest_step) {

@@ -28,8 +28,8 @@ struct ScaleSubject {
   std::vector<StrategyRow> rows;
   std::size_t repetitions = 5;
   int threads = 1;  // for the strategies that can share their work
-  std::size_t reference_limit =
-      0;  // triangles above which the complete reference answers one interval a step
+  // Triangles above which the complete reference answers one interval a step.
+  std::size_t reference_limit = 0;
 };
 
 // The surface at rest, and all intervals of its first step, then those of the next.

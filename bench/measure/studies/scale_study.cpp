@@ -1,7 +1,6 @@
 #include "bench/measure/studies/scale_study.h"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -13,9 +12,8 @@
 #include "bench/measure/replay/timing.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
-#include "bench/query/input/thickness.h"
-#include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/base/stopwatch.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/mean_edge.h"
 #include "scenes/catalog/plain_name.h"
@@ -24,7 +22,6 @@ namespace cscd::bench {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 // Right in every case, so that what is judged is what is timed.
 constexpr char kElementary[] = "filtered_exact";
@@ -32,10 +29,6 @@ constexpr char kElementary[] = "filtered_exact";
 // kTooLong is not asked for longer steps, of which the reference then answers one interval alone.
 constexpr double kOnce = 300, kTooLong = 2000;
 constexpr const char* kStages[] = {"refit", "rv_update", "traversal", "elementary"};
-
-double milliseconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 struct Entrant {
   StrategyRow row;
@@ -241,11 +234,11 @@ class Measurement {
   Made make(const StrategyRow& row, const ElementaryTest& test) {
     if (row.strategy != &complete_reference() || input().mesh.triangle_count() <= subject_.reference_limit)
       return make_measured(input(), row, test, 0);
-    const auto begin = Clock::now();
+    const Stopwatch making;
     Made made{row.strategy->make(
                   setup_for(*row.strategy, input().setup(test, row.first), input().clip->interval_count())),
               {}};
-    made.make_ms = milliseconds_since(begin);
+    made.make_ms = making.milliseconds();
     return made;
   }
 

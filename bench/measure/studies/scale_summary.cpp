@@ -31,6 +31,18 @@ ordered_json ratio_of(const ordered_json& row, const ordered_json& unit, const c
   return {{"ratio", interval.value}, {"low", interval.low}, {"high", interval.high}};
 }
 
+// What each step costs as a ratio to the step `unit`, row by row. `key` is what the steps differ in; a step
+// in which it is 0, touching alone, is left out.
+void add_ratios(const ordered_json& subject, const ordered_json& unit, const char* key, ordered_json& out) {
+  for (const ordered_json& step : subject.at("steps"))
+    for (const ordered_json& row : step.at("strategies")) {
+      const ordered_json& own = *row_named(unit.at("strategies"), row.at("name"));
+      if (step.at(key) == 0 || !row.contains("ms") || !own.contains("ms")) continue;
+      out.push_back({{"scene", subject.at("scene")}, {"strategy", row.at("name")}, {key, step.at(key)}});
+      out.back().update(ratio_of(row, own, "total_samples"));
+    }
+}
+
 }  // namespace
 
 ordered_json fits(const ordered_json& subjects) {
@@ -81,34 +93,15 @@ ordered_json step_ratios(const ordered_json& subjects) {
     const auto& steps = subject.at("steps");
     const auto one =
         std::ranges::find_if(steps, [](const ordered_json& step) { return step.at("step") == 1; });
-    if (one == steps.end()) continue;
-    for (const ordered_json& step : steps)
-      for (const ordered_json& row : step.at("strategies")) {
-        const ordered_json& unit = *row_named(one->at("strategies"), row.at("name"));
-        if (!row.contains("ms") || !unit.contains("ms")) continue;
-        out.push_back(
-            {{"scene", subject.at("scene")}, {"strategy", row.at("name")}, {"step", step.at("step")}});
-        out.back().update(ratio_of(row, unit, "total_samples"));
-      }
+    if (one != steps.end()) add_ratios(subject, *one, "step", out);
   }
   return out;
 }
 
 ordered_json thickness_ratios(const ordered_json& subjects) {
   ordered_json out = ordered_json::array();
-  for (const ordered_json& subject : subjects) {
-    if (subject.at("study") != "thickness") continue;
-    const ordered_json& thin = subject.at("steps").at(0);
-    for (const ordered_json& step : subject.at("steps"))
-      for (const ordered_json& row : step.at("strategies")) {
-        const ordered_json& unit = *row_named(thin.at("strategies"), row.at("name"));
-        if (step.at("thickness") == 0 || !row.contains("ms") || !unit.contains("ms")) continue;
-        out.push_back({{"scene", subject.at("scene")},
-                       {"strategy", row.at("name")},
-                       {"thickness", step.at("thickness")}});
-        out.back().update(ratio_of(row, unit, "total_samples"));
-      }
-  }
+  for (const ordered_json& subject : subjects)
+    if (subject.at("study") == "thickness") add_ratios(subject, subject.at("steps").at(0), "thickness", out);
   return out;
 }
 

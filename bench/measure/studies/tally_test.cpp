@@ -4,7 +4,6 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
-#include "core/elementary/catalogue.h"
 #include "scenes/hard/disturbance.h"
 
 namespace cscd::bench {
