@@ -120,14 +120,6 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   answer.motion_ms = asking.milliseconds();
 }
 
-IntervalVerdict final_verdict(const IntervalAnswer& answer) {
-  if (!answer.motion) return answer.verdict;
-  TrueSummary one;
-  one.intervals = 1;
-  ++one.verdicts[static_cast<std::size_t>(answer.motion->verdict)];
-  return one.verdict();
-}
-
 bool differs(const IntervalAnswer& answer) {
   if (!answer.motion) return false;
   const TrueVerdict own = answer.motion->verdict;
