@@ -72,15 +72,12 @@ void export_frames(const ExportOptions& options) {
                                      ? format + " holds depths and curves in any case, so leave it out"
                                      : "write .ply, or .pvd or .usda, which hold depths and curves anyway"));
   const bool sequence = format == ".obj" || format == ".ply";  // whose files have other names
-  const OutputTarget target = find_output_target(options.output, options.force || sequence);
-  if (target.is_stream)
-    throw InputError("output " + options.output +
-                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  const std::filesystem::path target = file_target(options.output, options.force || sequence);
   if (format == ".glb" && !options.bake) {
     export_glb(options.input, options.model, options.output, options.force);
     return;
   }
-  if (!sequence) const UnfinishedFile can_be_made(target.path, options.force);
+  if (!sequence) const UnfinishedFile can_be_made(target, options.force);
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   if (format != ".h5" && format != ".hdf5") {

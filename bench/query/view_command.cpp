@@ -105,8 +105,8 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   TextTable texts;
   const std::vector<std::uint16_t> places = places_of_triangles(input.mesh, names, texts, false);
   const std::vector<std::uint16_t> parts = places_of_triangles(input.mesh, names, texts, true);
-  sections.add("place", std::span<const std::uint16_t>(places));
-  sections.add("part", std::span<const std::uint16_t>(parts));
+  sections.add("place", places);
+  sections.add("part", parts);
 
   Watchdog watchdog = watchdog_of(options, input);
   ClipRecording clip(input, range);
