@@ -71,13 +71,7 @@ void add_make(CLI::App& benchmark) {
       options->scenes = {kNone};
     }
     plan.scenes = scenes_called(options->scenes);
-    {
-      std::optional<Progress> progress;
-      make_benchmark(plan, [&](std::size_t done, std::size_t all) {
-        if (!progress) progress.emplace("benchmark", all);
-        progress->set(done);
-      });
-    }
+    make_benchmark(plan, progress_of("benchmark"));
     const Benchmark made = read_benchmark(plan.folder);
     std::size_t touching = 0, crossing = 0, contacts = 0;
     std::uint64_t bytes = 0;

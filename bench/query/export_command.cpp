@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <cstdio>
-#include <optional>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
@@ -48,12 +47,7 @@ void export_glb(const std::string& input, const ModelOptions& options, const std
         "(--clip, --fps, ...)");
   const scenes::Scene scene = scenes::load_scene(input);
   OutputFile file(output, force, ".glb");
-  std::optional<Progress> progress;
-  const scenes::Character character = scenes::skinned_scene(scene, [&](std::size_t done, std::size_t total) {
-    if (!progress) progress.emplace("generating " + input, total);
-    progress->set(done);
-  });
-  progress.reset();
+  const scenes::Character character = scenes::skinned_scene(scene, progress_of("generating " + input));
   file.commit(scenes::to_glb(character));
   std::printf("%s: %zu frames at %g a second of %zu bones, %zu vertices and %zu triangles\n",
               output.string().c_str(), scene.frames, scenes::kExportedFps, character.parts[0].joints.size(),
