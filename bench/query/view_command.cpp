@@ -78,12 +78,10 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   std::string text = "true motion: ";
   const bool crosses = own.verdict == TrueVerdict::intersects_at_start;
   if (own.pair) {
-    const NamePair met{names.place_of(own.pair->first), names.place_of(own.pair->second)};
-    text += met.first +
-            (crosses                               ? " crosses "
-             : own.verdict == TrueVerdict::touches ? " touches "
-                                                   : " comes close to ") +
-            (met.first == met.second ? "itself" : met.second);
+    text += meeting_text({names.place_of(own.pair->first), names.place_of(own.pair->second)},
+                         crosses                               ? "crosses"
+                         : own.verdict == TrueVerdict::touches ? "touches"
+                                                               : "comes close to");
   } else {
     text += crosses ? "crosses at its start" : std::string(to_string(own.verdict));
   }

@@ -80,8 +80,7 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
   const TrueAnswer& answer = first.answer;
   const bool crosses = answer.verdict == TrueVerdict::intersects_at_start;
   return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
-         " (" + short_text(answer.to) + " s): " + first.names.first + (crosses ? " crosses " : " touches ") +
-         (first.names.first == first.names.second ? "itself" : first.names.second);
+         " (" + short_text(answer.to) + " s): " + meeting_text(first.names, crosses ? "crosses" : "touches");
 }
 
 }  // namespace
