@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
 #include "bench/cli/scene_file.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"

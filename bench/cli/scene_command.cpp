@@ -3,7 +3,6 @@
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/progress.h"
-#include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::bench {

@@ -11,7 +11,6 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/answer/answer.h"
-#include "bench/query/answer/clip_answer.h"
 #include "bench/query/answer/overlap_events.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"

@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -14,7 +13,6 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/input/input.h"
 #include "bench/testing/test_generated.h"
-#include "core/base/error.h"
 #include "core/detect/start/embedding.h"
 
 // Model files from end to end: real characters, and some that the tests write.

@@ -4,7 +4,6 @@
 // `Flaw::none` is the sound twin.
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -20,7 +19,6 @@
 #include "core/hierarchy/overlap_descent.h"
 #include "core/radial/bone_observer.h"
 #include "core/radial/cluster_hierarchy.h"
-#include "core/radial/distance_field.h"
 #include "core/radial/nearest_point.h"
 #include "core/radial/orientation.h"
 #include "core/radial/segmentation.h"

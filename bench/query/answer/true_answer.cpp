@@ -1,8 +1,8 @@
 #include "bench/query/answer/true_answer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bench/measure/strategies/catalogue.h"
