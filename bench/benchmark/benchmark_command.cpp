@@ -71,13 +71,7 @@ void add_make(CLI::App& benchmark) {
       options->scenes = {kNone};
     }
     plan.scenes = scenes_called(options->scenes);
-    {
-      std::optional<Progress> progress;
-      make_benchmark(plan, [&](std::size_t done, std::size_t all) {
-        if (!progress) progress.emplace("benchmark", all);
-        progress->set(done);
-      });
-    }
+    make_benchmark(plan, progress_of("benchmark"));
     const Benchmark made = read_benchmark(plan.folder);
     std::size_t touching = 0, crossing = 0, contacts = 0;
     std::uint64_t bytes = 0;
@@ -145,7 +139,7 @@ void add_answer(CLI::App& benchmark) {
 void add_judge(CLI::App& benchmark) {
   struct Options {
     std::string folder, answers, output;
-    JudgeOptions judging;
+    double time_tolerance = 0;
     bool families = false, force = false;
   };
   auto options = std::make_shared<Options>();
@@ -161,7 +155,7 @@ void add_judge(CLI::App& benchmark) {
   command->add_option("benchmark", options->folder, "the folder of a benchmark")->required();
   command->add_option("answers", options->answers, "the answers, as JSON or JSON lines")->required();
   command
-      ->add_option("--time-tolerance", options->judging.time_tolerance,
+      ->add_option("--time-tolerance", options->time_tolerance,
                    "times that are off by no more than this share of the interval are neither late nor early")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
@@ -173,7 +167,7 @@ void add_judge(CLI::App& benchmark) {
     if (!options->output.empty()) output.emplace(options->output, options->force);
     const Benchmark judged = read_benchmark(options->folder);
     const Judgement judgement =
-        judge(judged, read_answers(options->answers), "answers " + options->answers, options->judging);
+        judge(judged, read_answers(options->answers), "answers " + options->answers, options->time_tolerance);
     std::printf("%s", describe(judgement, options->families).c_str());
     if (output) output->commit(json_text(to_json(judgement)));
   });

@@ -28,8 +28,7 @@ class PublicBenchmarkProgram : public Program {
 
 // The Python program on the page of the benchmark.
 std::string example() {
-  std::ifstream file(scenes::scenes_folder().parent_path() / "bench" / "BENCHMARK.md");
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  const std::string page = test::read(scenes::scenes_folder().parent_path() / "bench" / "BENCHMARK.md");
   const std::string begin = "```python\n";
   const std::size_t first = page.find(begin) + begin.size();
   return page.substr(first, page.find("```", first) - first);

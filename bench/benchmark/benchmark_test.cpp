@@ -44,7 +44,7 @@ class PublicBenchmark : public testing::Test {
   void TearDown() override { fs::remove_all(copy); }
 
   static void expect_refused(const std::function<void()>& act, const std::string& reason) {
-    EXPECT_NE(test::refusal([&] { act(); }).find(reason), std::string::npos);
+    EXPECT_NE(test::refusal(act).find(reason), std::string::npos);
   }
 
   // What a program that knows the truth would answer.

@@ -12,6 +12,8 @@ namespace cscd::bench {
 
 namespace {
 
+constexpr std::size_t kListedFaults = 1000;
+
 std::string shown(double time) {
   char text[40];
   std::snprintf(text, sizeof text, "%.17g", time);
@@ -302,7 +304,7 @@ Score judge_interval(const IntervalTruth& truth, const IntervalAnswers& answer, 
 }
 
 Judgement judge(const Benchmark& benchmark, const Answers& answers, const std::string& where,
-                const JudgeOptions& options) {
+                double time_tolerance) {
   if (answers.benchmark && *answers.benchmark != benchmark.sha256)
     throw InputError(where + ", benchmark: is " + *answers.benchmark + ", and this benchmark is " +
                      benchmark.sha256 +
@@ -345,10 +347,10 @@ Judgement judge(const Benchmark& benchmark, const Answers& answers, const std::s
       continue;
     }
     faults.clear();
-    score.add(judge_interval(truth[i], *answer->second, options.time_tolerance, faults));
+    score.add(judge_interval(truth[i], *answer->second, time_tolerance, faults));
     out.fault_count += faults.size();
     for (Fault& fault : faults)
-      if (out.faults.size() < options.listed_faults) out.faults.push_back(std::move(fault));
+      if (out.faults.size() < kListedFaults) out.faults.push_back(std::move(fault));
   }
   return out;
 }

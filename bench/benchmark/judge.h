@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +42,7 @@ struct Judgement {
   std::map<std::string, std::string> set_of;  // of a family
   std::vector<std::string> set_order;
   std::vector<std::string> unanswered;  // ids
-  std::vector<Fault> faults;            // the first of them
+  std::vector<Fault> faults;            // the first thousand of them
   std::size_t fault_count = 0;          // of all
   nlohmann::ordered_json notes;         // the program's own
 
@@ -51,15 +50,11 @@ struct Judgement {
   Score all() const;
 };
 
-struct JudgeOptions {
-  double time_tolerance = 0;  // times that are off by no more than this are neither late nor early
-  std::size_t listed_faults = 1000;
-};
-
-// Judges answers. Throws InputError for answers to intervals that the benchmark does not have, to another
-// benchmark, or about vertices, edges and triangles that the mesh does not have; `where` begins its text.
+// Judges answers. Times that are off by no more than `time_tolerance` are neither late nor early. Throws
+// InputError for answers to intervals that the benchmark does not have, to another benchmark, or about
+// vertices, edges and triangles that the mesh does not have; `where` begins its text.
 Judgement judge(const Benchmark& benchmark, const Answers& answers, const std::string& where,
-                const JudgeOptions& options = {});
+                double time_tolerance = 0);
 
 // Judges the answer to one interval. `faults` gets a line for each fault.
 Score judge_interval(const IntervalTruth& truth, const IntervalAnswers& answer, double time_tolerance,

@@ -131,10 +131,7 @@ TEST_F(CommandLine, ListsEverythingInALineEach) {
 // The page comes from the rows by which scene files are read. To write it anew:
 // cscd list scene-file --markdown > scenes/README.md
 TEST_F(CommandLine, HasThePageOfSceneFiles) {
-  std::ifstream file(scenes::scenes_folder() / "README.md");
-  std::ostringstream page;
-  page << file.rdbuf();
-  EXPECT_EQ(run("cscd list scene-file --markdown").out, page.str());
+  EXPECT_EQ(run("cscd list scene-file --markdown").out, test::read(scenes::scenes_folder() / "README.md"));
   EXPECT_NE(run("cscd list scene-file").out.find("  frames    whole number; 2 to 100000000; required\n"),
             std::string::npos);
 }

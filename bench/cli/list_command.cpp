@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
 #include "bench/cli/scene_file.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
@@ -82,22 +81,14 @@ json parameters_json(std::span<const scenes::ParameterRow> parameters) {
 }
 
 // Of shapes or effects.
-template <class Rows>
-json described_json(const Rows& all) {
+template <auto all>
+json described_json() {
   json rows = json::array();
-  for (const auto& row : all)
+  for (const auto& row : all())
     rows.push_back({{"name", row.name},
                     {"description", row.description},
                     {"parameters", parameters_json(row.parameters)}});
   return rows;
-}
-
-json shapes_json() {
-  return described_json(scenes::shapes());
-}
-
-json effects_json() {
-  return described_json(scenes::effects());
 }
 
 json families_json() {
@@ -153,8 +144,8 @@ struct Section {
 constexpr Section kSections[] = {{"scenes", "scene", scenes_json, scene_line},
                                  {"strategies", "strategy", strategies_json, strategy_line},
                                  {"tests", "elementary test", tests_json, source_line},
-                                 {"shapes", "shape", shapes_json, description_line},
-                                 {"effects", "effect", effects_json, description_line},
+                                 {"shapes", "shape", described_json<scenes::shapes>, description_line},
+                                 {"effects", "effect", described_json<scenes::effects>, description_line},
                                  {"families", "family of hard queries", families_json, story_line}};
 
 // A line that ends at a blank before the width, with "..." where it was longer. Counts bytes, so a line with
@@ -183,8 +174,8 @@ void print_whole(const Section& section, const json& row) {
     for (const auto& described : all)
       if (described.name == name) std::printf("%s", parameters_text(described.parameters, 2).c_str());
   };
-  if (section.rows == shapes_json) print_parameters(scenes::shapes());
-  if (section.rows == effects_json) print_parameters(scenes::effects());
+  if (section.rows == described_json<scenes::shapes>) print_parameters(scenes::shapes());
+  if (section.rows == described_json<scenes::effects>) print_parameters(scenes::effects());
 }
 
 // The sections that were asked for, by their own name or by that of a row; then with that row alone.

@@ -1,10 +1,8 @@
 #include <CLI/App.hpp>
 #include <cstdio>
-#include <optional>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/progress.h"
-#include "core/base/error.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::bench {
@@ -19,12 +17,7 @@ std::string file_of(const std::string& name) {
 void accept(const std::string& name) {
   const std::string file = file_of(name);
   const scenes::Expected before = scenes::load_scene(file).expected;
-  std::optional<Progress> progress;
-  const scenes::Expected found = scenes::accept_scene(file, [&](std::size_t done, std::size_t total) {
-    if (!progress) progress.emplace("generating " + name, total);
-    progress->set(done);
-  });
-  progress.reset();
+  const scenes::Expected found = scenes::accept_scene(file, progress_of("generating " + name));
   std::printf("%s: %zu vertices, %zu triangles, %zu bones, digest %s%s\n", file.c_str(), *found.vertices,
               *found.triangles, *found.bones, found.digest->c_str(),
               before.digest == found.digest ? ", as before"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <initializer_list>
-#include <limits>
 #include <vector>
 
 #include "bench/cli/output/markdown.h"

@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <cstdio>
-#include <optional>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/output.h"
@@ -48,12 +47,7 @@ void export_glb(const std::string& input, const ModelOptions& options, const std
         "(--clip, --fps, ...)");
   const scenes::Scene scene = scenes::load_scene(input);
   OutputFile file(output, force, ".glb");
-  std::optional<Progress> progress;
-  const scenes::Character character = scenes::skinned_scene(scene, [&](std::size_t done, std::size_t total) {
-    if (!progress) progress.emplace("generating " + input, total);
-    progress->set(done);
-  });
-  progress.reset();
+  const scenes::Character character = scenes::skinned_scene(scene, progress_of("generating " + input));
   file.commit(scenes::to_glb(character));
   std::printf("%s: %zu frames at %g a second of %zu bones, %zu vertices and %zu triangles\n",
               output.string().c_str(), scene.frames, scenes::kExportedFps, character.parts[0].joints.size(),
@@ -72,15 +66,12 @@ void export_frames(const ExportOptions& options) {
                                      ? format + " holds depths and curves in any case, so leave it out"
                                      : "write .ply, or .pvd or .usda, which hold depths and curves anyway"));
   const bool sequence = format == ".obj" || format == ".ply";  // whose files have other names
-  const OutputTarget target = find_output_target(options.output, options.force || sequence);
-  if (target.is_stream)
-    throw InputError("output " + options.output +
-                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  const std::filesystem::path target = file_target(options.output, options.force || sequence);
   if (format == ".glb" && !options.bake) {
     export_glb(options.input, options.model, options.output, options.force);
     return;
   }
-  if (!sequence) const UnfinishedFile can_be_made(target.path, options.force);
+  if (!sequence) const UnfinishedFile can_be_made(target, options.force);
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   if (format != ".h5" && format != ".hdf5") {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <vector>
 
 #include "bench/cli/output/output.h"
@@ -12,11 +11,10 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
 #include "bench/query/answer/answer.h"
-#include "bench/query/answer/clip_answer.h"
 #include "bench/query/answer/overlap_events.h"
-#include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
+#include "core/detect/start/crossings.h"
 #include "scenes/base/output_target.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/surface_file.h"
@@ -54,10 +52,7 @@ class Files {
   explicit Files(bool force) : force_(force) {}
   std::size_t add(const fs::path& path) {
     paths_.push_back(path);
-    files_.push_back(std::make_unique<Target>(Target{find_output_target(path, force_)}));
-    if (files_.back()->target.is_stream)
-      throw InputError("output " + path.string() +
-                       ": is a device or a pipe, and this format needs an ordinary file; choose one");
+    targets_.push_back(file_target(path, force_));
     return paths_.size() - 1;
   }
   // Adds a file for each frame: NAME.0012.obj for frame 12 of NAME.obj. The number has as many digits as the
@@ -72,7 +67,7 @@ class Files {
     }
   }
   void write(std::size_t file, std::string_view content) {
-    UnfinishedFile out(files_[file]->target.path, force_);
+    UnfinishedFile out(targets_[file], force_);
     out.write(content);
     out.finish();
   }
@@ -80,12 +75,8 @@ class Files {
   std::size_t count() const { return paths_.size(); }
 
  private:
-  struct Target {
-    OutputTarget target;
-  };
   bool force_;
-  std::vector<fs::path> paths_;
-  std::vector<std::unique_ptr<Target>> files_;
+  std::vector<fs::path> paths_, targets_;  // as they were named, and behind all links
 };
 
 double fps_of(const Input& input) {
@@ -166,10 +157,10 @@ class Marker {
     marks.crosses.resize(triangles);
     const IntervalAnswer answer = answerer_.answer(interval);
     const scenes::ClipInterval moving = input_.clip->load(interval);
-    std::vector<bool> touched(triangles);
     for (const Contact& contact : answer.found.contacts) {
       if (contact.verdict != Verdict::contact) continue;
-      mark_touched(input_.mesh, contact.pair, touched);
+      for (const auto& [first, second] : carriers(input_.mesh, contact.pair))
+        marks.touches[+first] = marks.touches[+second] = 1;
       const ContactGeometry geometry =
           contact_geometry(input_.mesh, moving.motion, contact.pair, contact.time);
       marks.points.push_back(geometry.point);
@@ -178,7 +169,6 @@ class Marker {
       const Vec3 normal = geometry.normal.value_or(Vec3::Zero());
       for (int axis = 0; axis < 3; ++axis) marks.normal.push_back(static_cast<float>(normal[axis]));
     }
-    for (std::size_t t = 0; t < triangles; ++t) marks.touches[t] = touched[t];
     for (const CrossingPair& pair : answer.start.pairs)
       marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
     add_overlaps(events_.add(answer, moving.motion.start(), {.ways = true}), moving.motion.start(), marks);
@@ -344,6 +334,14 @@ void export_usd(Input& input, const fs::path& output, bool force) {
 }
 
 }  // namespace
+
+fs::path file_target(const fs::path& output, bool force) {
+  const OutputTarget target = find_output_target(output, force);
+  if (target.is_stream)
+    throw InputError("output " + output.string() +
+                     ": is a device or a pipe, and this format needs an ordinary file; choose one");
+  return target.path;
+}
 
 void note_renumbered(const Input& input) {
   if (const double first = file_number(input, 0); first != 0)

@@ -84,9 +84,7 @@ TEST(FirstOnly, QueryReportsTheEarliestTimeAloneAndRefusesWhatMayBeWrong) {
     if (contact["time"] == from["time"]) expected.push_back(contact);
   EXPECT_EQ(left["contacts"], expected);
 
-  const Outcome refused = cscd({"query", file, "--first", "--elementary", "newton"});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_NE(refused.errors.find("newton"), std::string::npos) << refused.errors;
+  expect_refused({"query", file, "--first", "--elementary", "newton"}, "newton");
 }
 
 }  // namespace

@@ -97,9 +97,7 @@ TEST_F(Generated, FramesAreExportedAndOptionsOfModelsRefusedForThem) {
              cache = queried(scratch / "figure.h5", {})["intervals"];
   ASSERT_EQ(cache.size(), model.size());
   for (std::size_t i = 0; i < model.size(); ++i) EXPECT_EQ(cache[i]["time"], model[i]["time"]);
-  const Outcome wrong = cscd({"inspect", scratch / "figure.h5", "--fps", "10"});
-  EXPECT_EQ(wrong.code, 2);
-  EXPECT_NE(wrong.errors.find("is no model file"), std::string::npos);
+  expect_refused({"inspect", scratch / "figure.h5", "--fps", "10"}, "is no model file");
 }
 
 TEST_F(Generated, DefectiveOnesSayWhy) {
@@ -131,9 +129,7 @@ TEST_F(Generated, DefectiveOnesSayWhy) {
 
 TEST_F(Generated, TimeAndMemoryLimitsEndInOneLine) {
   const std::string large = character_file("generated_large_tube.glb", scratch);
-  const Outcome late = cscd({"inspect", large, "--import-seconds", "0.01"});
-  EXPECT_EQ(late.code, 2);
-  EXPECT_NE(late.errors.find("--import-seconds"), std::string::npos) << late.errors;
+  expect_refused({"inspect", large, "--import-seconds", "0.01"}, "--import-seconds");
 #if !defined(__SANITIZE_ADDRESS__)
   // Wherever memory runs out, the importer says so, until there is enough.
   bool enough = false;

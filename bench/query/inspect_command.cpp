@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line/command.h"
-#include "bench/cli/output/json_text.h"
 #include "bench/cli/output/output.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
@@ -12,7 +11,6 @@
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
 #include "bench/query/options/model_options.h"
-#include "core/base/error.h"
 #include "core/base/number_text.h"
 #include "core/detect/start/embedding.h"
 #include "scenes/character/pieces.h"

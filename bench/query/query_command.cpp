@@ -112,9 +112,7 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     if (keep_intervals) answer.intervals.push_back(std::move(interval));
     progress.advance();
   }
-  answer.events = events.all();
-  answer.not_measured = events.not_measured();
-  answer.summary.overlap_ms = events.milliseconds();
+  answer.take(events);
   if (answerer.new_triangles() > 0)
     std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
                 options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());

@@ -296,11 +296,7 @@ TEST_F(Query, GivesCopiesAtRestALineOfTheirOwn) {
 
 // Mutations: the file is written and never read; a strategy without a preparation takes the option.
 TEST_F(Query, KeepsAPreparation) {
-  const auto counted = [&](const std::string& words) {
-    json document = answer(words);
-    for (json& interval : document["intervals"]) interval.erase("ms");
-    return document["intervals"];
-  };
+  const auto counted = [&](const std::string& words) { return timeless(answer(words))["intervals"]; };
   const json plain = counted("small");
   EXPECT_EQ(counted("small --preparation kept.preparation"), plain);
   const std::string kept = text("kept.preparation");

@@ -13,7 +13,6 @@
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "core/detect/start/embedding.h"
-#include "scenes/clip/clip.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/random/random_interval.h"
 

@@ -16,13 +16,6 @@ bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// An answer without its times.
-json timeless(json document) {
-  document["summary"].erase("ms");
-  for (json& interval : document["intervals"]) interval.erase("ms");
-  return document;
-}
-
 TEST_F(ThicknessOption, OfZeroChangesNothing) {
   const json plain = timeless(answer("figure.glb --clip hug"));
   EXPECT_FALSE(plain.contains("thickness"));

@@ -74,12 +74,10 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   std::string text = "true motion: ";
   const bool crosses = own.verdict == TrueVerdict::intersects_at_start;
   if (own.pair) {
-    const NamePair met{names.place_of(own.pair->first), names.place_of(own.pair->second)};
-    text += met.first +
-            (crosses                               ? " crosses "
-             : own.verdict == TrueVerdict::touches ? " touches "
-                                                   : " comes close to ") +
-            (met.first == met.second ? "itself" : met.second);
+    text += meeting_text({names.place_of(own.pair->first), names.place_of(own.pair->second)},
+                         crosses                               ? "crosses"
+                         : own.verdict == TrueVerdict::touches ? "touches"
+                                                               : "comes close to");
   } else {
     text += crosses ? "crosses at its start" : std::string(to_string(own.verdict));
   }
@@ -101,8 +99,8 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   TextTable texts;
   const std::vector<std::uint16_t> places = places_of_triangles(input.mesh, names, texts, false);
   const std::vector<std::uint16_t> parts = places_of_triangles(input.mesh, names, texts, true);
-  sections.add("place", std::span<const std::uint16_t>(places));
-  sections.add("part", std::span<const std::uint16_t>(parts));
+  sections.add("place", places);
+  sections.add("part", parts);
 
   Watchdog watchdog = watchdog_of(options, input);
   ClipRecording clip(input, range);

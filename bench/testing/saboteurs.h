@@ -4,7 +4,6 @@
 // `Flaw::none` is the sound twin.
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -20,7 +19,6 @@
 #include "core/hierarchy/overlap_descent.h"
 #include "core/radial/bone_observer.h"
 #include "core/radial/cluster_hierarchy.h"
-#include "core/radial/distance_field.h"
 #include "core/radial/nearest_point.h"
 #include "core/radial/orientation.h"
 #include "core/radial/segmentation.h"
@@ -44,15 +42,36 @@ enum class Flaw {
   certified_by_triangle,
 };
 
-// All pairs of triangles whose swept bounds overlap, through a descent.
-template <Flaw flaw>
-class PlainCuller : public Culler {
+// A descent over the swept bounds of all triangles.
+class DescentCuller : public Culler {
  public:
-  explicit PlainCuller(const StrategyInput& setup)
+  explicit DescentCuller(const StrategyInput& setup)
       : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
 
+  void refit(const Step& step) override { bounds_.refit(step.motion); }
+
+ protected:
+  template <class Skip, class Emit>
+  CullCounts descend(const Skip& skip, const Emit& emit) {
+    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
+    CullCounts counts;
+    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
+    return counts;
+  }
+
+  const TriangleMesh& mesh_;
+  Tree tree_;
+  SweptBounds bounds_;
+};
+
+// All pairs of triangles whose swept bounds overlap.
+template <Flaw flaw>
+class PlainCuller : public DescentCuller {
+ public:
+  using DescentCuller::DescentCuller;
+
   void refit(const Step& step) override {
-    bounds_.refit(step.motion);
+    DescentCuller::refit(step);
     leaf_.clear();
     for (NodeIndex n = 0; n < static_cast<NodeIndex>(tree_.node_count()); ++n) {
       if (!tree_.is_leaf(n)) continue;
@@ -64,14 +83,12 @@ class PlainCuller : public Culler {
     }
   }
   CullCounts cull(TrianglePairSink& sink) override {
-    CullCounts counts;
     if (flaw == Flaw::bounds_one_ulp_too_tight) {
       for (std::size_t i = 0; i < leaf_.size(); ++i)
         for (std::size_t j = i + 1; j < leaf_.size(); ++j)
           if (overlap(leaf_[i].bound, leaf_[j].bound)) sink.add(leaf_[i].triangle, leaf_[j].triangle);
-      return counts;
+      return {};
     }
-    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
     const auto skip = [&](NodeIndex a, NodeIndex b) {
       return flaw == Flaw::last_leaf_skipped && (a == last_ || b == last_);
     };
@@ -79,8 +96,7 @@ class PlainCuller : public Culler {
       if (flaw == Flaw::one_triangle_pair_in_10000_lost && ++emitted_ % 10000 == 0) return;
       sink.add(tree_.triangle(a), tree_.triangle(b));
     };
-    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
-    return counts;
+    return descend(skip, emit);
   }
 
  private:
@@ -88,9 +104,6 @@ class PlainCuller : public Culler {
     TriangleId triangle;
     Kdop16 bound;
   };
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
   std::vector<Leaf> leaf_;
   NodeIndex last_ = 0;
   static inline std::uint64_t emitted_ = 0;
@@ -99,37 +112,27 @@ class PlainCuller : public Culler {
 // Drops the pairs inside every patch whose normals lie in a half space and whose contour, seen from there, is
 // simple.
 template <Flaw flaw>
-class ConeCuller : public Culler {
+class ConeCuller : public DescentCuller {
  public:
   explicit ConeCuller(const StrategyInput& setup)
-      : mesh_(setup.mesh),
-        tree_(build_tree(mesh_, setup.reference)),
-        bounds_(mesh_, tree_),
-        discs_(mesh_, tree_),
-        cones_(mesh_, tree_) {}
+      : DescentCuller(setup), discs_(mesh_, tree_), cones_(mesh_, tree_) {}
 
   void refit(const Step& step) override {
-    bounds_.refit(step.motion);
+    DescentCuller::refit(step);
     cones_.update(tree_, step.motion);
     motion_ = step.motion;
   }
   CullCounts cull(TrianglePairSink& sink) override {
-    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
     const auto skip = [&](NodeIndex a, NodeIndex b) {
       return a == b && !discs_.contour(a).empty() && cones_[a].in_half_space() &&
              (flaw == Flaw::contours_not_tested ||
               contour_.simple(discs_.contour(a), cones_[a].axis, *motion_));
     };
     const auto emit = [&](NodeIndex a, NodeIndex b) { sink.add(tree_.triangle(a), tree_.triangle(b)); };
-    CullCounts counts;
-    counts.bvot = self_descent(tree_, bounds_, 0, is_leaf, skip, emit);
-    return counts;
+    return descend(skip, emit);
   }
 
  private:
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
   mcd::Discs discs_;
   mcd::NormalCones cones_;
   mcd::ContourTest contour_;
@@ -200,12 +203,10 @@ class RadialCuller : public Culler {
 // Many covers, each of one cluster a component that is seen from a vertex or a point between two; a pair is
 // dropped where one of them certifies all triangles round both.
 template <Flaw flaw>
-class ManyCoversCuller : public Culler {
+class ManyCoversCuller : public DescentCuller {
  public:
-  explicit ManyCoversCuller(const StrategyInput& setup)
-      : mesh_(setup.mesh), tree_(build_tree(mesh_, setup.reference)), bounds_(mesh_, tree_) {}
+  using DescentCuller::DescentCuller;
 
-  void refit(const Step& step) override { bounds_.refit(step.motion); }
   bool classify(const Step& step) override {
     const Motion& motion = step.motion;
     by_.assign(mesh_.triangle_count(), {});
@@ -233,14 +234,10 @@ class ManyCoversCuller : public Culler {
     return true;
   }
   CullCounts cull(TrianglePairSink& sink) override {
-    const auto is_leaf = [&](NodeIndex node) { return tree_.is_leaf(node); };
     const auto emit = [&](NodeIndex a, NodeIndex b) {
       if (!dropped(tree_.triangle(a), tree_.triangle(b))) sink.add(tree_.triangle(a), tree_.triangle(b));
     };
-    CullCounts counts;
-    counts.bvot = self_descent(
-        tree_, bounds_, 0, is_leaf, [](NodeIndex, NodeIndex) { return false; }, emit);
-    return counts;
+    return descend([](NodeIndex, NodeIndex) { return false; }, emit);
   }
 
  private:
@@ -260,9 +257,6 @@ class ManyCoversCuller : public Culler {
     return false;
   }
 
-  const TriangleMesh& mesh_;
-  Tree tree_;
-  SweptBounds bounds_;
   std::vector<std::vector<bool>> by_;  // of each triangle: positive and negative for each cover
 };
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <vector>
 
 #include "bench/testing/test_program.h"
 #include "scenes/character/test_characters.h"

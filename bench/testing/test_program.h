@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -56,6 +57,14 @@ inline Outcome cscd(const std::vector<std::string>& arguments, const Limits& lim
   for (std::string line; std::getline(lines, line);)
     if (!is_progress(line)) outcome.errors += line + (lines.eof() ? "" : "\n");
   return outcome;
+}
+
+// Expects that the program refuses in one line, in which the reason stands.
+inline void expect_refused(const std::vector<std::string>& arguments, const std::string& reason) {
+  const Outcome refused = cscd(arguments);
+  EXPECT_EQ(refused.code, 2) << reason;
+  EXPECT_NE(refused.errors.find(reason), std::string::npos) << refused.errors;
+  EXPECT_EQ(std::ranges::count(refused.errors, '\n'), 1) << refused.errors;
 }
 
 // A folder whose files are named by texts.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <unistd.h>
 
 namespace cscd::bench {
@@ -26,6 +28,14 @@ std::string time_left(std::size_t done, std::size_t left, double seconds_taken) 
   else
     std::snprintf(text, sizeof text, ", about %.1f h left", seconds / 3600);
   return text;
+}
+
+std::function<void(std::size_t, std::size_t)> progress_of(std::string title) {
+  return [title = std::move(title), shown = std::make_shared<std::optional<Progress>>()](std::size_t done,
+                                                                                         std::size_t total) {
+    if (!*shown) shown->emplace(title, total);
+    (*shown)->set(done);
+  };
 }
 
 Progress::Progress(std::string title, std::size_t total, Seconds between_lines)

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <string>
 
 namespace cscd::bench {
@@ -37,6 +38,10 @@ class Progress {
   std::deque<Moment>
       recent_;  // moments at which it was drawn, oldest first; the rate is taken since the first
 };
+
+// Returns a function to which work reports how far it is. It shows a Progress from the first report on, until
+// the function is gone.
+std::function<void(std::size_t done, std::size_t total)> progress_of(std::string title);
 
 // Returns ", about 40 s left" for work of which `left` is left, if `done` of it took so many seconds. Returns
 // an empty string if nothing is done or nothing is left.

@@ -1,7 +1,5 @@
 #include "bench/query/answer/answer.h"
 
-#include <algorithm>
-
 #include "bench/measure/strategies/catalogue.h"
 
 namespace cscd::bench {

@@ -130,23 +130,22 @@ const char* side_name(CrossingRegion::Side side) {
 
 json event_json(const Input& input, const OverlapEvent& event) {
   const auto moment = [&](std::size_t interval) { return moment_json(input, {interval, 0}); };
-  json out = {{"first", event.names.first},
-              {"second", event.names.second},
-              {"begins", moment(event.first)},
-              {"deepest", moment(event.deepest)},
-              {"ends", moment(event.last)},
-              {"depth", {{"at_least", event.depth.lower}, {"at_most", event.depth.upper}}},
-              {"point", vector_json(event.point)},
-              {"out", event.depth.nearest == TriangleId{-1} ? json() : vector_json(event.depth.out)},
-              {"vertices", event.vertices},
-              {"area", event.area},
-              {"side", event.vertices == 0 ? json() : json(side_name(event.side))},
-              {"other_is_open", event.other_is_open},
-              {"pairs", event.pairs},
-              {"curves", event.curves},
-              {"contacts", event.contacts},
-              {"depth_at", event.depth_at}};
-  return out;
+  return {{"first", event.names.first},
+          {"second", event.names.second},
+          {"begins", moment(event.first)},
+          {"deepest", moment(event.deepest)},
+          {"ends", moment(event.last)},
+          {"depth", {{"at_least", event.depth.lower}, {"at_most", event.depth.upper}}},
+          {"point", vector_json(event.point)},
+          {"out", event.depth.nearest == TriangleId{-1} ? json() : vector_json(event.depth.out)},
+          {"vertices", event.vertices},
+          {"area", event.area},
+          {"side", event.vertices == 0 ? json() : json(side_name(event.side))},
+          {"other_is_open", event.other_is_open},
+          {"pairs", event.pairs},
+          {"curves", event.curves},
+          {"contacts", event.contacts},
+          {"depth_at", event.depth_at}};
 }
 
 json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::size_t most_start_pairs) {

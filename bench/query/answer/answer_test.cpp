@@ -6,6 +6,7 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/clip_answer.h"
 #include "bench/testing/test_generated.h"
+#include "bench/testing/test_inputs.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
 
@@ -14,34 +15,15 @@ namespace {
 
 constexpr std::size_t kAll = 1'000'000;
 
-Input input_of(const test::Shape& shape, const std::vector<std::vector<Vec3>>& frames,
-               std::vector<Vec3> rest = {}) {
-  auto clip = std::make_unique<scenes::Clip>(
-      scenes::ClipHeader{shape.triangles, shape.positions.size(), {}, false, std::move(rest)});
-  for (const std::vector<Vec3>& frame : frames) clip->append({frame, {}});
-  return {"test", std::move(clip), shape.mesh(), frames.front(), std::nullopt};
-}
-
-std::vector<Vec3> moved_part(const test::Shape& shape, std::size_t first, const Vec3& by) {
-  std::vector<Vec3> x = shape.positions;
-  for (std::size_t v = first; v < x.size(); ++v) x[v] += by;
-  return x;
-}
-
 const ElementaryTest& exact() {
   return elementary_test_named("filtered_exact");
 }
 
 // Cloth hangs near bones that do not carry it.
 TEST(SurfaceNames, NameClothAndNotTheBoneNearestToIt) {
-  test::Shape shape = test::octahedron();
-  const std::size_t vertices = shape.positions.size(), triangles = shape.triangles.size();
-  for (std::size_t v = 0; v < vertices; ++v) shape.positions.push_back(shape.positions[v] + Vec3(3, 0, 0));
-  for (std::size_t t = 0; t < triangles; ++t) {
-    Triangle corners = shape.triangles[t];
-    for (VertexId& v : corners) v = VertexId{static_cast<std::int32_t>(+v + vertices)};
-    shape.triangles.push_back(corners);
-  }
+  const test::Shape ball = test::octahedron();
+  const test::Shape shape = test::together(ball, test::moved(ball, {3, 0, 0}));
+  const std::size_t vertices = ball.positions.size(), triangles = ball.triangles.size();
   Input input = input_of(shape, {shape.positions, shape.positions});
   input.rig = Rig{{BoneId{-1}}, {{Vec3(0, 0, 0), Vec3(0, 0, 1)}}};
   input.bone_names = {"thigh"};
@@ -139,16 +121,10 @@ TEST_P(Answers, OfACharacterAreRight) {
 
 // Two balls, one of which flies into the other and rests there, and comes out again.
 TEST_P(Answers, OfABodyInsideItselfSayThatItCollides) {
-  const test::Shape balls =
-      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
-  const std::size_t second = balls.positions.size() / 2;
-  std::vector<std::vector<Vec3>> frames;
-  for (const double x : {0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1})
-    frames.push_back(moved_part(balls, second, {x, 0, 0}));
   for (const bool first : {false, true}) {
-    Input input = input_of(balls, frames);
+    Input input = two_balls({0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1});
     std::array<std::size_t, 4> verdicts{};
-    expect_right(input, strategy_named(GetParam()), {first, false, false}, {0, frames.size() - 1}, verdicts);
+    expect_right(input, strategy_named(GetParam()), {first, false, false}, {0, 7}, verdicts);
     EXPECT_EQ(count(verdicts, IntervalVerdict::clear), 2u);
     EXPECT_EQ(count(verdicts, IntervalVerdict::touches), 1u);
     EXPECT_EQ(count(verdicts, IntervalVerdict::intersects_at_start), 4u);

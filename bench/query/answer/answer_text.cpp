@@ -33,11 +33,6 @@ std::string moment_text(const Input& input, const ClipMoment& moment) {
   return text;
 }
 
-// "hand_l touches hips", "tail touches itself".
-std::string meeting_text(const NamePair& both, const std::string& verb) {
-  return both.first + " " + verb + " " + (both.first == both.second ? "itself" : both.second);
-}
-
 // "eye_l in head: 96 pairs, teeth in head: 12 pairs, and 3 more".
 template <class Text>
 std::string listed(const std::map<NamePair, std::size_t>& counts, const Text& text) {
@@ -51,8 +46,7 @@ std::string listed(const std::map<NamePair, std::size_t>& counts, const Text& te
 
 // "LeftLeg and LeftUpLeg (24 intervals)".
 std::string met_text(const NamePair& both, std::size_t intervals) {
-  return both.first + " and " + (both.first == both.second ? "itself" : both.second) + " (" +
-         many(intervals, "interval") + ")";
+  return meeting_text(both, "and") + " (" + many(intervals, "interval") + ")";
 }
 
 std::string ignored_text(const Input& input, const AnswerSummary& s) {

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bench/query/answer/answer.h"
@@ -100,6 +99,13 @@ struct ClipAnswer {
   std::size_t not_measured = 0;                // starts of which events say nothing (OverlapEvents)
   TrueSummary true_motion = {};                // of no interval where it was not asked for
   std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
+
+  // Takes the events of all intervals, and the milliseconds that it took to find them.
+  void take(const OverlapEvents& found) {
+    events = found.all();
+    not_measured = found.not_measured();
+    summary.overlap_ms = found.milliseconds();
+  }
 };
 
 // Returns the answer of which no interval is known yet. The arguments must outlive it.

@@ -4,24 +4,15 @@
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
 #include "bench/query/input/thickness.h"
+#include "bench/testing/test_inputs.h"
 #include "core/mesh/adjacency.h"
-#include "core/mesh/test_shapes.h"
 
 // Answers to intervals with a thickness, held against every pair of features.
 namespace cscd::bench {
 namespace {
 
-// Two balls, the second one shifted along x by so much in each frame.
-Input two_balls(std::initializer_list<double> shifts, const std::string& thickness, int rings = 0) {
-  const test::Shape balls =
-      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
-  for (const double x : shifts) {
-    std::vector<Vec3> frame = balls.positions;
-    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
-    clip->append({frame, {}});
-  }
-  Input input{"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
+Input thick_balls(std::initializer_list<double> shifts, const std::string& thickness, int rings = 0) {
+  Input input = two_balls(shifts);
   set_thickness(input, {.thickness = parse_length("--thickness", thickness), .rings = rings});
   return input;
 }
@@ -83,15 +74,16 @@ constexpr auto kClear = IntervalVerdict::clear, kClose = IntervalVerdict::close,
 TEST(Close, ComesBetweenClearAndTouching) {
   // The gap is more than 0.6 at first, and the balls touch before the second one has moved by 1.2.
   for (const char* strategy : {"drvbc_fast_all", "drvbc_fast_complete", "base"})
-    EXPECT_EQ(expect_right(two_balls({0, -0.3, -0.95, -0.95, -0.97, -1.2, -1.2, -0.5, 0}, "0.25"), strategy),
-              (std::vector{kClear, kClose, kClose, kClose, kTouches, kCrosses, kCrosses, kClear}))
+    EXPECT_EQ(
+        expect_right(thick_balls({0, -0.3, -0.95, -0.95, -0.97, -1.2, -1.2, -0.5, 0}, "0.25"), strategy),
+        (std::vector{kClear, kClose, kClose, kClose, kTouches, kCrosses, kCrosses, kClear}))
         << strategy;
 }
 
 TEST(Close, IsTouchingAtThicknessZero) {
-  EXPECT_EQ(expect_right(two_balls({0, -0.95, -1.2, -1.2}, "0.001"), "drvbc_fast_all"),
+  EXPECT_EQ(expect_right(thick_balls({0, -0.95, -1.2, -1.2}, "0.001"), "drvbc_fast_all"),
             (std::vector{kClear, kTouches, kCrosses}));
-  Input input = two_balls({0, -0.95, -1.2, -1.2}, "0");
+  Input input = thick_balls({0, -0.95, -1.2, -1.2}, "0");
   Answerer answerer(input, strategy_named("drvbc_fast_all"), elementary_test_named("filtered_exact"), {});
   EXPECT_EQ(answerer.answer(0).verdict, kClear);
   const IntervalAnswer touches = answerer.answer(1);
@@ -101,9 +93,9 @@ TEST(Close, IsTouchingAtThicknessZero) {
 
 // At so large a thickness every ball is close to itself. Mutation: pairs are left out that are not near.
 TEST(Close, LeavesOutWhatIsNearOnTheSurfaceWhereAsked) {
-  EXPECT_EQ(expect_right(two_balls({0, -0.3, -0.6}, "1e"), "drvbc_fast_complete"),
+  EXPECT_EQ(expect_right(thick_balls({0, -0.3, -0.6}, "1e"), "drvbc_fast_complete"),
             (std::vector{kClose, kClose}));
-  EXPECT_EQ(expect_right(two_balls({0, -0.3, -0.6}, "1e", 3), "drvbc_fast_complete"),
+  EXPECT_EQ(expect_right(thick_balls({0, -0.3, -0.6}, "1e", 3), "drvbc_fast_complete"),
             (std::vector{kClear, kClose}));
 }
 

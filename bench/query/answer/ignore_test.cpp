@@ -8,6 +8,7 @@
 #include "bench/query/answer/answer.h"
 #include "bench/query/answer/surface_names.h"
 #include "bench/testing/test_generated.h"
+#include "bench/testing/test_inputs.h"
 #include "core/base/test_refusal.h"
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
@@ -273,9 +274,7 @@ TEST_F(IgnoredNames, AreRefusedWhereTheInputHasNoneOfThem) {
 
 TEST(IgnoredNeighbours, NeedBones) {
   const test::Shape shape = test::octahedron();
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{shape.triangles, shape.positions.size(), {}});
-  for (int frame = 0; frame < 2; ++frame) clip->append({shape.positions, {}});
-  Input input{"boneless", std::move(clip), shape.mesh(), shape.positions, std::nullopt};
+  Input input = input_of(shape, {shape.positions, shape.positions});
   EXPECT_NE(
       refusal(input, {.pairs = {}, .neighbours = 1}).find("has no bones; name its parts with --ignore A:B"),
       std::string::npos);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -58,7 +57,6 @@ class OverlapEvents {
     bool pieces = false;  // also where the answer has no contacts
   };
   Here add(const IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
-  Here add(const IntervalAnswer& answer, std::span<const Vec3> start) { return add(answer, start, {}); }
 
   // All events, in the order in which they begin.
   const std::vector<OverlapEvent>& all() const { return events_; }

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
+#include "bench/testing/test_inputs.h"
 #include "core/elementary/catalogue.h"
-#include "core/mesh/test_shapes.h"
 
 namespace cscd::bench {
 namespace {
@@ -13,15 +13,10 @@ namespace {
 Input balls_at(std::initializer_list<double> distances) {
   const test::Shape ball = test::icosphere(2);
   const test::Shape balls = test::together(ball, ball);
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
-  for (const double distance : distances) {
-    std::vector<Vec3> frame = balls.positions;
-    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v] += Vec3(distance, 0.01, 0.02);
-    clip->append({frame, {}});
-  }
-  const auto first = clip->load_frame(0).positions;
-  const std::vector<Vec3> reference(first.begin(), first.end());
-  return {"balls", std::move(clip), balls.mesh(), reference, std::nullopt};
+  std::vector<std::vector<Vec3>> frames;
+  for (const double distance : distances)
+    frames.push_back(moved_part(balls, ball.positions.size(), {distance, 0.01, 0.02}));
+  return input_of(balls, frames);
 }
 
 std::vector<OverlapEvent> events_of(Input& input, std::size_t& contacts_within, bool keep_rest = false) {
@@ -32,7 +27,7 @@ std::vector<OverlapEvent> events_of(Input& input, std::size_t& contacts_within, 
   contacts_within = 0;
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
     const IntervalAnswer answer = answerer.answer(i);
-    const OverlapEvents::Here here = events.add(answer, input.clip->load(i).motion.start());
+    const OverlapEvents::Here here = events.add(answer, input.clip->load(i).motion.start(), {});
     EXPECT_EQ(here.event_of_contact.size(), answer.found.contacts.size());
     for (const std::size_t event : here.event_of_contact) contacts_within += event != OverlapEvents::kNone;
   }

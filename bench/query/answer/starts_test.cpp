@@ -3,9 +3,9 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
+#include "bench/testing/test_inputs.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
-#include "core/mesh/test_shapes.h"
 
 // A query follows the motion instead of searching a start from nothing. That needs premises about the row
 // that answered, and each test here breaks one of them: the row or its elementary test misses contacts that
@@ -64,19 +64,6 @@ constexpr ElementaryTest kUndecided{"undecided",
                                     true,
                                     one_by_one<says_undecided<MovingVertexFace>>,
                                     one_by_one<says_undecided<MovingEdgeEdge>>};
-
-// Two balls, of which the second one is shifted along x by so much, a frame each.
-Input two_balls(std::initializer_list<double> shifts) {
-  const test::Shape balls =
-      test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{balls.triangles, balls.positions.size(), {}});
-  for (const double x : shifts) {
-    std::vector<Vec3> frame = balls.positions;
-    for (std::size_t v = frame.size() / 2; v < frame.size(); ++v) frame[v].x() += x;
-    clip->append({frame, {}});
-  }
-  return {"balls", std::move(clip), balls.mesh(), balls.positions, std::nullopt};
-}
 
 // One ball flies into the other, rests there, and comes out again. Asks for all intervals in order, and then
 // for intervals here and there.

@@ -48,6 +48,10 @@ std::vector<std::string> part_names(const scenes::ImportReport& report) {
 
 }  // namespace
 
+std::string meeting_text(const NamePair& both, const std::string& verb) {
+  return both.first + " " + verb + " " + (both.first == both.second ? "itself" : both.second);
+}
+
 SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
   const TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> parts =

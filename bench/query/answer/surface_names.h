@@ -13,6 +13,9 @@ namespace cscd::bench {
 
 using NamePair = std::pair<std::string, std::string>;
 
+// "hand_l touches hips", "tail touches itself".
+std::string meeting_text(const NamePair& both, const std::string& verb);
+
 class SurfaceNames {
  public:
   // `input` must outlive it.

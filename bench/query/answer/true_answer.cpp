@@ -1,8 +1,8 @@
 #include "bench/query/answer/true_answer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bench/measure/strategies/catalogue.h"
@@ -80,8 +80,7 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
   const TrueAnswer& answer = first.answer;
   const bool crosses = answer.verdict == TrueVerdict::intersects_at_start;
   return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
-         " (" + short_text(answer.to) + " s): " + first.names.first + (crosses ? " crosses " : " touches ") +
-         (first.names.first == first.names.second ? "itself" : first.names.second);
+         " (" + short_text(answer.to) + " s): " + meeting_text(first.names, crosses ? "crosses" : "touches");
 }
 
 }  // namespace
@@ -118,14 +117,6 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   }
   clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
   answer.motion_ms = asking.milliseconds();
-}
-
-IntervalVerdict final_verdict(const IntervalAnswer& answer) {
-  if (!answer.motion) return answer.verdict;
-  TrueSummary one;
-  one.intervals = 1;
-  ++one.verdicts[static_cast<std::size_t>(answer.motion->verdict)];
-  return one.verdict();
 }
 
 bool differs(const IntervalAnswer& answer) {

@@ -30,8 +30,6 @@ class TrueAnswerer {
   std::optional<double> clear_until_;  // the end of the last interval, if that is clear
 };
 
-// What an interval comes to: by its true motion where that was asked for, otherwise by straight lines.
-IntervalVerdict final_verdict(const IntervalAnswer& answer);
 // Whether the true motion touches or crosses and straight lines do not, or the other way round, as far as the
 // true motion is known to do one or the other.
 bool differs(const IntervalAnswer& answer);

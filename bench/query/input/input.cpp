@@ -23,11 +23,7 @@ std::unique_ptr<scenes::ClipSource> clip_of(const scenes::Scene& scene, const st
     std::fprintf(stderr,
                  "note: %s promises no digest, so its frames may be any; cscd scene accept FILE writes it\n",
                  name.c_str());
-  std::optional<Progress> progress;
-  return scenes::open_scene(scene, [&](std::size_t done, std::size_t total) {
-    if (!progress) progress.emplace("generating " + name, total);
-    progress->set(done);
-  });
+  return scenes::open_scene(scene, progress_of("generating " + name));
 }
 
 // Frames whose numbers differ by less are one: numbers are seconds times a rate.

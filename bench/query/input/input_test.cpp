@@ -4,19 +4,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/base/error.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::bench {
 namespace {
 
 // The message with which work about the input walk.fbx fails.
 std::string said(const std::string& what) {
-  try {
-    name_input("walk.fbx", [&] { throw InputError(what); });
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { name_input("walk.fbx", [&] { throw InputError(what); }); });
 }
 
 // Mutations: the name is put before every message; other faults are taken for faults of the input.

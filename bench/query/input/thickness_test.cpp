@@ -1,25 +1,14 @@
 #include "bench/query/input/thickness.h"
 
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/input.h"
-#include "core/base/error.h"
-#include "core/mesh/test_shapes.h"
+#include "bench/testing/test_inputs.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::bench {
 namespace {
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -38,7 +27,7 @@ TEST(Length, IsANumberOfUnitsOrOfEdges) {
 
 TEST(Length, IsRefusedInOneLineThatNamesTheOption) {
   const auto text = [](const std::string& written) {
-    return refusal([&] { parse_length("--thickness", written); });
+    return test::refusal([&] { parse_length("--thickness", written); });
   };
   EXPECT_TRUE(has(text("-1"), "--thickness -1: is negative; write ")) << text("-1");
   EXPECT_TRUE(has(text("-0.1e"), "is negative"));
@@ -49,20 +38,15 @@ TEST(Length, IsRefusedInOneLineThatNamesTheOption) {
   EXPECT_TRUE(has(text("1e999"), "no number that a double holds"));
 }
 
-Input octahedron() {
-  const test::Shape shape = test::octahedron();
-  auto clip = std::make_unique<scenes::Clip>(scenes::ClipHeader{shape.triangles, shape.positions.size(), {}});
-  for (int i = 0; i < 2; ++i) clip->append({shape.positions, {}});
-  return {"octahedron", std::move(clip), shape.mesh(), shape.positions, std::nullopt};
-}
-
 // Mutation: pairs at exactly the distance do not count.
 TEST(Thickness, IsMeasuredInTheMeanEdgeOfThePoseAtRest) {
-  Input input = octahedron();
+  const test::Shape shape = test::octahedron();
+  Input input = input_of(shape, {shape.positions, shape.positions});
   set_thickness(input, {.thickness = parse_length("--thickness", "2e")});
   EXPECT_DOUBLE_EQ(input.thickness.length, 2 * std::sqrt(2.0)) << "all edges are as long";
-  EXPECT_TRUE(has(refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "3.5")}); }),
-                  "--thickness 3.5: is more than all of octahedron at rest"))
+  EXPECT_TRUE(
+      has(test::refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "3.5")}); }),
+          "--thickness 3.5: is more than all of test at rest"))
       << "its box is 3.46 across";
   EXPECT_EQ(input.thickness.left_out, nullptr);
   EXPECT_EQ(close_at_rest(input).contacts.size(), 24u + 30u) << "all pairs that share no vertex";
@@ -72,25 +56,25 @@ TEST(Thickness, IsMeasuredInTheMeanEdgeOfThePoseAtRest) {
   ASSERT_NE(input.thickness.left_out, nullptr);
   for (const Contact& contact : close_at_rest(input).contacts)
     EXPECT_TRUE(input.thickness.left_out->excludes(input.mesh, contact.pair));
-  EXPECT_TRUE(
-      has(refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "1.5e308e")}); }),
-          "--thickness 1.5e308e: is more than a number holds"));
+  EXPECT_TRUE(has(
+      test::refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "1.5e308e")}); }),
+      "--thickness 1.5e308e: is more than a number holds"));
 }
 
 TEST(Thickness, IsRefusedWhereNothingKnowsDistances) {
   const ThicknessRequest thick{.thickness = parse_length("--thickness", "0.1")}, rings{.rings = 2}, none;
   for (const Strategy& strategy : strategies()) {
-    const std::string text = refusal([&] { require_fit(thick, strategy); });
+    const std::string text = test::refusal([&] { require_fit(thick, strategy); });
     EXPECT_EQ(text.empty(), strategy.knows_distance) << text;
     EXPECT_TRUE(text.empty() || has(text, "choose one of base, ")) << text;
-    EXPECT_EQ(refusal([&] { require_fit(none, strategy); }), "");
+    EXPECT_EQ(test::refusal([&] { require_fit(none, strategy); }), "");
   }
-  EXPECT_TRUE(has(refusal([&] { require_fit(rings, strategy_named("drvbc_fast")); }),
+  EXPECT_TRUE(has(test::refusal([&] { require_fit(rings, strategy_named("drvbc_fast")); }),
                   "--exclude-rings: strategy drvbc_fast cannot answer that, as it cannot leave pairs out"));
-  EXPECT_EQ(refusal([&] { require_fit(rings, strategy_named("mcd")); }), "");
-  EXPECT_TRUE(has(refusal([&] { require_fit(thick, elementary_test_named("newton")); }),
+  EXPECT_EQ(test::refusal([&] { require_fit(rings, strategy_named("mcd")); }), "");
+  EXPECT_TRUE(has(test::refusal([&] { require_fit(thick, elementary_test_named("newton")); }),
                   "knows no distances; choose one with --elementary: "));
-  EXPECT_EQ(refusal([&] { require_fit(thick, elementary_test_named("filtered_exact")); }), "");
+  EXPECT_EQ(test::refusal([&] { require_fit(thick, elementary_test_named("filtered_exact")); }), "");
 }
 
 }  // namespace

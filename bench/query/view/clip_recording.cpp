@@ -53,11 +53,11 @@ json ClipRecording::write(Sections& sections) const {
   std::vector<std::uint32_t> corners;
   for (const Triangle& triangle : mesh.triangles())
     for (const VertexId v : triangle) corners.push_back(static_cast<std::uint32_t>(v));
-  sections.add("corners", std::span<const std::uint32_t>(corners));
-  sections.add("positions", std::span<const std::uint8_t>(frames_.bytes()));
-  sections.add("predicted_ends", std::span<const std::uint8_t>(ends_.bytes()));
-  sections.add("interval_of_end", std::span<const std::uint32_t>(interval_of_end_));
-  sections.add("bones", std::span<const float>(bones_));
+  sections.add("corners", corners);
+  sections.add("positions", frames_.bytes());
+  sections.add("predicted_ends", ends_.bytes());
+  sections.add("interval_of_end", interval_of_end_);
+  sections.add("bones", bones_);
 
   json numbers = json::array(), seconds = json::array();
   for (std::size_t f = range_.first; f <= range_.last; ++f) {

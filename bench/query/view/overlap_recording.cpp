@@ -50,14 +50,14 @@ std::size_t OverlapRecording::add_curve(const CrossingCurves& all, const Crossin
 }
 
 void OverlapRecording::write(Sections& sections) const {
-  sections.add("inside_count", std::span<const std::uint32_t>(count_));
-  sections.add("inside_vertex", std::span<const std::int32_t>(vertex_));
-  sections.add("inside_depth", std::span<const float>(depth_));
-  sections.add("curve_count", std::span<const std::uint32_t>(curves_));
-  sections.add("curve_points", std::span<const std::uint32_t>(curve_points_));
-  sections.add("curve_event", std::span<const std::uint32_t>(curve_event_));
-  sections.add("curve_edge", std::span<const std::int32_t>(edge_));
-  sections.add("curve_share", std::span<const std::uint16_t>(share_));
+  sections.add("inside_count", count_);
+  sections.add("inside_vertex", vertex_);
+  sections.add("inside_depth", depth_);
+  sections.add("curve_count", curves_);
+  sections.add("curve_points", curve_points_);
+  sections.add("curve_event", curve_event_);
+  sections.add("curve_edge", edge_);
+  sections.add("curve_share", share_);
 }
 
 nlohmann::json event_lines(const Input& input, std::span<const OverlapEvent> events) {

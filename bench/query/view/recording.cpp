@@ -7,9 +7,9 @@
 
 #include "bench/query/answer/answer_json.h"
 #include "bench/query/answer/answer_text.h"
-#include "bench/query/view/touched.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
+#include "core/detect/start/crossings.h"
 
 namespace cscd::bench {
 namespace {
@@ -18,11 +18,6 @@ using nlohmann::json;
 
 std::uint16_t share(double of_one) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(of_one, 0.0, 1.0) * 65535));
-}
-
-template <class T>
-void add(Sections& sections, const std::string& name, const std::vector<T>& values) {
-  sections.add(name, std::span<const T>(values));
 }
 
 std::uint32_t count(std::uint64_t number) {
@@ -63,9 +58,9 @@ void ObserverRecording::add(const std::vector<RadialView::Observer>& observers, 
 }
 
 void ObserverRecording::write(Sections& sections, const std::string& prefix) const {
-  bench::add(sections, prefix + "observer_count", count_);
-  bench::add(sections, prefix + "observer_cluster", cluster_);
-  bench::add(sections, prefix + "observer_place", place_);
+  sections.add(prefix + "observer_count", count_);
+  sections.add(prefix + "observer_cluster", cluster_);
+  sections.add(prefix + "observer_place", place_);
 }
 
 StrategyRecording::StrategyRecording(ClipAnswer answer, const ViewGrid& grid)
@@ -98,7 +93,9 @@ void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInte
     if (contact.verdict != Verdict::contact) continue;
     ++contacts;
     const bool touches = !is_thick() || answer.touching.contains(contact.pair);
-    mark_touched(answer_.input.mesh, contact.pair, touches ? touched : close);
+    std::vector<bool>& marked = touches ? touched : close;
+    for (const auto& [first, second] : carriers(answer_.input.mesh, contact.pair))
+      marked[+first] = marked[+second] = true;
     if (kept == kMostContacts) continue;
     ++kept;
     add_contact(contact, interval.motion, places);
@@ -176,7 +173,7 @@ void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
 }
 
 json StrategyRecording::write(Sections& sections, const std::string& prefix) const {
-  const auto put = [&](const char* name, const auto& values) { bench::add(sections, prefix + name, values); };
+  const auto put = [&](const std::string& name, const auto& values) { sections.add(prefix + name, values); };
   put("verdict", verdict_);
   put("proven", proven_);
   put("answerer", answerer_);
@@ -207,7 +204,7 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix) con
     for (std::size_t c = 0; c < observers_.size(); ++c)
       observers_[c].write(sections, prefix + "cover" + std::to_string(c) + ".");
     for (std::size_t c = 0; c < further_covers_.size(); ++c)
-      put(("cover" + std::to_string(c + 1) + ".cluster").c_str(), further_covers_[c]);
+      put("cover" + std::to_string(c + 1) + ".cluster", further_covers_[c]);
     put("patch", patch_);
   }
   return {{"name", answer_.strategy.name},

@@ -70,11 +70,7 @@ class StrategyRecording {
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
   // Takes the events of all intervals, and the milliseconds that it took to find them.
-  void take(const OverlapEvents& events) {
-    answer_.events = events.all();
-    answer_.not_measured = events.not_measured();
-    answer_.summary.overlap_ms = events.milliseconds();
-  }
+  void take(const OverlapEvents& events) { answer_.take(events); }
   const ClipAnswer& answer() const { return answer_; }
   bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
 

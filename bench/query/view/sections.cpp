@@ -1,6 +1,5 @@
 #include "bench/query/view/sections.h"
 
-#include <array>
 #include <cstdint>
 
 #include "bench/cli/output/gzip.h"

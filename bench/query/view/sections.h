@@ -1,10 +1,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 namespace cscd::bench {
 
@@ -14,11 +14,11 @@ class Sections {
  public:
   // Adds an array of numbers in this machine's order of bytes, which is the order of every browser's machine.
   template <class T>
-  void add(const std::string& name, std::span<const T> values) {
+  void add(const std::string& name, const std::vector<T>& values) {
     static_assert(std::is_arithmetic_v<T>);
     const char* kind = std::is_floating_point_v<T> ? "f" : std::is_signed_v<T> ? "i" : "u";
     add_bytes(name, kind + std::to_string(8 * sizeof(T)),
-              {reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+              {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
   }
 
   // Begins the names of all arrays that are added from here on: the arrays of one clip of several.

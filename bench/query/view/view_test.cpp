@@ -29,8 +29,8 @@ TEST(Sections, SayWhereEachArrayLies) {
   Sections sections;
   const std::vector<std::uint16_t> shorts(1000, 7);
   const std::vector<float> none;
-  sections.add("shorts", std::span<const std::uint16_t>(shorts));
-  sections.add("none", std::span<const float>(none));
+  sections.add("shorts", shorts);
+  sections.add("none", none);
   const nlohmann::json& table = sections.table();
   ASSERT_EQ(table.size(), 2u);
   EXPECT_EQ(table[0]["type"], "u16");
