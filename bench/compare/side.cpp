@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "scenes/base/files_in.h"
 
 namespace cscd::bench {
 
@@ -11,11 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-bool names_json(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name.ends_with(".json") || name.ends_with(".json.gz");
-}
 
 void add_file(const fs::path& path, bool named_itself, std::vector<Record>& records) {
   const std::string text = record_text(path);
@@ -32,12 +28,8 @@ void add_file(const fs::path& path, bool named_itself, std::vector<Record>& reco
 void add_named(const fs::path& path, std::vector<Record>& records) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return add_file(path, true, records);
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path))
-    if (entry.is_regular_file() && names_json(entry.path())) files.push_back(entry.path());
-  std::ranges::sort(files);
   const std::size_t before = records.size();
-  for (const fs::path& file : files) add_file(file, false, records);
+  for (const fs::path& file : files_in(path, {".json", ".json.gz"})) add_file(file, false, records);
   if (records.size() == before)
     throw InputError("folder " + path.string() +
                      ": holds no record; name one into which `cscd run --json` wrote");

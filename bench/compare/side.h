@@ -15,7 +15,7 @@ namespace cscd::bench {
 // One of the two programs that are compared: its records, a process each, by scene and in order of their
 // dates.
 struct Side {
-  std::string commit;    // "unknown" where the records do not say; "several" is refused
+  std::string commit;    // "unknown" where the records do not say
   bool dirty = false;    // whether the sources differed from that commit
   std::string measured;  // the date of the first record
   std::map<std::string, std::vector<Record>> scenes;

@@ -20,6 +20,7 @@
 #include "bench/query/options/model_options.h"
 #include "bench/tables/run_times.h"
 #include "core/base/error.h"
+#include "scenes/base/files_in.h"
 #include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene.h"
 
@@ -154,19 +155,11 @@ void make_folder(const std::filesystem::path& folder, const std::string& option)
 
 // The point caches of a folder.
 std::vector<std::string> caches_in(const std::filesystem::path& folder) {
-  std::vector<std::string> caches;
-  std::error_code error;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error))
-    if (entry->path().extension() == ".h5") caches.push_back(entry->path());
-  if (error)
-    throw InputError("folder " + folder.string() + ": cannot be read (" + error.message() +
-                     "); make it readable");
+  const std::vector<std::filesystem::path> caches = files_in(folder, {".h5"});
   if (caches.empty())
     throw InputError("folder " + folder.string() +
                      ": holds no point cache (.h5); name a folder that does, or a file");
-  std::ranges::sort(caches);
-  return caches;
+  return {caches.begin(), caches.end()};
 }
 
 // Each input to its own record in the folder named as output.

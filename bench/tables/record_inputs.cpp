@@ -7,6 +7,7 @@
 
 #include "bench/cli/output/data.h"
 #include "core/base/error.h"
+#include "scenes/base/files_in.h"
 
 namespace cscd::bench {
 namespace {
@@ -20,20 +21,6 @@ std::string schema_of(const fs::path& path) {
     throw InputError("record " + path.string() + ": is no record; name what cscd run wrote");
   const auto schema = document.is_object() ? document.value("schema", nlohmann::json()) : nlohmann::json();
   return schema.is_string() ? schema.get<std::string>() : "";
-}
-
-std::vector<fs::path> json_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code unknown;
-    if (entry->is_regular_file(unknown) && (name.ends_with(".json") || name.ends_with(".json.gz")))
-      files.push_back(entry->path());
-  }
-  if (error) throw InputError("folder " + folder.string() + ": cannot be read (" + error.message() + ")");
-  std::ranges::sort(files);
-  return files;
 }
 
 // Where a scene stands among others: the paper's scenes, their variants with contacts, all others.
@@ -72,7 +59,7 @@ RecordFiles record_files(const std::vector<std::string>& named, std::span<const 
       add(name, true);
       continue;
     }
-    for (const fs::path& file : json_files(name)) add(file, false);
+    for (const fs::path& file : files_in(name, {".json", ".json.gz"})) add(file, false);
   }
   if (!files.contains(std::string(wanted.front())))
     throw InputError((named.size() == 1 ? named.front() + " holds no" : "none of these holds a") +

@@ -179,7 +179,8 @@ std::size_t count(std::span<const ClaimResult> claims, ClaimVerdict verdict) {
   return static_cast<std::size_t>(std::ranges::count(claims, verdict, &ClaimResult::verdict));
 }
 
-// "17 of 24 measured claims are reproduced, 5 in part"; empty where none was measured.
+// How many of the claims about the measured scenes are reproduced, and how many in part; empty where none was
+// measured.
 std::string claims_text(std::span<const ClaimResult> claims) {
   const std::size_t reproduced = count(claims, ClaimVerdict::reproduced),
                     partly = count(claims, ClaimVerdict::partly),

@@ -68,7 +68,7 @@ inline bool holds(const ContactSet& set, const FeaturePair& pair) {
                      [&](const Contact& contact) { return contact.pair == pair; });
 }
 
-// The end of a motion in which vertices from `first` on are shifted.
+// The end of a motion in which vertices from `first` to before `last` are shifted.
 inline std::vector<Vec3> shifted(std::vector<Vec3> positions, std::size_t first, std::size_t last,
                                  const Vec3& by) {
   for (std::size_t i = first; i < last; ++i) positions[i] += by;
