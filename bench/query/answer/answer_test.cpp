@@ -5,8 +5,8 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/clip_answer.h"
+#include "bench/query/input/test_inputs.h"
 #include "bench/testing/test_generated.h"
-#include "bench/testing/test_inputs.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
 

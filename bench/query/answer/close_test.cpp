@@ -3,8 +3,8 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
+#include "bench/query/input/test_inputs.h"
 #include "bench/query/input/thickness.h"
-#include "bench/testing/test_inputs.h"
 #include "core/mesh/adjacency.h"
 
 // Answers to intervals with a thickness, held against every pair of features.

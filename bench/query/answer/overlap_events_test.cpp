@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/testing/test_inputs.h"
+#include "bench/query/input/test_inputs.h"
 #include "core/elementary/catalogue.h"
 
 namespace cscd::bench {

@@ -3,7 +3,7 @@
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/query/answer/answer.h"
-#include "bench/testing/test_inputs.h"
+#include "bench/query/input/test_inputs.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
 

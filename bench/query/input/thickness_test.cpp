@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/measure/strategies/catalogue.h"
-#include "bench/testing/test_inputs.h"
+#include "bench/query/input/test_inputs.h"
 #include "core/base/test_refusal.h"
 
 namespace cscd::bench {
