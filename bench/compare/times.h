@@ -49,7 +49,7 @@ struct TimeFinding {
 struct UnjudgedTime {
   std::string scene, row;
   std::optional<double> before_ms, after_ms;  // an interval, medians over the processes
-  bool of_shortfall = false;                  // as above
+  bool of_shortfall = false;                  // as in TimeFinding
 };
 
 // The geometric mean over scenes of what the whole query of a row takes, after over before.

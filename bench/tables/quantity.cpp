@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// The stage in which what needs an embedded start has the start tested.
+// The stage that tests the start, for rows that promise something from an embedded start alone.
 constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";

@@ -247,7 +247,7 @@ std::vector<float> rounded(std::span<const Vec3> positions, std::span<const Vec3
   return out;
 }
 
-// The file of what hangs on node 0.
+// The file of a scene whose only root is node 0.
 std::string file_of(Json nodes, Json meshes, Json skins, Json clips, const Buffer& buffer) {
   Json file{{"asset", {{"version", "2.0"}, {"generator", "cscd"}}},
             {"scene", 0},

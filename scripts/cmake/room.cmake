@@ -47,7 +47,7 @@ set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark)(/|$)|^bench/(cli|query|m
 # USES names the rooms below it, LINK outside libraries, TEST_USES and TEST_LINK those that only its tests may see.
 # IF names a variable: where it is false, for want of an outside library, the room stays empty; where it is true, those
 # who use the room see a macro, CSCD_BASELINES_FCL for baselines/fcl.
-# JSON is for a room that links nlohmann's library and nearly every file of which includes the whole of its header.
+# JSON says that the room links nlohmann's library, and that nearly all of its files include <nlohmann/json.hpp>.
 function(cscd_room path)
   cmake_parse_arguments(ROOM "JSON" "IF" "USES;LINK;TEST_USES;TEST_LINK" ${ARGN})
   set(parsed ${CSCD_PARSED})

@@ -66,7 +66,7 @@ struct StrategyRecord {
 struct VerifiedStrategy {
   std::string name, guarantee;
   std::uint64_t contacts_expected = 0, contacts_found = 0;  // of the reference's, over the verified intervals
-  std::uint64_t intervals_promised = 0;  // of those verified, on which the guarantee promises a contact
+  std::uint64_t intervals_promised = 0;  // verified ones in which the guarantee promises a contact
   std::vector<std::string> failures;
 };
 

@@ -17,7 +17,7 @@ inline constexpr std::string_view kShortfallMark = "*";
 struct Shortfall {
   std::uint64_t contacts_expected = 0, contacts_found = 0;  // those of the reference, and those of them found
   std::size_t intervals = 0;                                // verified
-  std::size_t void_intervals = 0;  // of these, on which the row promises nothing: starts are not embedded
+  std::size_t void_intervals = 0;  // of these, with a start that is not embedded: the row promises nothing
 };
 
 // Returns nothing where the row found all contacts and promises something on every verified interval, and

@@ -20,7 +20,8 @@ namespace cscd::bench {
 namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-constexpr std::size_t kTornEvery = 3;  // torn ones beside the whole ones, for what promises to be complete
+// One interval in so many is followed by one of a torn surface, for the rows that promise to be complete.
+constexpr std::size_t kTornEvery = 3;
 
 template <class Query>
 Answer put_off(const Query&) {

@@ -16,7 +16,8 @@ namespace cscd::bench {
 struct RandomVerification {
   std::size_t intervals = 1000;
   std::uint64_t first_seed = 1;
-  // All pairs judge every so many; else the complete reference does, which is verified here itself.
+  // One interval in so many is judged by the test of all pairs, and the others by the complete reference,
+  // which the test of all pairs verifies.
   std::size_t brute_every = 10;
   bool thick = false;  // every interval at a random thickness, by the rows that know distances
 };

@@ -9,7 +9,7 @@
 #include "bench/query/input/input.h"
 #include "core/mesh/test_shapes.h"
 
-// Inputs in memory, whose frames tests give.
+// Inputs in memory, made from the frames that a test gives.
 namespace cscd::bench {
 
 inline Input input_of(const test::Shape& shape, const std::vector<std::vector<Vec3>>& frames,
@@ -27,7 +27,7 @@ inline std::vector<Vec3> moved_part(const test::Shape& shape, std::size_t first,
   return x;
 }
 
-// Two balls side by side, of which the second one is shifted along x by so much, a frame each.
+// Two balls side by side. In each frame the second one is shifted along x by one of `shifts`.
 inline Input two_balls(std::initializer_list<double> shifts) {
   const test::Shape balls =
       test::together(test::icosphere(1), test::moved(test::icosphere(1), {3, 0.1, 0.2}));
